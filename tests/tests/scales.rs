@@ -20,7 +20,7 @@ use symbolic::SplitMix;
 const ACTIONS: [f64; 3] = [1e-13, 1.0, 1e13];
 const LENGTHS: [f64; 3] = [1e-9, 1.0, 1e9];
 const TIMES: [f64; 3] = [1e-6, 1.0, 1e6];
-/// One question in so many is asked in one scale; `SCALES=all` asks all in all of them.
+/// One question in this number is asked in one scale; `SCALES=all` asks all in all of them.
 const ONE_IN: f64 = 4.0;
 /// The error estimates of two results may be wrong by so much, and numbers by this part of their size.
 const FACTOR: f64 = 100.0;

@@ -10,12 +10,12 @@ use symbolic::SplitMix;
 
 /// Units in those of the scene, powers of ten.
 const UNITS: [i32; 5] = [-9, -3, 0, 3, 9];
-/// One choice of units in so many is drawn; `UNITS=1` takes all, `UNITS_OF_MOTIONS=1` for verdicts on
+/// One choice of units in this number is drawn; `UNITS=1` takes all, `UNITS_OF_MOTIONS=1` for verdicts on
 /// motions.
 const ONE_IN: usize = 10;
 /// The answer of one scene takes a second: its brackets are too long.
 const LONG: (&str, usize) = ("bicycle", 60);
-/// Among so many words one may become undecided.
+/// Number of words among which one may become undecided.
 const OPEN: usize = 50;
 
 /// The scene with metres, kilograms and seconds, as far as they are its own, replaced by others.
@@ -101,7 +101,7 @@ impl Count {
     }
 }
 
-/// All units of length, mass and time, one in so many of them; none for zero.
+/// One in `one_in` of all units of length, mass and time; none for zero.
 fn drawn(random: &mut SplitMix, one_in: usize) -> Vec<[i32; 3]> {
     let all = UNITS.iter().flat_map(|l| UNITS.iter().flat_map(move |m| UNITS.map(|t| [*l, *m, t])));
     all.filter(|_| random.unit() * (one_in as f64) < 1.0 && one_in > 0).collect()

@@ -41,7 +41,7 @@ def picture(problem, rungs):
     x_of, x_ticks = axis([x for _, points in found.values() for x, _ in points])
     y_of, y_ticks = axis([y for _, points in found.values() for _, y in points])
     place = lambda x, y: (round(x * WIDTH, 1), round((1 - y) * HEIGHT, 1))
-    # an entry of the legend a tool, and one a form of several
+    # one entry of the legend per tool, and one per form of several
     entries, body, used = {}, [], {}
 
     def draw(tool, nth, dash, at):

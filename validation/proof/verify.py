@@ -289,7 +289,7 @@ class Series:
         c = grown(exponential(self.fraction("exp of"), E), lambda k, y: follow(self.c, y, k))
         return Series(c, None if self.first[0] else (1, 0), [(self, c)])
     def sine(self, quarters):
-        """The sine, so many quarter turns on."""
+        """The sine, some quarter turns on."""
         readable(self.first, "a sine or cosine of what is not known to be a fraction at the start, but for multiples of pi")
         part = Fraction(self.first[1]) * UNITY[0] / 2 + UNITY[0] // 4 * quarters
         readable(part.denominator == 1, f"an angle of {self.first[1]} pi")
@@ -466,7 +466,7 @@ def verify(proof):
 # The scene file ---------------------------------------------------------------------------------------------------------------------------
 
 def hold(table, proof):
-    """Holds the plain scene, of which the certificate is verified, against the file."""
+    """Holds the plain scene, for which the certificate is verified, against the file."""
     scene, given, order = proof["scene"], proof["set"], proof["order"]
     names, extra = list(table["coordinates"]), []
     start, definitions, parameters = [table.get(section, {}) for section in ("start", "definitions", "parameters")]

@@ -1,4 +1,4 @@
-//! Pages about many systems and many points: every count against records and rows of which it is known.
+//! Pages about many systems and many points: every count against records and rows with known counts.
 
 use pages::sweep_files;
 use random::{Batch, DIVERGES, Kind, NEAREST, Record};
@@ -7,7 +7,7 @@ use validation::report::{random_files, random_headline};
 
 use crate::pages::table;
 
-/// Systems of a batch of which everything is known: `open` failed, the rest held.
+/// Systems of a batch that is known: `open` failed, the rest held.
 fn records() -> Vec<Record> {
     let record = |index: u64, flagged: bool, exponent: f64, differs: bool| {
         let open = if flagged {

@@ -31,7 +31,7 @@ pub const TARGETS: [f64; 4] = [1e-6, 1e-9, 1e-10, 1e-11];
 pub struct Effort {
     /// Runs of one setting are repeated until they took this many seconds together.
     pub seconds: f64,
-    /// And so many times at least.
+    /// And at least this often.
     pub repeats: usize,
     /// A run that takes more steps than this counts as failed.
     pub max_steps: usize,
@@ -62,7 +62,7 @@ pub struct Bench {
     pub title: String,
     /// Seconds from the text of the scene to the system.
     pub parse: f64,
-    /// One a formulation, in the order of the table; then one a further form that has no guards.
+    /// One per formulation, in the order of the table; then one per further form without guards.
     pub entries: Vec<Entry>,
 }
 

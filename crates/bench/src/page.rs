@@ -69,7 +69,7 @@ pub fn bench_files(benches: &[Bench], ensembles: &[Throughput]) -> Result<Vec<Fi
     Ok(files)
 }
 
-/// Both runs may take so many times the fastest single one.
+/// Allowed ratio of both runs to the fastest single one.
 const WANTED: f64 = 2.5;
 
 /// What one gets who gives nothing but a tolerance, beside the fastest single run of all forms and settings.

@@ -1,12 +1,15 @@
-//! One system, as text for the program and as functions of numbers; Euler–Lagrange expressions by differences.
+//! One system, as text for the program and as functions of numbers; Euler–Lagrange expressions by
+//! differences.
 
 use equations::{Compiled, Equations};
 use mechanics::System;
 
-/// Positions, velocities and time at which equations are judged; the constraint holds there.
+/// Positions at which equations are judged.
 pub const Q: [f64; 3] = [0.4, -0.7, 0.3];
+/// The time.
 pub const T: f64 = 0.9;
 
+/// Velocities with which the constraint holds there.
 pub fn velocities() -> [f64; 3] {
     let (x, phi) = (0.8, 1.1);
     [x, (x * Q[2].sin() + T * Q[0] / 2.0) / Q[2].cos(), phi]
@@ -36,6 +39,7 @@ pub fn forces(v: &[f64]) -> [f64; 3] {
     [-v[0] / 5.0, 0.0, 0.3]
 }
 
+/// The system, with or without forces.
 pub fn system(with_forces: bool) -> System {
     let mut system = System::new(Default::default(), &[("x", "m"), ("y", "m"), ("phi", "rad")]);
     let text = "(1 + x^2)/2*x'^2 + y'^2/2 + (2 + cos(phi))/4*phi'^2 + x'*y'*sin(t)/3 - x*y";

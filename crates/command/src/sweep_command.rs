@@ -80,7 +80,7 @@ fn row(point: &SweepPoint) -> String {
     cells.join(",") + "\n"
 }
 
-/// All combinations of some ranges, of which the last one changes fastest.
+/// All combinations of some ranges; the last one changes fastest.
 struct Grid<'a> {
     ranges: &'a [Range],
     count: usize,

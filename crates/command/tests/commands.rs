@@ -161,7 +161,7 @@ fn options_of_the_integration_are_heard() {
 
 #[test]
 fn equal_steps_keep_the_constraint_and_have_their_order() {
-    // φ = 0.3 + 1.1 t; x = (c sin φ + k sin²φ/2)/ω − …, of which the step's error is measured
+    // φ = 0.3 + 1.1 t; x = (c sin φ + k sin²φ/2)/ω − …: the step's error is measured against it
     let (omega, k) = (1.1_f64, 9.81 * 0.4_f64.sin() / 1.1);
     let x = |phi: f64| ((0.5 - k * 0.3_f64.sin()) * phi.sin() + k * phi.sin().powi(2) / 2.0) / omega;
     for (order, limit) in [("2", 2e-3), ("4", 2e-6), ("6", 2e-9), ("8", 1e-11)] {

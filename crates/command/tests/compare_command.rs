@@ -20,7 +20,7 @@ fn three_lines_two_tables_and_a_plot() {
     assert!(lines[2].starts_with("how sure: No μ₀ makes the vakonomic motion Chetaev's: proved"), "{told}");
     for words in [
         "a  Chetaev – vakonomic ",
-        "of the others: 3 different",
+        "different: removed (arc-length) – removed (along-x)",
         "gap in the kinetic metric (m √kg)",
         "·····",
         "t − t₀ (s)",

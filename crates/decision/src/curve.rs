@@ -100,7 +100,7 @@ pub(crate) struct Dynamics {
     pub(crate) coordinates: usize,
     pub(crate) states: usize,
     pub(crate) unknowns: usize,
-    /// Which coordinate each state is, or the rate of which.
+    /// Which coordinate each state is, or is the rate of.
     kinds: Vec<Option<(usize, bool)>>,
     /// Whether time stands in nothing of this.
     pub(crate) timeless: bool,

@@ -12,7 +12,7 @@ use crate::random_start::at_random;
 use crate::series::{CurveSeries, MismatchSeries, NoSeries, SeriesStart};
 use crate::start::ExactStart;
 
-/// Seeds of the random starts, one a field: a rank that two of them agree on is the generic one, but for an
+/// Seeds of the random starts, one per field: a rank that two of them agree on is the generic one, but for an
 /// accident.
 const SEEDS: [u64; FIELDS.len()] = [0x5eed_0001, 0x5eed_0002, 0x5eed_0003, 0x5eed_0004];
 /// Orders for which a certificate has room for its series.
@@ -28,7 +28,7 @@ pub enum Finding {
     /// Some do, by ranks modulo two primes: that of `[O | o]` is that of `O` at every order, and grows no
     /// more.
     Contained {
-        /// The rank of `O`: so many constants are fixed.
+        /// The rank of `O`: the number of constants that are fixed.
         rank: usize,
         /// The order from which on the ranks stay.
         order: usize,

@@ -1,5 +1,5 @@
 //! Drawn systems: a yes is none where floating point says no, and other words for a system get the same
-//! words. `DRAWN=N` draws so many; `DRAWN_TO=FILE` keeps the systems and what was said, for a referee.
+//! words. `DRAWN=N` draws N; `DRAWN_TO=FILE` keeps the systems and what was said, for a referee.
 
 use std::io::Write;
 

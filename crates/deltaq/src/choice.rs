@@ -52,7 +52,7 @@ pub fn choices_among(scene: &Scene, wanted: impl Fn(&Formulation) -> bool) -> Ve
     choices
 }
 
-/// A choice of each of [`FORMS`], of which [`derive_at`] refuses those that `scene` does not have.
+/// A choice of each of [`FORMS`]; [`derive_at`] refuses those that `scene` does not have.
 pub fn forms(scene: &Scene) -> Vec<Choice> {
     FORMS.iter().map(|form| without_removal(form, scene)).collect()
 }

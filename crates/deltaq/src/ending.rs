@@ -50,7 +50,7 @@ impl Ending {
                 let guard = guard_words(equations, *index);
                 let cause = match equations.domains.contains(&equations.guards[*index]) {
                     true => {
-                        format!("{guard} vanishes, of which a root or logarithm that was written has no value beyond")
+                        format!("{guard} vanishes: a root or logarithm of it, as written, has no value beyond")
                     }
                     false => format!("{guard} vanishes, by which the equations divide"),
                 };

@@ -207,7 +207,7 @@ impl Ensemble {
         Ok(EnsembleMember { t: state.t, end: *end, y, constants, guess, given })
     }
 
-    /// The member with these numbers, one a name, or why there is none.
+    /// The member with these numbers, one per name, or why there is none.
     ///
     /// # Panics
     /// If there are not as many.

@@ -9,7 +9,7 @@ use crate::{Metric, Motion, Setting, SolveError};
 
 /// Instants at which it is taken.
 const SAMPLES: usize = 200;
-/// At so many of all instants it is asked what is added up to multipliers.
+/// Number of instants at which the terms of multipliers are summed.
 const LOOKED: usize = 16;
 
 /// Relative error estimate over which a motion is not trusted, nor a single coordinate.

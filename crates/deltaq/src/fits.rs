@@ -22,7 +22,7 @@ const LESS: usize = 4;
 pub enum Fits {
     /// None.
     None,
-    /// Those of which it was asked whether they give a motion, and nothing was decided.
+    /// Those whose membership was asked, and not decided.
     Undecided,
     /// Those of all motions that differ.
     All,
@@ -165,7 +165,7 @@ fn screening(scene: &Scene, choice: &Choice, equations: &Equations, settings: &S
 
 /// Where the constants of a fit come from.
 enum Start {
-    /// They are these, one per memory variable, found from so many starts.
+    /// They are these, one per memory variable, found from this number of starts.
     Known((Vec<f64>, usize)),
     /// They are searched, from the least-norm element of the decided set or the nearest miss, from zero
     /// where nothing was decided; or from those of the run, where these are closer.

@@ -16,7 +16,7 @@ const LARGE: f64 = 1e-5;
 const MOVE: f64 = 1.0 / (1 << 20) as f64;
 const LEAST: f64 = 1e-30;
 const MOVES: usize = 11;
-/// Changes of the last digits are a sample; round-off may be so many times as large.
+/// Changes of the last digits are a sample; round-off may be larger by this factor.
 const DIGITS: f64 = 4.0;
 /// What changes by less than this part of it does not depend on what was moved.
 const SEEN: f64 = 1.0 / (1 << 30) as f64;

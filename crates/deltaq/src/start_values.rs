@@ -47,7 +47,7 @@ impl StartValues {
         self.symbols.iter().position(|&s| s == symbol)
     }
 
-    /// The place of the first free constant in `inputs`, where there are so many.
+    /// The place of the first free constant in `inputs`, for this number of them.
     pub(crate) fn first_constant(&self, constants: usize) -> usize {
         self.inputs.len() - constants
     }

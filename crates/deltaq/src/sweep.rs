@@ -94,7 +94,7 @@ impl Sweep {
         Ok(sweep)
     }
 
-    /// What a comparison finds for these numbers, one a name: a pure function of them.
+    /// What a comparison finds for these numbers, one per name: a pure function of them.
     ///
     /// # Panics
     /// If there are not as many numbers as names.

@@ -75,7 +75,7 @@ pub(crate) fn in_costates(formulation: &Formulation) -> Option<&'static Formulat
     (formulation == VAKONOMIC).then_some(VAKONOMIC_COSTATE)
 }
 
-/// The formulation of equations of that name, or that of which they are a form in quasi-velocities.
+/// The formulation of that name, or the one whose form in quasi-velocities has it.
 pub(crate) fn as_derived(name: &str) -> Option<&'static Formulation> {
     let named = formulation(name).ok()?;
     Some(REDUCED.into_iter().find(|[_, form]| *form == named).map_or(named, |[own, _]| own))

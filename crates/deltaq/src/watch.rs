@@ -34,7 +34,7 @@ pub(crate) struct Watch {
 }
 
 impl Watch {
-    /// Of a system of which these parameters vary.
+    /// Of a system with these varying parameters.
     pub(crate) fn new(system: &System, parameters: &[Symbol]) -> Result<Watch, CompileError> {
         let mut inputs = vec![system.time];
         inputs.extend(system.positions().into_iter().chain(system.velocities()).chain(parameters.iter().copied()));

@@ -172,7 +172,7 @@ fn what_is_said_of_a_mismatch_and_of_constants_has_its_numbers() {
     found.decision.verdict = Verdict::NotContained;
     found.decision.least = 20.0;
     let said = sentence(found);
-    let expected = "No μ₀ makes the vakonomic motion Chetaev's: the least mismatch of accelerations is 0.4 of the motion's own \
+    let expected = "No μ₀ makes the vakonomic motion Chetaev's: the least mismatch of accelerations is 0.4 times the motion's own \
                     up to t = 1.5000, after which round-off is too loud; there is no proof, since Taylor coefficients agree \
                     through order 7.";
     assert_eq!(said, expected);

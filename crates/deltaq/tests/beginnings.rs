@@ -1,4 +1,4 @@
-//! How motions begin to part, of motions of which that is known.
+//! How motions begin to part, where that is known.
 
 use deltaq::{Growth, LeadingTerm, Metric, Motion, Settings, choices, compare_motions, growth, solve_choice};
 use integrate::Method;

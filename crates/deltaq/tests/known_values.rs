@@ -319,7 +319,7 @@ duration = 3
 "#;
 
 /// What the looser run is wrong by at its worst: kinetic, of x, of x', of λ. The same of the run that has the
-/// hundredfold tolerance, of which this is the kept run.
+/// hundredfold tolerance; this is the kept run.
 fn known(motion: &mut Motion, times: &[f64]) -> [f64; 4] {
     let mut worst = [0.0_f64; 4];
     for &t in times {

@@ -7,7 +7,7 @@ use deltaq::{
 use equations::Formulation;
 use scene::Scene;
 
-/// Three motions of the sledge, of which nothing is known but what rows say.
+/// Three motions of the sledge; nothing is known of them but what rows say.
 fn three() -> Comparison {
     let scene = Scene::parse("sledge", include_str!("../../scene/sledge.toml")).expect("a scene");
     let mut three: Vec<Choice> = choices(&scene);

@@ -76,7 +76,7 @@ pub enum DiscreteError {
     },
     /// Newton's method does not settle, or not at once: the root may be another one, the step is too long.
     #[error(
-        "the step from t = {t} is too long: its equations are not solved after {iterations} iterations, of which the last changed them by {found:.1e}, limit {limit:.0e}"
+        "the step from t = {t} is too long: its equations are not solved after {iterations} iterations; the last changed them by {found:.1e}, limit {limit:.0e}"
     )]
     NotConverged {
         /// Time of the node where the step starts.

@@ -78,11 +78,11 @@ pub(crate) struct Principle {
     pub(crate) lagrangian: Expr,
     /// `Q`, zeros where there is none.
     pub(crate) forces: Vec<Expr>,
-    /// `R ν`, one a variable; none where multipliers stand in `𝓛`.
+    /// `R ν`, one per variable; none where multipliers stand in `𝓛`.
     pub(crate) reaction: Option<Vec<Expr>>,
     /// `ν`.
     pub(crate) multipliers: Vec<Symbol>,
-    /// `c`, one a multiplier.
+    /// `c`, one per multiplier.
     pub(crate) conditions: Vec<Expr>,
 }
 

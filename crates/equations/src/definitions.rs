@@ -66,7 +66,7 @@ pub(crate) fn needed(
     kept
 }
 
-/// The symbols in `roots`, and in the definitions by way of which they are computed.
+/// The symbols in `roots`, and in the definitions that these use.
 pub(crate) fn symbols_behind(
     g: &Graph,
     definitions: &[(Symbol, Expr)],

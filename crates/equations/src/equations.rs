@@ -17,7 +17,7 @@ pub enum Role {
     Position,
     /// A velocity `v = q̇`.
     Velocity,
-    /// A quasi-velocity `w`, of which the velocities are linear functions.
+    /// A quasi-velocity `w`; the velocities are linear in them.
     QuasiVelocity,
     /// A displacement parameter `u`.
     DisplacementParameter,
@@ -328,7 +328,7 @@ impl Equations {
         known
     }
 
-    /// The symbols in `roots`, and in the definitions by way of which they are computed.
+    /// The symbols in `roots`, and in the definitions that these use.
     pub fn symbols_behind(&self, roots: impl IntoIterator<Item = Expr>) -> HashSet<Symbol> {
         symbols_behind(&self.graph, &self.definitions, roots)
     }

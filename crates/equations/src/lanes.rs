@@ -1,4 +1,4 @@
-//! Equations of motion at several points at once, one a lane: for ensembles.
+//! Equations of motion at several points at once, one per lane: for ensembles.
 
 use symbolic::{CompileError, Evaluator, LANES, Lanes, Scalar, SeriesTape, SeriesWorkspace, Symbol};
 

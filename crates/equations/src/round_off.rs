@@ -1,4 +1,4 @@
-//! What is added up to rates, their derivatives and invariants, of which round-off is a part.
+//! Sums of magnitudes behind rates, their derivatives and invariants: round-off is proportional to them.
 
 use symbolic::{Bounded, Evaluator, Scalar};
 

@@ -15,7 +15,7 @@ thread_local! {
     static ANSWER: RefCell<Answer> = RefCell::default();
 }
 
-/// Where a question of so many bytes is to be written.
+/// Where a question of `length` bytes is to be written.
 #[wasm_bindgen]
 pub fn question_at(length: usize) -> usize {
     QUESTION.with_borrow_mut(|question| {

@@ -60,7 +60,7 @@ pub(crate) enum Refused {
     /// The text is no scene.
     #[error(transparent)]
     Faulty(#[from] SceneError),
-    /// A motion cannot be had or read off.
+    /// A motion cannot be computed or evaluated.
     #[error(transparent)]
     Motion(#[from] deltaq::SolveError),
     /// The question is none.

@@ -386,7 +386,7 @@ impl LeastSquaresProblem<f64, Dyn, Dyn> for Target<'_, '_> {
         Some(DVector::from_vec(values))
     }
 
-    /// `None` ends the minimisation: good enough, out of iterations, or no differences to be had.
+    /// `None` ends the minimisation: good enough, out of iterations, or no differences.
     fn jacobian(&self) -> Option<DMatrix<f64>> {
         let search = &mut *self.0.borrow_mut();
         let enough = if search.iterations == 0 { AT_ONCE * search.enough } else { search.enough };

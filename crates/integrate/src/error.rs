@@ -38,7 +38,7 @@ pub enum CallError {
         /// 0.
         limit: f64,
     },
-    /// Sizes were given, but not one a component.
+    /// Sizes were given, but not one per component.
     #[error("{found} sizes are given for {expected} unknowns")]
     Sizes {
         /// [`crate::Problem::dimension`].

@@ -4,7 +4,7 @@ use crate::dense::{Basis, evaluate_segment};
 use crate::root::find_root_between;
 use crate::system::{Failure, System};
 
-/// Each step is looked at in so many parts of equal length.
+/// Number of equal parts in which each step is sampled.
 pub(crate) const PARTS: usize = 8;
 
 /// A function with a pole where another is zero may change its sign twice near that zero: it is sampled at

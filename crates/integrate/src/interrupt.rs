@@ -59,7 +59,7 @@ impl Interrupt {
         Some(StopCause::TimeLimit { seconds: deadline.seconds })
     }
 
-    /// The same flag, but what is given it ends so many seconds from now, wall clock; not positive: at once.
+    /// The same flag, with a deadline in seconds from now, wall clock; not positive: at once.
     #[must_use]
     pub fn within(&self, seconds: f64) -> Interrupt {
         let length = Duration::try_from_secs_f64(seconds.max(0.0)).ok();

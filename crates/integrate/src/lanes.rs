@@ -1,4 +1,4 @@
-//! Many motions of one problem at once by Taylor series, eight at a time, one a lane.
+//! Many motions of one problem at once by Taylor series, eight at a time, one per lane.
 //!
 //! Each lane has a time, a step and an end of its own, chosen as [`crate::Method::Taylor`] chooses them for a
 //! single motion; a lane whose motion is complete goes on with the next one. Lanes do not know of each other:

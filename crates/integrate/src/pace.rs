@@ -18,7 +18,7 @@ const STRETCH: usize = 500;
 const MOST: f64 = 0.8;
 
 /// And where the rest would take as long at the pace of the last `LONG` attempts, which is under `SLOWER` of
-/// the average pace: once it went far faster.
+/// the average pace.
 const LONG: usize = 8_000;
 const SLOWER: f64 = 1e-2;
 

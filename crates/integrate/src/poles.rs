@@ -12,7 +12,7 @@ use crate::options::{Method, Options};
 use crate::system::{Failure, System};
 use crate::taylor_step::{DEFECT, GOLDEN, ROUND_OFF};
 
-/// Round-off of rates may be so many times what one rounding makes of their terms.
+/// Round-off of rates, at most, over what one rounding makes of their terms.
 const ROUNDINGS: f64 = 16.0;
 /// The parabola comes near zero where it comes under this part of the smaller end.
 const NEAR: f64 = 0.02;

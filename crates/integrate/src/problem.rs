@@ -115,7 +115,7 @@ pub trait Problem {
         Ok(())
     }
 
-    /// How much was added up to each argument, of which round-off is a part.
+    /// The sum of magnitudes behind each argument; round-off is proportional to it.
     ///
     /// # Errors
     /// As [`gauged`](Problem::gauged).

@@ -36,7 +36,7 @@ const BETWEEN: f64 = 0.018;
 const ITERATIONS: usize = 7;
 /// The Jacobian is kept while the iteration contracts by this.
 const GOOD_CONTRACTION: f64 = 1e-3;
-/// The step is kept, and the factors with it, if the new one would be up to so many times as long.
+/// The step is kept, and the factors with it, if the new one would be longer by at most this factor.
 const SAME_STEP: f64 = 1.2;
 
 struct Factors {

@@ -12,9 +12,9 @@ use crate::system::{Failure, System};
 
 /// A gauge may grow by so much along a step.
 pub const GAUGE_LIMIT: f64 = 4.0;
-/// Arguments are read off at so many places of equal distance, both ends among them; every other one first.
+/// Number of equidistant places, ends included, at which arguments are evaluated; every other one first.
 pub const GAUGE_NODES: usize = 9;
-/// The polynomial through these is looked at in so many parts.
+/// Number of parts in which the polynomial through these is sampled.
 const PARTS: usize = 16;
 /// What differences of arguments lose, in parts of the largest.
 const ROUND_OFF: f64 = 64.0 * f64::EPSILON;

@@ -36,10 +36,10 @@ use crate::stepper::{Attempt, Stepper, next_step};
 use crate::system::{Failure, System};
 use crate::taylor_step::{DEFECT, Ends, GOLDEN, MANY, ROUND_OFF, UNLIMITED, first_powers, longest_step, once, order};
 
-/// Where coefficients overflow, the unit of time is shortened by this factor, so many times.
+/// Where coefficients overflow, the unit of time is shortened by this factor, this often.
 const SHORTER_UNIT: f64 = 1e-8;
 const UNITS: usize = 30;
-/// Rates may differ by so many times what the last digits of the state make of them.
+/// Allowed difference of rates over what the last digits of the state make of them.
 const DIGITS: f64 = 4.0;
 /// Places in a step as long as what is raised to a power takes to rise and fall, over the root of the power.
 const WITHIN: f64 = 2.5;
@@ -257,7 +257,7 @@ impl<'s, 'p> Taylor<'s, 'p> {
     }
 }
 
-/// Sums are added up in so many parts.
+/// Number of partial sums.
 const PARTS: usize = 8;
 type Parts = [f64; PARTS];
 

@@ -1,4 +1,4 @@
-//! Order and step of a Taylor series, and whether to trust it: for one motion or several at once, one a lane.
+//! Order and step of a Taylor series, and whether to trust it: for one motion or several, one per lane.
 
 use std::array::from_fn;
 
@@ -72,7 +72,7 @@ pub(crate) fn longest_step<const N: usize>(
     theta
 }
 
-/// Products are made so many at a time, none waiting for the one before.
+/// Number of independent products at a time.
 const GROUP: usize = 8;
 
 /// The first powers `x⁰ … x⁷`, and `x⁸`.

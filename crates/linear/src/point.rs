@@ -23,7 +23,7 @@ pub(crate) const VELOCITIES: [Role; 3] = [Role::Velocity, Role::QuasiVelocity, R
 const SAMPLES: usize = 3;
 /// How far they are, in parts of the states or of 1; 0: the point itself.
 const APART: [f64; 9] = [1e-1, 1e-3, 1e-5, 1e-7, 1e-9, 1e-11, 1e-13, 1e-15, 0.0];
-/// An entry has to be so many times what the last digits of the states change it by.
+/// An entry has to exceed, by this factor, what the last digits of the states change it by.
 const DIGITS: f64 = 100.0;
 /// To entries so many times their size may be added up before the last digits of that are looked at.
 const CANCELLED: f64 = 1e4;

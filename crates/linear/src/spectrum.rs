@@ -78,7 +78,7 @@ pub struct Spectrum {
 
 /// Discs of more than this part of the matrix, half of the digits, decide nothing on the axis.
 const WIDE: f64 = 1e-8;
-/// Eigenvalues closer than so many errors are one cluster.
+/// Eigenvalues closer than this number of errors are one cluster.
 const CLUSTER: f64 = 4.0;
 
 impl Spectrum {

@@ -60,7 +60,8 @@ fn short_label(comparison: &Comparison, run: usize) -> String {
     comparison.runs[run].choice.label.replace("removed constraint", "removed")
 }
 
-/// One line a pair with Chetaev's or the vakonomic motion, with the letter of its curve; others are counted.
+/// One line per pair with Chetaev's or the vakonomic motion, with the letter of its curve; of the others
+/// those that differ are named, those that agree are counted.
 fn pairs(comparison: &Comparison) -> String {
     let mut table = vec![["", "pair", "verdict", "1e-6 at", "1e-3 at", "largest gap"].map(String::from).to_vec()];
     let (label, plotted) = (|i: usize| short_label(comparison, i), plotted(comparison));
@@ -76,13 +77,16 @@ fn pairs(comparison: &Comparison) -> String {
         let largest = if seen { short(pair.gap.largest) } else { format!("< {}", short(pair.gap.bound())) };
         table.push([letter, names, verdict.into(), first, second, largest].to_vec());
     }
-    let count = |wanted: &str| others.iter().filter(|p| p.gap.verdict.word() == wanted).count();
-    let counts = ["same", "different", "undecided"].map(|verdict| (count(verdict), verdict));
-    let counts: Vec<String> =
-        counts.iter().filter(|(n, _)| *n > 0).map(|(n, verdict)| format!("{n} {verdict}")).collect();
-    let mut rest = if others.is_empty() { String::new() } else { format!("   of the others: {}\n", counts.join(", ")) };
+    let mut rest = String::new();
     for pair in others.iter().filter(|p| p.gap.verdict != Verdict::Same) {
-        let _ = writeln!(rest, "      {}: {} – {}", pair.gap.verdict.word(), label(pair.first), label(pair.second));
+        let _ = writeln!(rest, "   {}: {} – {}", pair.gap.verdict.word(), label(pair.first), label(pair.second));
+    }
+    match others.iter().filter(|p| p.gap.verdict == Verdict::Same).count() {
+        0 => {}
+        1 => rest += "   one further pair: same\n",
+        same => {
+            let _ = writeln!(rest, "   {same} further pairs: same");
+        }
     }
     let table = if shown.is_empty() { String::new() } else { aligned(&table) };
     table + &rest

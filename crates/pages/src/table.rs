@@ -4,14 +4,15 @@ use std::fmt;
 
 use crate::markdown::{inert, unbroken};
 
-/// A table in Markdown, written row by row. The minus of an exponent is U+2212 there, where no line breaks.
+/// A table in Markdown, written row by row. The minus of an exponent is U+2212, where no line breaks.
 ///
 /// ```
 /// use pages::Table;
 /// let mut table = Table::new(["scene", ">steps"]);
 /// table.row(&[&"sledge", &12]);
 /// table.row(&[&"disc", &"5e-11"]);
-/// assert_eq!(table.to_string(), "| scene | steps |\n|---|---:|\n| sledge | 12 |\n| disc | 5e\u{2212}11 |\n");
+/// let rows = "| sledge | 12 |\n| disc | 5e\u{2212}11 |\n";
+/// assert_eq!(table.to_string(), format!("| scene | steps |\n|---|---:|\n{rows}"));
 /// ```
 pub struct Table {
     text: String,

@@ -99,7 +99,7 @@ pub(super) fn given(axis: &Axis) -> Result<Option<Interval>, PictureError> {
     Ok(Some(interval))
 }
 
-/// A runaway alone makes an axis so many times as long as all others do.
+/// A runaway alone makes an axis longer, by this factor, than all others do.
 const RUNAWAY: f64 = 5.0;
 /// Ranges of so small a part of another are round-off.
 const ROUND_OFF: f64 = 1e-6;

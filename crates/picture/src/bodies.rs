@@ -82,7 +82,7 @@ impl Window {
         self.size().0.hypot(self.size().1)
     }
 
-    /// Widened to all of a frame, at so many pixels a unit.
+    /// Widened to all of a frame, at this number of pixels per unit.
     fn filling(self, extent: Extent, scale: f64) -> Window {
         let (w, h) = self.size();
         let (x, y) = ((extent.width / scale - w) / 2.0, (extent.height / scale - h) / 2.0);

@@ -102,13 +102,13 @@ impl Picture {
     }
 
     /// One panel on whose axes, both linear, a unit is equally long. Where points are at equal times, `every`
-    /// shows times and their direction: a dot on every so many-th one, a ring where all begin; 0 for none.
+    /// shows times and their direction: a dot on every `every`-th one, a ring where all begin; 0 for none.
     pub fn plane(title: impl Into<String>, axes: [&str; 2], curves: Vec<Curve>, every: usize) -> Self {
         let [x, y] = axes.map(Axis::linear);
         Picture { equal: true, every, ..Picture::new(title, x, y, curves) }
     }
 
-    /// Panels over one horizontal axis, so many side by side.
+    /// Panels over one horizontal axis, `columns` side by side.
     pub fn panels(title: impl Into<String>, x: Axis, panels: Vec<Panel>, columns: usize) -> Self {
         let columns = columns.min(panels.len()).max(1);
         Picture { title: title.into(), x, panels, columns, height: 150.0, equal: false, every: 0 }

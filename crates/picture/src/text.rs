@@ -81,7 +81,7 @@ pub(super) fn power_of_ten(exponent: i32) -> String {
     out
 }
 
-/// A number with so many decimals, a true minus sign, and no negative zero.
+/// A number with `decimals` decimals, a true minus sign, and no negative zero.
 pub(super) fn decimal(value: f64, decimals: usize) -> String {
     let text = format!("{value:.decimals$}");
     match text.strip_prefix('-') {

@@ -76,7 +76,7 @@ pub(crate) fn list(name: &str, array: &Floats) -> PyResult<Vec<f64>> {
     }
 }
 
-/// `t` where it lies between `start` and `end`, at both of which the last digit of `t` does not count.
+/// `t` where it lies between `start` and `end`; at both the last digit of `t` does not count.
 pub(crate) fn within(t: f64, start: f64, end: f64) -> Option<f64> {
     let room = f64::EPSILON * start.abs().max(t.abs()).max(1e-300);
     (start - room <= t && t <= end + room).then(|| t.clamp(start, end))

@@ -134,7 +134,7 @@ impl Equations {
         result
     }
 
-    /// What `read` writes, so many numbers at each point, where the equations are compiled as `method`
+    /// What `read` writes, equally many values at each point, where the equations are compiled as `method`
     /// needs them.
     fn rows(
         &self,

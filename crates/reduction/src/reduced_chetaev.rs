@@ -215,7 +215,7 @@ fn balance_in_frame(
     Balance { mass, force }
 }
 
-/// Defines `λ`, of which `Aᵀ λ = M S ẇ + force`.
+/// Defines `λ` by `Aᵀ λ = M S ẇ + force`.
 fn reactions(
     system: &System,
     quasi: &QuasiVelocities,

@@ -1,4 +1,4 @@
-//! Removed-constraint equations of an ice sledge against `G` written by hand, with derivatives by differences.
+//! Removed-constraint equations of an ice sledge against `G` written by hand, derivatives by differences.
 
 use equations::{Compiled, Derivation};
 use mechanics::{Removal, State, System};

@@ -78,7 +78,7 @@ pub const SYSTEM: &[Key] = &[
     may(
         "constraints",
         List(&Quantity),
-        "f(q, q', t), zero along every motion; a vector is one a component; one without velocities is kept by its rate",
+        "f(q, q', t), zero along every motion; a vector is one per component; one without velocities is kept by its rate",
     ),
     may("forces", Named(&Expression), "Q along a coordinate; for chetaev and kappa"),
 ];
@@ -103,7 +103,7 @@ pub const START: &[Key] = &[
     may(
         "equations",
         List(&Quantity),
-        "what else velocities at the start satisfy, as in dot(W, n) = 5; a vector is one a component",
+        "what else velocities at the start satisfy, as in dot(W, n) = 5; a vector is one per component",
     ),
     may("guess", Named(&Expression), "velocities near those of the start, where there is a choice"),
 ];

@@ -185,7 +185,7 @@ impl Names {
         source.error_within(text, error.offset, error.length, kind)
     }
 
-    /// The coordinate of which `theta_dot`, `thetadot` or `dtheta` is meant to be the time derivative.
+    /// The coordinate whose time derivative `theta_dot`, `thetadot` or `dtheta` is meant to be.
     fn with_dot(&self, name: &str) -> Option<String> {
         let base = ["_dot", "dot", "_d"].iter().find_map(|end| name.strip_suffix(end));
         let base = [base, name.strip_prefix('d')].into_iter().flatten();

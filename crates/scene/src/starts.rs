@@ -147,7 +147,7 @@ impl Starts {
         })
     }
 
-    /// The start with the numbers of a row, one a name.
+    /// The start with the numbers of a row, one per name.
     ///
     /// # Errors
     /// [`SceneErrorKind::NotFinite`], [`SceneErrorKind::Start`]: why there is none.

@@ -23,7 +23,7 @@ pub struct Chance {
     pub what: &'static str,
 }
 
-/// Work that takes so many times the chances of sound work, and this many more, runs away and is stopped.
+/// Work is stopped that takes this factor times the chances of sound work, and this number more.
 const PATIENCE: (usize, usize) = (20, 10_000);
 
 struct Watch {

@@ -8,7 +8,7 @@ use std::collections::HashMap;
 const TERM_LIMIT: usize = 400;
 /// Finite values that the numerical test asks for.
 const POINTS: usize = 32;
-/// Points that may be tried to find so many where the value is finite.
+/// Points tried, at most, to find those where the value is finite.
 const TRIES: usize = 20 * POINTS;
 /// The answer to the question whether an expression is identically zero.
 #[derive(Clone, Copy, PartialEq, Debug)]

@@ -8,7 +8,7 @@ use std::hash::{Hash, Hasher};
 /// Integers up to here are exact in `f64`, so a quotient of two of them is rounded once.
 const EXACT_IN_F64: i64 = 1 << 53;
 
-/// Decimals of so many digits are taken as they are written.
+/// Decimals with up to this number of digits are exact.
 const DIGITS: usize = 15;
 
 /// The π of `f64` as a quotient of two primes, off by 4e-18: so it is told apart from all that is written

@@ -112,7 +112,7 @@ impl Arena {
         groups
     }
 
-    /// The first group among these factors, of which those at places that are `taken` are left out.
+    /// The first group among these factors, those at places that are `taken` left out.
     fn saturating(&self, factors: &[(Expr, Rational)], taken: &[bool]) -> Option<Group> {
         let divisors = factors.iter().zip(taken).filter(|((_, r), taken)| r.is_negative() && !**taken);
         for ((base, _), _) in divisors {
@@ -138,7 +138,7 @@ impl Arena {
             match *self.node(f) {
                 Node::Call(Function::Cosh | Function::Sinh, g) => return Some((Scale::Hyperbolic, (g, 1))),
                 Node::Call(Function::Exp, g) if f != base => {
-                    // of arguments that are 2 g and 3 g, that of which both are multiples
+                    // of arguments that are 2 g and 3 g: their common divisor
                     least = least.map_or(Some((g, 1)), |(h, d)| match self.ratio(g, h) {
                         Some(r) if (1..=SMALL).contains(&(d * r.denominator())) => Some((h, d * r.denominator())),
                         _ => Some((h, d)),

@@ -50,7 +50,7 @@ pub(crate) fn write() -> Result<Outcome> {
     Ok(Outcome::Passed(String::new()))
 }
 
-/// Moves the sliders of a fresh page for so many seconds and tells whether it grows.
+/// Moves the sliders of a fresh page for this number of seconds; an error if it grows.
 pub(crate) fn growth(seconds: u32) -> Result<Outcome> {
     match tools()? {
         Err(lacking) => bail!("the page cannot be tried: {lacking}"),

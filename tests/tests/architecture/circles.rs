@@ -39,7 +39,7 @@ fn reached<'a>(arrows: &'a Arrows, file: &'a str) -> BTreeSet<&'a str> {
     reached
 }
 
-/// The largest sets of files each of which is built on all others.
+/// The largest sets of files that are each built on all others.
 fn circles(arrows: &Arrows) -> BTreeSet<Circle> {
     let reached: BTreeMap<&str, BTreeSet<&str>> =
         arrows.keys().map(|file| (&file[..], self::reached(arrows, file))).collect();

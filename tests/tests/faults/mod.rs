@@ -138,7 +138,7 @@ fn with_parameters(scene: Scene) -> Scene {
     Scene { system, ..scene }
 }
 
-/// Tries so many faults of each place on every road of a scene, evenly spread.
+/// Tries a number of faults of each place on every derivation path of a scene, evenly spread.
 fn faults(scene: &Scene, guards: Guards, a_place: usize) -> Vec<Fault> {
     let mut faults = Vec::new();
     for trial in ways(scene, guards).iter().filter_map(Trial::new) {

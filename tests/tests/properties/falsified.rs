@@ -1,4 +1,4 @@
-//! Every claim is seen to fail once: on a system of which it is not true, or on motions of wrong equations.
+//! Every claim is seen to fail once: on a system where it is false, or on motions of wrong equations.
 //!
 //! `cargo test --release --workspace --test tests falsified:: -- --nocapture` prints what is said.
 
@@ -268,7 +268,7 @@ const FALSE: &[False] = &[
     in_case(14, "removal with p_u = 0 is Newton's motion", Kind::Linear, CALLED_INTEGRABLE, called_integrable),
 ];
 
-/// What is found on system `index` of a kind; no system where no motion can be had.
+/// What is found on system `index` of a kind; no system where there is no motion.
 fn found_on(claimed: &False, index: u64, fault: &Fault) -> Option<Findings> {
     if claimed.theorem == 13 {
         let numbers = NullTest::draw(SEED, index).current();

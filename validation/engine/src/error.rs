@@ -27,7 +27,7 @@ pub enum EngineError {
         /// Its value in the scene.
         expected: f64,
     },
-    /// Steps that do not fall onto so many sampling times.
+    /// Steps that do not fall onto the sampling times.
     #[error("{0} steps cannot be read off at {1} equidistant times")]
     Steps(usize, usize),
     /// The body is lost, or no longer finite, at this time, s.

@@ -206,7 +206,7 @@ impl<'a> Builder<'a> {
         self.recipe.features.rooted(&self.system.graph, part, passed)
     }
 
-    /// The time after so many eighths of the run.
+    /// The time after this number of eighths of the run.
     fn after(&self, eighths: i64) -> f64 {
         self.recipe.first_time() as f64 + eighths as f64 * DURATION / 8.0
     }

@@ -155,7 +155,7 @@ impl Batch {
         self.faulty_counterexample(index, theorem, &Fault::NONE, SHRINKING)
     }
 
-    /// [`Batch::counterexample`] with something wrong on purpose, after so many `steps` of shrinking at most.
+    /// [`Batch::counterexample`] with something wrong on purpose, after at most `steps` steps of shrinking.
     pub fn faulty_counterexample(&self, index: u64, theorem: u8, fault: &Fault, steps: usize) -> Option<Scene> {
         let null = |numbers: &NullTest| broken_null_test(numbers, fault);
         let drawn = |recipe: &Recipe| failing(recipe, theorem, fault);

@@ -17,7 +17,7 @@ pub struct Classes {
     pub driven: Option<(i64, i64)>,
     /// The independent coordinates are at rest at the start; where no switch waits for them.
     pub rest: bool,
-    /// `L` is not quadratic in the velocities: it has `v_i⁴`, by so many sixteenths, of this coordinate.
+    /// `L` is not quadratic in the velocities: it has `v_i⁴` of this coordinate, in sixteenths.
     pub quartic: Option<(i64, usize)>,
     /// What a nonlinear constraint is.
     pub surface: Surface,

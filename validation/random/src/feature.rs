@@ -119,7 +119,7 @@ fn part() -> impl Strategy<Value = Part> {
     prop_oneof![2 => Just(Part::Constraints), 1 => Just(Part::Kinetic), 1 => Just(Part::Potential)]
 }
 
-/// A switch, a root, a far start: each on a part of the systems, of at most so many coordinates.
+/// A switch, a root, a far start: each on a part of the systems, with a limit on the number of coordinates.
 pub(crate) fn features(most: usize) -> impl Strategy<Value = Features> {
     let edge = prop_oneof![Just(Edge::Tanh), Just(Edge::Bump), Just(Edge::Step)];
     let switch = (edge, part(), 2..=8_i64, 2..=6_i64, any::<bool>())

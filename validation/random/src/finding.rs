@@ -12,7 +12,7 @@ pub enum Word {
     Holds,
     /// It fails by more than the errors explain.
     Fails,
-    /// The errors are too large to tell, or a motion could not be had.
+    /// The errors are too large to tell, or a motion could not be computed.
     Undecided,
 }
 

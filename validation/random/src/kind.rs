@@ -99,7 +99,7 @@ impl Kind {
         }
     }
 
-    /// The kinds of which that is so, simplest first.
+    /// These kinds, simplest first.
     ///
     /// ```
     /// use random::Kind;

@@ -135,7 +135,7 @@ impl Record {
         self.observed.iter().any(|(_, what, value)| *value == 1.0 && differ(what))
     }
 
-    /// Theorems of which a claim failed.
+    /// Theorems with a claim that failed.
     pub fn failures(&self) -> Vec<u8> {
         let mut theorems: Vec<u8> = self.open.iter().filter(|o| o.word == Word::Fails).map(|o| o.theorem).collect();
         theorems.dedup();
@@ -160,7 +160,7 @@ pub struct Count {
     pub holds: u64,
     /// Claim fails.
     pub fails: u64,
-    /// Cannot be told.
+    /// Undecided.
     pub undecided: u64,
 }
 

@@ -35,7 +35,7 @@ impl Constants {
     /// Integrates everything.
     ///
     /// # Errors
-    /// Where a motion cannot be had.
+    /// Where a motion cannot be computed.
     pub fn new() -> Result<Constants> {
         let sledge = catalogue::find("sledge", &[("duration".into(), DURATION.into())])?;
         let metric = &mut Metric::new(&sledge.system)?;

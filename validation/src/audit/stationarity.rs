@@ -69,7 +69,7 @@ impl Stationarity {
     /// Integrates every reading and perturbs the action on each motion.
     ///
     /// # Errors
-    /// Where a motion cannot be had.
+    /// Where a motion cannot be computed.
     pub fn new(paper: &Paper) -> Result<Stationarity> {
         let context = paper.context("stationarity")?;
         let constants = HashMap::from([(context.graph.symbol("epsilon"), EPSILON)]);

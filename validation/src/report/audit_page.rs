@@ -34,7 +34,7 @@ impl AuditReport {
     /// Checks every equation.
     ///
     /// # Errors
-    /// Where the paper's formulas cannot be read or a motion cannot be had.
+    /// Where the paper's formulas cannot be read or a motion cannot be computed.
     pub fn new() -> Result<AuditReport> {
         let paper = Paper::new()?;
         let findings = paper.numbers().into_iter().map(|number| paper.check(number)).collect::<Result<_>>()?;

@@ -125,7 +125,7 @@ impl<'a> Tokens<'a> {
         while self.chars.next_if(|(_, c)| c.is_ascii_digit()).is_some() {}
     }
 
-    /// Whether these characters follow, of which the last is a digit.
+    /// Whether these characters follow; the last is a digit.
     fn follows(&self, ahead: &[fn(char) -> bool]) -> bool {
         let mut chars = self.chars.clone();
         ahead.iter().all(|is| chars.next().is_some_and(|(_, c)| is(c)))

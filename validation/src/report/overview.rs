@@ -130,7 +130,8 @@ fn findings(comparisons: &[Comparison], controls: &[Control]) -> Vec<String> {
     findings
 }
 
-/// What the free constants of removal do where Newton's motion is beyond dispute: the scene with the largest gap.
+/// What the free constants of removal do where Newton's motion is beyond dispute, on the scene with the
+/// largest gap.
 fn constants_of_removal(integrable: &[&Comparison]) -> Option<String> {
     let fitted = integrable.iter().filter_map(|c| {
         let fit = fit_of(c, REMOVED_CONSTRAINT, CHETAEV)?;

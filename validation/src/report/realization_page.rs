@@ -74,7 +74,7 @@ impl RealizationReport {
     /// Runs all realizations.
     ///
     /// # Errors
-    /// Where a motion cannot be had.
+    /// Where a motion cannot be computed.
     pub fn new(quiet: bool) -> Result<RealizationReport> {
         let scene = |(name, _): &(&str, f64)| format!("realizations of `{name}`");
         let scenes = parallel::try_map(&SCENES, quiet, scene, |asked| -> Result<_> {

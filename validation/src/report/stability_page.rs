@@ -30,7 +30,7 @@ impl StabilityReport {
     /// Runs the cases that are chosen by name, [`LONG_RUNS`] among them.
     ///
     /// # Errors
-    /// Where a reference cannot be had.
+    /// Where a reference cannot be computed.
     pub fn new(chosen: impl Fn(&str) -> bool, quiet: bool) -> Result<StabilityReport> {
         let cases: Vec<&Case> = CASES.iter().filter(|case| chosen(case.name)).collect();
         let cells = run(&cases, quiet)?;

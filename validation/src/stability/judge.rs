@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use super::Known;
 
-/// The error may be so many times the motion's own estimate.
+/// Allowed ratio of the error to the motion's own estimate.
 pub const BETTER_THAN_IT_KNOWS: f64 = 10.0;
 
 /// Relative error that is passed over whatever the estimate says.

@@ -97,7 +97,7 @@ pub struct LongRun {
 /// Every stepping on every long motion.
 ///
 /// # Errors
-/// Where a scene or a reference cannot be had.
+/// Where a scene or a reference is missing.
 pub fn long_runs(quiet: bool) -> Result<Vec<LongRun>> {
     let asked: Vec<(&Long, Stepping)> =
         LONG.iter().flat_map(|long| COMPARED.into_iter().map(move |stepping| (long, stepping))).collect();
@@ -109,7 +109,7 @@ impl Long {
     /// The motion, stepped in one way.
     ///
     /// # Errors
-    /// Where the scene or the reference cannot be had.
+    /// Where the scene or the reference is missing.
     pub fn run(&self, stepping: Stepping) -> Result<LongRun> {
         let scene = catalogue::find(self.scene, &[("duration".into(), self.duration.into())])?;
         let mut choice = choice(&scene, self.formulation).map_err(anyhow::Error::msg)?;

@@ -23,7 +23,7 @@ pub struct Truth {
 enum Source {
     /// In double-double arithmetic.
     Wide(Box<Reference>),
-    /// In `f64`, where the other could not be had: coordinates and velocities at each time.
+    /// In `f64`, where the other failed: coordinates and velocities at each time.
     Narrow(Vec<(Vec<f64>, Vec<f64>)>, Box<Metric>),
 }
 
@@ -37,7 +37,7 @@ impl Truth {
     /// `count` times of the motion that `ready` starts, up to the scene's end or just before its own.
     ///
     /// # Errors
-    /// Where the motion cannot be had.
+    /// Where the motion cannot be computed.
     pub fn new(scene: &Scene, ready: &Prepared, count: usize) -> Result<Truth> {
         let mut ready = ready.clone();
         let end = scene.start.t + scene.duration;

@@ -31,7 +31,7 @@ impl Range {
         }
     }
 
-    /// Combination number `index` of the values of these ranges, of which the last one changes fastest, and
+    /// Combination number `index` of the values of these ranges, the last one changing fastest, and
     /// how often all combinations have come before it.
     pub fn combined(ranges: &[Range], index: usize) -> (Vec<f64>, usize) {
         let mut rest = index;

@@ -22,7 +22,7 @@ pub struct Members {
 }
 
 impl Members {
-    /// Those of the file, each combined with all values of the ranges, of which the last one changes fastest.
+    /// Those of the file, each combined with all values of the ranges; the last one changes fastest.
     pub(crate) fn of(arguments: &EnsembleArguments, scene: &Scene, choice: &Choice) -> Result<Members> {
         let mut members = match &arguments.members {
             Some(path) => Members::read(path)?,
@@ -80,7 +80,7 @@ impl Members {
         [&self.listed[line * listed..][..listed], &varied].concat()
     }
 
-    /// Where the name is from, of which a fault of the scene says that it means nothing.
+    /// Where a name is from that the scene does not know.
     pub(crate) fn place(&self, name: &str) -> &str {
         self.names.iter().position(|known| known == name).map_or("--set", |i| &self.places[i])
     }

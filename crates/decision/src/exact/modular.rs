@@ -1,4 +1,4 @@
-//! Fields of `p` elements, and the images in them of the numbers of which jets are made.
+//! Fields of `p` elements, and the images in them of the numbers in jets.
 //!
 //! Rational numbers, `e^{iπ/720720}`, `e^{i a}`, `e^a` for rational `a`, and roots of rational numbers.
 //! `e^{i a} ↦ h^a` where `h` has the prime order `r`: the exponent is modulo `r`, so every fraction has its

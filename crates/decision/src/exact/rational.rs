@@ -10,7 +10,7 @@ use super::Flaw;
 /// Multiples of `π/PARTS` are known: of `π/d` for every d up to 16, of degrees and of their halves and
 /// quarters.
 pub(crate) const PARTS: i64 = 720_720;
-/// Decimals of so many digits may be multiples of π in the digits of a double.
+/// Number of digits from which a decimal may be a multiple of π in the digits of a double.
 const LONG: usize = 15;
 
 /// `fraction + turns · π/PARTS`.

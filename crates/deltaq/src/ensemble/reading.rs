@@ -13,7 +13,7 @@ use crate::sizes::sizes;
 use crate::watch::Watch;
 use crate::{Doubt, Ending, ErrorEstimate, Metric, SolveError};
 
-/// Instants are looked at for round-off, at most so many beside the start.
+/// Largest number of instants, beside the start, that are examined for round-off.
 const LOOKED: usize = 16;
 
 /// Reads members off.

@@ -72,7 +72,7 @@ fn reason(membership: &Membership) -> String {
     }
     let decision = &membership.decision;
     let part = short(decision.least / decision.acceleration);
-    let mismatch = format!("the least mismatch of accelerations is {part} of the motion's own");
+    let mismatch = format!("the least mismatch of accelerations is {part} times the motion's own");
     match membership.answer() {
         Answer::NoneProved { order } => format!("proved (order {order}); {mismatch}"),
         Answer::None { unproved } => {

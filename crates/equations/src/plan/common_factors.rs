@@ -10,7 +10,7 @@ use symbolic::{CompileError, Expr, Symbol};
 use super::chosen::{Collected, Plan};
 use crate::equations::Equations;
 
-/// One part in so many of the instructions has to be saved: under that, Taylor series may take more products.
+/// One instruction in this number has to be saved: under that, Taylor series may take more products.
 const WORTH_WHILE: usize = 10;
 
 /// What is shorter than `plan` as it is, if anything is.

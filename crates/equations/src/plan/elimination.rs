@@ -17,7 +17,7 @@ pub(crate) struct Eliminated {
     pub(crate) list: Vec<(Symbol, Expr)>,
     /// Squares of multipliers (entry over pivot, scaled as at the start) and of what cancelled in a pivot.
     pub(crate) watched: Vec<Expr>,
-    /// Pivots of which something is watched.
+    /// Pivots that are watched.
     pub(crate) moving: usize,
 }
 

@@ -34,7 +34,7 @@ pub(crate) struct Entry {
 /// By what the next pivot is taken.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Strategy {
-    /// On the diagonal, both sides of which stay the same.
+    /// On the diagonal; both sides of it stay the same.
     Symmetric,
     /// Anywhere.
     Sparse,
@@ -142,7 +142,7 @@ fn scale(rows: &mut [BTreeMap<usize, Entry>], point: usize) -> Option<Vec<f64>> 
     Some(scales)
 }
 
-/// Multiplications for a pivot whose row and column have so many entries.
+/// Multiplications for a pivot, from the numbers of entries of its row and column.
 fn cost(strategy: Strategy, row: usize, column: usize, constant: bool) -> usize {
     let updates = if strategy == Strategy::Symmetric { (column - 1) * column / 2 } else { (row - 1) * (column - 1) };
     updates + 2 * (column - 1) + row + if constant { 0 } else { MOVING }

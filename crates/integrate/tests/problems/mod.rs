@@ -131,7 +131,7 @@ pub fn state<const N: usize>(solution: &Solution, t: f64) -> [f64; N] {
     y
 }
 
-/// The largest distance from `exact` at so many equidistant times from 0 on.
+/// The largest distance from `exact` at `count` equidistant times from 0 on.
 pub fn largest_error<const N: usize>(solution: &Solution, count: u32, exact: impl Fn(f64) -> [f64; N]) -> f64 {
     let time = |i: u32| solution.dense.end() * f64::from(i) / f64::from(count);
     (0..=count).map(|i| distance(&state::<N>(solution, time(i)), &exact(time(i)))).fold(0.0, f64::max)

@@ -38,7 +38,7 @@ pub enum StartError {
     /// The given velocities, constraints and start equations leave some velocities open.
     #[error("too few start velocities: {} not determined by the given ones and the constraints{}; give more under [start.velocities], as in {}", listed(.velocities), idle_equations(.idle), lines(.velocities))]
     Undetermined {
-        /// Velocities of which more have to be given.
+        /// Velocities among which more have to be given.
         velocities: Vec<String>,
         /// Numbers of start equations, from 1, that hold whenever all other conditions do.
         idle: Vec<usize>,

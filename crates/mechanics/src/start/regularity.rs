@@ -138,7 +138,7 @@ impl ScaledMatrices {
         Err(StartError::DependentConstraints { combination, singular_values, ratio, limit: SINGULAR_LIMIT })
     }
 
-    /// The combination of constraints of which the least is left, the largest factor 1; small ones left out.
+    /// The combination of constraints that is nearest to zero, the largest factor 1; small ones left out.
     fn redundant(&self) -> Result<Vec<(usize, f64)>, StartError> {
         const PART: f64 = 1e-6;
         let product = &self.constraint_jacobian * self.constraint_jacobian.transpose();

@@ -602,7 +602,7 @@ class Motion:
         What the motion did not reach is null; units are in the metadata of the columns.
         """
     def to_pandas(self) -> Any:
-        """A pandas.DataFrame with the columns of `to_arrow`, of which t is the index."""
+        """A pandas.DataFrame with the columns of `to_arrow`; t is the index."""
     def to_xarray(self) -> Any:
         """An xarray.Dataset over t with the columns of `to_arrow`; units are attributes."""
     def plot(self, ax: Any = None) -> Any:

@@ -36,7 +36,7 @@ _ENSEMBLE_PART = 4096
 
 
 class _SweepPart:
-    """Rows of a sweep: all combinations of some values, of which the last ones change fastest."""
+    """Rows of a sweep: all combinations of some values; the last ones change fastest."""
 
     def __init__(self, system: System, over: dict[str, list[float]], size: int, options: tuple[Any, ...]):
         self.system, self.over, self.size, self.options = system, over, size, options

@@ -52,7 +52,7 @@ def motion_to_arrow(self: Motion) -> Any:
 
 
 def motion_to_pandas(self: Motion) -> Any:
-    """A pandas.DataFrame with the columns of `to_arrow`, of which t is the index."""
+    """A pandas.DataFrame with the columns of `to_arrow`; t is the index."""
     pd = needed("pandas")
     return pd.DataFrame(_named(self), index=pd.Index(self.times, name="t"))
 

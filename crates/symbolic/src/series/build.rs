@@ -12,7 +12,7 @@ use crate::number::{Number, Rational};
 use crate::program::{Id, Program, Value};
 use rustc_hash::FxHashMap;
 
-/// The tape for `outputs`, of which those behind the rates are residuals of blocks, `blocks` a length each.
+/// The tape for `outputs`: rates, then residuals of blocks, with the lengths `blocks`.
 pub(crate) fn build(
     program: Program,
     inputs: &[SeriesInput],
@@ -47,7 +47,7 @@ enum Decision {
     Row,
     /// Its terms go into the one sum that uses it.
     Absorbed,
-    /// A multiple of a value, of which the products that use it take the factor.
+    /// A multiple of a value; products that use it take over the factor.
     Peeled,
 }
 

@@ -1,4 +1,4 @@
-//! Several numbers at once: the same expressions at as many points, one a lane.
+//! Several numbers at once: the same expressions at several points, one per lane.
 
 use std::array::from_fn;
 use std::ops::{Add, Div, Mul, Neg, Sub};

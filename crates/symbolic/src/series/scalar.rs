@@ -9,7 +9,7 @@ use std::marker::PhantomData;
 
 use crate::Scalar;
 
-/// Coefficients of a series are looked at in groups of so many.
+/// Size of the groups in which coefficients of a series are examined.
 pub(crate) const GROUP: usize = 8;
 
 /// A place of a coefficient, from the beginning of a [`Window`].
@@ -112,7 +112,7 @@ pub trait SeriesScalar: Scalar {
     /// Coefficients are looked at in groups of this many; as many readable places follow a series.
     const GROUP: usize = 1;
 
-    /// How many places to allocate for so many series, `stride` places each.
+    /// Number of places to allocate for this number of series, `stride` places each.
     fn room(series: usize, stride: usize) -> usize {
         series * stride
     }

@@ -23,7 +23,7 @@ pub use null_tests::{NullTest, broken_null_test, null_test};
 /// Why a check could not be made.
 #[derive(Debug, thiserror::Error)]
 pub enum CheckError {
-    /// A motion could not be had.
+    /// A motion could not be computed.
     #[error(transparent)]
     Solve(#[from] SolveError),
     /// The referee for Chetaev gave up.
@@ -86,7 +86,7 @@ pub fn theorem_title(theorem: u8) -> &'static str {
     CHECKS.iter().find(|check| check.theorem == theorem).map_or("", |check| check.title)
 }
 
-/// Makes one check; a motion that cannot be had leaves it undecided.
+/// Makes one check; a motion that cannot be computed leaves it undecided.
 pub fn make(check: &Check, case: &mut Case) {
     if let Err(error) = (check.run)(case) {
         case.found.undecided(check.theorem, check.title, error);

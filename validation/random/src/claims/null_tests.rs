@@ -81,7 +81,7 @@ impl Null {
 /// Runs the three null tests.
 ///
 /// # Errors
-/// [`SolveError`] where a motion cannot be had.
+/// [`SolveError`] where a motion cannot be computed.
 pub fn null_test(numbers: &NullTest, fault: &Fault) -> Result<Findings, SolveError> {
     let mut all = Findings::default();
     for test in &NULL_TESTS {

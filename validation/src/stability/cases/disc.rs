@@ -50,7 +50,7 @@ impl Disc {
         super::questions(point, move || self.scene(), &FORMULATIONS, road)
     }
 
-    /// Chetaev's motion, of which roll and heading are compared.
+    /// Chetaev's motion: roll and heading are compared.
     pub(super) fn turning(
         self,
         point: f64,

@@ -42,7 +42,7 @@ fn exponent(width: f64) -> f64 {
     (32.0 / (width * width)).round()
 }
 
-/// Beyond so many widths there is nothing of any shape.
+/// Number of widths beyond which every shape is zero.
 const REACH: f64 = 1000.0;
 
 /// A push somewhere within the run.

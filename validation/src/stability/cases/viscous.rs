@@ -41,7 +41,7 @@ pub(super) fn questions(strength: f64) -> Vec<Question> {
 struct Slipping {
     phi: f64,
     omega: f64,
-    /// `c e^{λt}`, the sum of which is `ẋ + iẏ`.
+    /// `c e^{λt}`, their sum is `ẋ + iẏ`.
     terms: Vec<(Complex<f64>, Complex<f64>)>,
 }
 
