@@ -20,19 +20,6 @@ pub fn inert(text: &str) -> String {
     replaced(&text, ']', |behind| if address(behind) { "\\]\\" } else { "]" })
 }
 
-/// Text whose numbers do not break at the minus of their exponents: browsers end lines behind a hyphen.
-pub(crate) fn unbroken(text: &str) -> String {
-    let mut parts = text.split("e-");
-    let mut unbroken = parts.next().unwrap_or_default().to_owned();
-    for part in parts {
-        let is_exponent =
-            unbroken.ends_with(|c: char| c.is_ascii_digit()) && part.starts_with(|c: char| c.is_ascii_digit());
-        unbroken += if is_exponent { "e\u{2212}" } else { "e-" };
-        unbroken += part;
-    }
-    unbroken
-}
-
 /// A part of a page that opens where its summary is clicked.
 pub fn folded(summary: &str, body: &str) -> String {
     format!("<details><summary>{summary}</summary>\n\n{body}\n</details>")
@@ -72,7 +59,7 @@ pub fn image(picture: &File) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::{image, inert, link, unbroken};
+    use super::{image, inert, link};
     use program::File;
 
     #[test]
@@ -86,14 +73,6 @@ mod tests {
             assert_eq!(inert(&format!("[a]({address})")), format!("[a\\]\\({})", inert(address)));
             assert_eq!(inert(&format!("[a]: {address}")), format!("[a\\]\\: {}", inert(address)));
         }
-    }
-
-    #[test]
-    fn exponents_do_not_break() {
-        assert_eq!(
-            unbroken("1e-6 at 5.2e-11; e-6, three-2, 2e-x"),
-            "1e\u{2212}6 at 5.2e\u{2212}11; e-6, three-2, 2e-x"
-        );
     }
 
     #[test]

@@ -1,5 +1,6 @@
 //! Files are written whole or not at all.
 
+use std::borrow::Cow;
 use std::collections::BTreeSet;
 use std::fs;
 use std::io::Write;
@@ -102,10 +103,29 @@ pub fn write_own(folder: &Path, files: &[File]) -> Result<()> {
         }
         let parent = path.parent().unwrap_or(folder);
         fs::create_dir_all(parent).with_context(|| format!("cannot create {}", parent.display()))?;
-        let temporary = beside(&path, parent, &file.text)?;
+        let is_page = path.extension().is_some_and(|extension| extension == "md");
+        let text = if is_page { typeset(&file.text) } else { Cow::from(&file.text) };
+        let temporary = beside(&path, parent, &text)?;
         waiting.extend(temporary.map(|temporary| (temporary, path)));
     }
     waiting.into_iter().try_for_each(|(temporary, path)| moved(temporary, &path))
+}
+
+/// A page in whose tables the minus of an exponent is U+2212: browsers end lines behind a hyphen.
+fn typeset(page: &str) -> Cow<'_, str> {
+    let digit = |text: &str, at: usize| text.as_bytes().get(at).is_some_and(u8::is_ascii_digit);
+    let mut text = String::with_capacity(page.len());
+    for line in page.split_inclusive('\n') {
+        let mut written = 0;
+        for (at, found) in line.match_indices("e-").filter(|_| line.trim_start().starts_with('|')) {
+            if at > 0 && digit(line, at - 1) && digit(line, at + found.len()) {
+                text = text + &line[written..at] + "e\u{2212}";
+                written = at + found.len();
+            }
+        }
+        text += &line[written..];
+    }
+    text.into()
 }
 
 /// The text in a file beside its place; a device is written to, and nothing waits.
@@ -139,7 +159,13 @@ fn make_readable(_: &fs::File) -> Result<()> {
 
 #[cfg(test)]
 mod tests {
-    use super::{File, is_own, may_replace, write_all, write_one};
+    use super::{File, is_own, may_replace, typeset, write_all, write_one};
+
+    #[test]
+    fn exponents_in_tables_do_not_break() {
+        let page = "about 1e-6\n| 1e-6 at 5.2e-11; e-6, three-2, 2e-x |\n";
+        assert_eq!(typeset(page), "about 1e-6\n| 1e\u{2212}6 at 5.2e\u{2212}11; e-6, three-2, 2e-x |\n");
+    }
 
     #[test]
     fn only_files_of_deltaq_are_replaced() {

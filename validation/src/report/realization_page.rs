@@ -289,7 +289,7 @@ mod tests {
         assert_eq!((of[FRICTION].as_str(), of[BOTH].as_str()), (Some("rate 1"), Some("other rate")));
         assert_eq!(verdicts["random systems off rate 1"], 1);
         let page = report.page();
-        assert!(page.contains("| friction, to Chetaev | 0.01 | 0.001 | 1.0e−4 | 1.0e−5 | 1 |"), "{page}");
+        assert!(page.contains("| friction, to Chetaev | 0.01 | 0.001 | 1.0e-4 | 1.0e-5 | 1 |"), "{page}");
         assert!(page.contains("| friction, to Chetaev | 0.699 | 0.959 | 0.959 | 2 | 0 |"), "{page}");
     }
 }
