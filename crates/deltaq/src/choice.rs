@@ -5,7 +5,7 @@ use std::collections::{HashMap, HashSet};
 use equations::{Derivation, Equations, Formulation, Named};
 use mechanics::{ConstantsRule, Recombination, Removal, RemovalError, State, System};
 use scene::Scene;
-use symbolic::{Expr, Symbol};
+use symbolic::{Expr, Range, Symbol};
 
 use crate::{FORMS, FORMULATIONS, SolveError};
 
@@ -125,7 +125,8 @@ fn gives_constant_costates(equations: &Equations, values: &[f64]) -> bool {
 pub fn derive_at(system: &System, start: &State, choice: &Choice) -> Result<Equations, SolveError> {
     let mut equations = derive_combined(system, start, choice)?;
     equations.domains = domains_at(system, start, &equations)?;
-    equations.guards.extend(&equations.domains);
+    equations.silent = in_variables_of(&equations, system, &silent(system));
+    equations.guards.extend(equations.domains.iter().chain(&equations.silent));
     Ok(equations)
 }
 
@@ -139,13 +140,38 @@ fn domains_at(system: &System, start: &State, equations: &Equations) -> Result<V
         let value = g.evaluate(*e, &values).unwrap_or(f64::NAN);
         return Err(SolveError::OutsideDomain { expression: g.plain(*e), value });
     }
+    Ok(in_variables_of(equations, system, &system.domains))
+}
+
+/// Where a constraint says nothing: factors, free of velocities, of all entries of its `∂f/∂v`.
+///
+/// With a multiplier the motion would go on by continuity, though `f = 0` holds there whatever the velocities
+/// do. A factor that never vanishes is none.
+fn silent(system: &System) -> Vec<Expr> {
+    let (g, v, jacobian) = (&system.graph, system.velocities(), system.constraint_jacobian());
+    let ranges = system.parameter_values().into_iter().map(|(s, x)| (s, Range::point(x))).collect();
+    let may_vanish = |e: &Expr| {
+        let (symbols, range) = (g.symbols_of(*e), g.range(*e, &ranges));
+        let moves = symbols.iter().any(|s| !ranges.contains_key(s)) && !symbols.iter().any(|s| v.contains(s));
+        moves && range.low <= 0.0 && range.high >= 0.0
+    };
+    let factors = (0..jacobian.rows()).flat_map(|i| g.common_factors(jacobian.row(i)));
+    let mut found: Vec<Expr> = factors.filter(may_vanish).collect();
+    found.sort_unstable();
+    found.dedup();
+    found
+}
+
+/// Expressions in a system's coordinates, velocities and time in the variables of its equations, as far as
+/// these tell them.
+fn in_variables_of(equations: &Equations, system: &System, es: &[Expr]) -> Vec<Expr> {
     let symbols = system.positions().into_iter().chain(system.velocities());
     let read = equations.coordinates.iter().chain(&equations.velocities).copied();
     let map: HashMap<Symbol, Expr> = symbols.zip(read).collect();
-    let guards = system.domains.iter().map(|e| equations.graph.substitute(*e, &map));
+    let guards = es.iter().map(|e| equations.graph.substitute(*e, &map));
     let defined = equations.definitions.iter().map(|d| d.0).chain(equations.parameters.keys().copied());
     let known: HashSet<Symbol> = equations.known_symbols().into_iter().chain(defined).collect();
-    Ok(guards.filter(|&e| equations.symbols_behind([e]).is_subset(&known)).collect())
+    guards.filter(|&e| equations.symbols_behind([e]).is_subset(&known)).collect()
 }
 
 fn derive_combined(system: &System, start: &State, choice: &Choice) -> Result<Equations, SolveError> {

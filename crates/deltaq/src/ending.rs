@@ -47,12 +47,13 @@ impl Ending {
         let cause = match cause {
             StopCause::Event { index } if *index == equations.guards.len() => return Ending::Completed,
             StopCause::Event { index } => {
-                let guard = guard_words(equations, *index);
-                let cause = match equations.domains.contains(&equations.guards[*index]) {
-                    true => {
-                        format!("{guard} vanishes: a root or logarithm of it, as written, has no value beyond")
-                    }
-                    false => format!("{guard} vanishes, by which the equations divide"),
+                let (guard, e) = (guard_words(equations, *index), equations.guards[*index]);
+                let cause = if equations.domains.contains(&e) {
+                    format!("{guard} vanishes: a root or logarithm of it, as written, has no value beyond")
+                } else if equations.silent.contains(&e) {
+                    format!("{guard} vanishes, a factor of a constraint, which then says nothing of the velocities")
+                } else {
+                    format!("{guard} vanishes, by which the equations divide")
                 };
                 return Ending::Stopped { t: *t, cause };
             }
@@ -67,6 +68,7 @@ impl Ending {
         };
         let before = [before, &[(run.dense.start(), run.dense.start_state().to_vec())]].concat();
         let near = nearly_zero_guard(equations, compiled, &before, &run.dense);
+        let near = near.or_else(|| lost_root(equations, &before, &run.dense));
         let near = near.or_else(|| nearly_dependent(equations, compiled, &before, &run.dense));
         let near = match near {
             Some(words) if is_short => format!(": a singularity is near; {words}"),
@@ -144,6 +146,30 @@ fn nearly_zero_guard(
     let (index, ratio) = ratios.enumerate().min_by(|a, b| a.1.total_cmp(&b.1))?;
     let guard = guard_words(equations, index);
     (ratio < NEARLY_ZERO).then(|| format!("{guard}, by which the equations divide, is down to {:.1e}", end[index]))
+}
+
+/// The root in the equations whose radicand has shrunk most since these points, if it is nearly zero at the
+/// end of the run.
+fn lost_root(equations: &Equations, before: &[(f64, Vec<f64>)], dense: &DenseOutput) -> Option<String> {
+    let g = &equations.graph;
+    let residuals = equations.blocks.iter().flat_map(|block| block.residuals.iter().copied());
+    let rates = equations.states.iter().map(|y| y.rate).chain(equations.definitions.iter().map(|d| d.1));
+    let symbols: Vec<_> = [equations.time].into_iter().chain(equations.state_symbols()).collect();
+    let found = g.roots(&rates.chain(residuals).collect::<Vec<_>>()).into_iter().filter_map(|(base, root)| {
+        let tape = equations.tape(&symbols, &[base]).ok()?;
+        let value = |t: f64, y: &[f64]| {
+            let mut found = [f64::NAN];
+            tape.evaluate(&[&[t], y].concat(), &mut tape.workspace(), &mut found);
+            found[0]
+        };
+        let points = before.iter().map(|(t, y)| (*t, &y[..])).chain([(dense.start(), dense.start_state())]);
+        let largest = points.fold(0.0_f64, |most, (t, y)| most.max(value(t, y)));
+        let end = value(dense.end(), dense.end_state());
+        (end < NEARLY_ZERO * largest).then_some((end / largest, base, root, end))
+    });
+    let (_, base, root, end) = found.min_by(|a, b| a.0.total_cmp(&b.0))?;
+    let [base, root] = [base, root].map(|e| in_own_names(equations, e));
+    Some(format!("{root} has no value where {base} is negative, and that is down to {end:.1e}"))
 }
 
 /// The unknowns of an instant that its equations have nearly ceased to determine since these points, if any.

@@ -16,6 +16,7 @@ mod known_values;
 mod long;
 mod round_off;
 mod sentences;
+mod silent;
 mod steep;
 mod switches;
 mod walls;

@@ -21,7 +21,7 @@ pub struct Compiled {
     pub(crate) rates: Evaluator<f64>,
     pub(crate) outputs: Evaluator<f64>,
     /// The chosen plan, where there is another than the plain one, and how often it was not to be trusted.
-    planned: Option<Planned>,
+    pub(crate) planned: Option<Planned>,
     left: Vec<usize>,
     fallbacks: usize,
     guards: Evaluator<f64>,

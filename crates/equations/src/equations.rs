@@ -164,6 +164,8 @@ pub struct Equations {
     pub guards: Vec<Expr>,
     /// Those of the guards at which formulas, as they were written, cease to have values.
     pub domains: Vec<Expr>,
+    /// Those of the guards at which a constraint says nothing: `∂f/∂v` of it vanishes.
+    pub silent: Vec<Expr>,
     /// By which pivots they were derived, where these may become small along a motion and others be taken;
     /// never where other coordinates are read off than those of the system.
     pub chart: Option<Chart>,
@@ -200,6 +202,7 @@ impl Equations {
             projection: None,
             guards: Vec::new(),
             domains: Vec::new(),
+            silent: Vec::new(),
             chart: None,
             statements: Vec::new(),
             left_out: Vec::new(),

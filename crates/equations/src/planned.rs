@@ -8,11 +8,11 @@ use crate::plan::Plan;
 /// Compiled definitions: one tape for rates and one for outputs, each without what only the other needs.
 #[derive(Clone)]
 pub(crate) struct Planned {
-    rates: Evaluator<f64>,
-    outputs: Evaluator<f64>,
-    watched: bool,
+    pub(crate) rates: Evaluator<f64>,
+    pub(crate) outputs: Evaluator<f64>,
+    pub(crate) watched: bool,
     /// Places in `(t, y, constants, z)` of what the tapes take.
-    places: Vec<usize>,
+    pub(crate) places: Vec<usize>,
     inputs: Vec<f64>,
 }
 
@@ -64,7 +64,7 @@ impl Planned {
 }
 
 /// What the tapes take; nothing is copied where it stands together.
-fn gather<'a>(room: &'a mut [f64], places: &[usize], values: &'a [f64]) -> &'a [f64] {
+pub(crate) fn gather<'a, T: Copy>(room: &'a mut [T], places: &[usize], values: &'a [T]) -> &'a [T] {
     let count = places.len();
     if places.last().is_none_or(|&last| last < count) {
         return &values[..count];

@@ -11,7 +11,7 @@ impl Compiled {
     fn with_terms<T>(&mut self, evaluate: impl FnOnce(&mut Self, &mut Terms) -> T) -> T {
         let mut terms = self.terms.take().unwrap_or_else(|| {
             let programs = [&self.rates, &self.outputs, &self.steep];
-            Box::new(Terms::new(programs, &self.equations_of_instant))
+            Box::new(Terms::new(programs, &self.equations_of_instant, self.planned.as_ref()))
         });
         let found = evaluate(self, &mut terms);
         self.terms = Some(terms);
@@ -33,7 +33,8 @@ impl Compiled {
     /// How much was added up to each rate at `(t, y)`, that of the unknowns `z` of the instant included: of a
     /// block `R(z; t, y) = 0` it is `|∂R/∂z|⁻¹` times that of `R`.
     ///
-    /// The rates in the chosen plan have round-off of the same size.
+    /// These are the equations as they are written; [`Compiled::terms_of_evaluation`] has what their
+    /// evaluation adds up.
     ///
     /// # Errors
     /// As [`Compiled::rates`].
@@ -41,6 +42,26 @@ impl Compiled {
         self.with_terms(|compiled, terms| {
             let inputs = compiled.in_terms(t, y, y, terms)?;
             Ok(magnitudes(terms.rates.evaluate(&inputs)))
+        })
+    }
+
+    /// How much evaluation adds up to each rate, then to each multiplier: [`Compiled::terms_of_rates`], and
+    /// what the elimination of a block, in numbers or beforehand in the chosen plan, adds up on its way.
+    /// Errors of both are a few ε of that.
+    ///
+    /// # Errors
+    /// As [`Compiled::rates`].
+    pub fn terms_of_evaluation(&mut self, t: f64, y: &[f64]) -> Result<Vec<f64>, EvaluationFailure> {
+        self.with_terms(|compiled, terms| {
+            let inputs = compiled.inputs_in_terms(t, y, y, terms, Elimination::Counted)?;
+            let mut rates = magnitudes(terms.rates.evaluate(&inputs));
+            let mut outputs = magnitudes(terms.outputs.evaluate(&inputs));
+            if let Some(planned) = &mut terms.planned {
+                planned.rates(&inputs, &mut rates);
+                planned.outputs(&inputs, &mut outputs);
+            }
+            rates.extend(&outputs[2 * compiled.sizes.coordinates..][..compiled.sizes.multipliers]);
+            Ok(rates)
         })
     }
 
@@ -109,17 +130,35 @@ impl Compiled {
         states: &[f64],
         terms: &mut Terms,
     ) -> Result<Vec<Bounded>, EvaluationFailure> {
+        self.inputs_in_terms(t, y, states, terms, Elimination::Exact)
+    }
+
+    fn inputs_in_terms(
+        &mut self,
+        t: f64,
+        y: &[f64],
+        states: &[f64],
+        terms: &mut Terms,
+        elimination: Elimination,
+    ) -> Result<Vec<Bounded>, EvaluationFailure> {
         self.solve_instant(t, y)?;
         let known = self.sizes.known();
         let mut inputs = bounded(&self.inputs);
         inputs[1..].iter_mut().zip(states).for_each(|(y, size)| y.magnitude = size.abs());
         for (block, program) in self.equations_of_instant.iter_mut().zip(&mut terms.blocks) {
-            let terms = terms_of_unknowns(block, program, &inputs, known);
+            let terms = terms_of_unknowns(block, program, &inputs, known, elimination);
             let first = known + block.first;
             inputs[first..].iter_mut().zip(terms).for_each(|(z, terms)| z.magnitude = z.magnitude.max(terms));
         }
         Ok(inputs)
     }
+}
+
+/// Whether what the elimination of a linear block adds up counts.
+#[derive(Clone, Copy, PartialEq)]
+enum Elimination {
+    Exact,
+    Counted,
 }
 
 fn bounded(x: &[f64]) -> Vec<Bounded> {
@@ -136,17 +175,21 @@ fn terms_of_unknowns(
     program: &mut Evaluator<Bounded>,
     inputs: &[Bounded],
     known: usize,
+    elimination: Elimination,
 ) -> Vec<f64> {
     let n = block.size;
     let values = program.evaluate(if block.linear { &inputs[..known] } else { inputs });
     let (matrix, residual) = values.split_at(n * n);
-    let z = &inputs[known + block.first..][..n];
-    let of_row = |(row, r): (&[Bounded], &Bounded)| {
+    let z: Vec<f64> = inputs[known + block.first..][..n].iter().map(|z| z.value).collect();
+    let mut terms = magnitudes(residual);
+    if block.linear {
         // the residual of a linear block is that of z = 0
-        let products: f64 = row.iter().zip(z).map(|(m, z)| m.magnitude * z.value.abs()).sum();
-        r.magnitude + if block.linear { products } else { 0.0 }
-    };
-    let terms: Vec<f64> = matrix.chunks_exact(n).zip(residual).map(of_row).collect();
+        let products = |row: &[Bounded]| row.iter().zip(&z).map(|(m, z)| m.magnitude * z.abs()).sum::<f64>();
+        terms.iter_mut().zip(matrix.chunks_exact(n)).for_each(|(term, row)| *term += products(row));
+        if elimination == Elimination::Counted {
+            terms.iter_mut().zip(block.factors.eliminated(&z)).for_each(|(term, sum)| *term += sum);
+        }
+    }
     let mut found = vec![0.0; n];
     for (column, term) in block.inverse().iter().zip(terms) {
         found.iter_mut().zip(column).for_each(|(sum, x)| *sum += x.abs() * term);

@@ -83,8 +83,8 @@ pub struct Point<T> {
     pub states: Vec<T>,
 }
 
-/// Compiled equations of motion.
-pub(crate) struct Instant<T> {
+/// Equations of motion at one instant, in a wide type.
+pub struct Instant<T> {
     pub(crate) layout: Layout,
     blocks: Vec<WideBlock<T>>,
     rates: Evaluator<T>,
@@ -94,7 +94,11 @@ pub(crate) struct Instant<T> {
 }
 
 impl<T: Wide> Instant<T> {
-    pub(crate) fn new(equations: &Equations, constants: &[f64]) -> Result<Self, ReferenceError> {
+    /// Of `equations` with these values of their free constants.
+    ///
+    /// # Errors
+    /// [`ReferenceError`] where they cannot be compiled.
+    pub fn new(equations: &Equations, constants: &[f64]) -> Result<Self, ReferenceError> {
         let g = &equations.graph;
         let layout = Layout::new(equations, constants);
         let mut blocks = Vec::new();
@@ -127,7 +131,7 @@ impl<T: Wide> Instant<T> {
     }
 
     /// Sets the point from which the unknowns are solved next.
-    pub(crate) fn set_guess(&mut self, unknowns: &[T]) {
+    pub fn set_guess(&mut self, unknowns: &[T]) {
         let first = self.layout.first_unknown();
         self.inputs[first..first + unknowns.len()].copy_from_slice(unknowns);
     }
@@ -187,14 +191,20 @@ impl<T: Wide> Instant<T> {
     }
 
     /// `F(t, y)`.
-    pub(crate) fn rates(&mut self, t: T, y: &[T], rates: &mut [T]) -> Result<(), ReferenceError> {
+    ///
+    /// # Errors
+    /// [`ReferenceError`] where the equations of the instant are singular, or Newton's method does not end.
+    pub fn rates(&mut self, t: T, y: &[T], rates: &mut [T]) -> Result<(), ReferenceError> {
         self.solve(t, y)?;
         rates.copy_from_slice(self.rates.evaluate(&self.inputs));
         Ok(())
     }
 
     /// What is read off at `(t, y)`.
-    pub(crate) fn point(&mut self, t: T, y: &[T]) -> Result<Point<T>, ReferenceError> {
+    ///
+    /// # Errors
+    /// As [`Instant::rates`].
+    pub fn point(&mut self, t: T, y: &[T]) -> Result<Point<T>, ReferenceError> {
         self.solve(t, y)?;
         let n = self.dimension;
         let values = self.outputs.evaluate(&self.inputs);

@@ -22,6 +22,32 @@ impl Graph {
         self.arena.borrow_mut().factored(e)
     }
 
+    /// What stands as a factor, to a positive power, in every one of `es` that is not zero; no numbers.
+    ///
+    /// ```
+    /// let g = symbolic::Graph::new();
+    /// let [x, y] = ["x", "y"].map(|n| g.variable(g.symbol(n)));
+    /// let sum = g.add(g.mul(x, y), g.powi(x, 2));
+    /// assert_eq!(g.common_factors(&[g.mul(g.integer(-2), g.powi(x, 3)), sum, g.zero()]), [x]);
+    /// assert_eq!(g.common_factors(&[x, y]), []);
+    /// ```
+    pub fn common_factors(&self, es: &[Expr]) -> Vec<Expr> {
+        let nonzero: Vec<Expr> = es.iter().copied().filter(|&e| !self.is_zero(e)).collect();
+        let Some((&first, others)) = nonzero.split_first() else { return Vec::new() };
+        let mut arena = self.arena.borrow_mut();
+        let factors = |arena: &mut Arena, e: Expr| -> Vec<Expr> {
+            let e = arena.factored(e);
+            let positive = |(base, exponent): (Expr, Rational)| (exponent.to_f64() > 0.0).then_some(base);
+            arena.monomial(e).1.into_iter().filter_map(positive).collect()
+        };
+        let mut common = factors(&mut arena, first);
+        for &e in others {
+            let there = factors(&mut arena, e);
+            common.retain(|base| there.contains(base));
+        }
+        common
+    }
+
     /// Draws out the factors that several terms of a sum share, the most frequent first: a x + b x + c = x
     /// (a + b) + c. Factors that contain no symbols but `constants` stay.
     ///

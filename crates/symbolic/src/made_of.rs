@@ -1,7 +1,7 @@
 //! What an expression is made of.
 
 use crate::arena::Node;
-use crate::number::Rational;
+use crate::number::{Number, Rational};
 use crate::{Expr, Function, Graph, Symbol, faults};
 use std::collections::BTreeSet;
 
@@ -89,6 +89,27 @@ impl Graph {
     pub fn under_roots(&self, es: &[Expr]) -> BTreeSet<Expr> {
         let reachable = self.arena.borrow().reachable(es, |_| true);
         reachable.into_iter().flat_map(|e| self.bases(e, |r| r.as_integer().is_none())).collect()
+    }
+
+    /// Every distinct power in `es` whose exponent is no integer, as (base, power).
+    ///
+    /// ```
+    /// let g = symbolic::Graph::new();
+    /// let (x, y) = (g.variable(g.symbol("x")), g.variable(g.symbol("y")));
+    /// let root = g.sqrt(g.add(x, y));
+    /// assert_eq!(g.roots(&[g.mul(g.powi(y, 2), root)]), [(g.add(x, y), root)]);
+    /// ```
+    pub fn roots(&self, es: &[Expr]) -> Vec<(Expr, Expr)> {
+        let reachable = self.arena.borrow().reachable(es, |_| true);
+        let powers = |e: Expr| match self.arena.borrow().node(e) {
+            Node::Product(factors) => factors.iter().filter(|(_, r)| r.as_integer().is_none()).copied().collect(),
+            _ => Vec::new(),
+        };
+        let powers: BTreeSet<(Expr, Rational)> = reachable.into_iter().flat_map(powers).collect();
+        powers
+            .into_iter()
+            .map(|(base, r)| (base, self.arena.borrow_mut().power_product(Number::ONE, vec![(base, r)])))
+            .collect()
     }
 
     fn even_bases(&self, radicand: Expr) -> Vec<Expr> {

@@ -1,57 +1,35 @@
 //! The chosen form of the equations has the rates of the plain one.
 
 use deltaq::{Motion, REMOVED_CONSTRAINT, VAKONOMIC};
-use equations::{Compiled, Equations, Plan};
-use nalgebra::DMatrix;
+use equations::{Compiled, Plan};
 use proptest::test_runner::TestCaseError;
 use random::{Case, Kind, Recipe, Which, recipes_of};
-use symbolic::{Bounded, Scalar};
+use reference::{DoubleDouble, Instant, Wide};
+use symbolic::Scalar;
 
 use super::support::for_all;
 
 /// Instants of a motion at which rates are compared.
 const INSTANTS: usize = 8;
 
-/// Round-off over the condition of the block, relative to the largest unknown.
-const ROUND_OFF: f64 = 2e-14;
+/// Rounding errors on the way to a number, as a multiple of ε times what is added up to it.
+const ROUND_OFF: f64 = 4.0;
 
-/// Largest condition number of blocks at `inputs = (t, y, constants)`, rows and columns scaled, times what
-/// added up to an entry: forms add in different orders, and cancelling entries differ by that round-off.
-fn condition(equations: &Equations, inputs: &[f64]) -> f64 {
-    let g = &equations.graph;
-    let mut largest = 1.0_f64;
-    for block in &equations.blocks {
-        let n = block.unknowns.len();
-        let jacobian = g.jacobian(&block.residuals, &block.unknowns);
-        let tape = g.compile(&equations.known_symbols(), jacobian.entries(), &equations.parameters).expect("linear");
-        let inputs: Vec<Bounded> = inputs.iter().map(|&x| Bounded::from_f64(x)).collect();
-        let mut values = vec![Bounded::from_f64(0.0); n * n];
-        tape.evaluate(&inputs, &mut tape.workspace(), &mut values);
-        let mut matrix = DMatrix::from_fn(n, n, |i, j| values[i * n + j].value);
-        let mut added_up = DMatrix::from_fn(n, n, |i, j| values[i * n + j].magnitude);
-        for (mut c, mut a) in matrix.column_iter_mut().zip(added_up.column_iter_mut()) {
-            a /= c.amax();
-            c /= c.amax();
-        }
-        for (mut r, mut a) in matrix.row_iter_mut().zip(added_up.row_iter_mut()) {
-            a /= r.amax();
-            r /= r.amax();
-        }
-        let singular = matrix.singular_values();
-        largest = largest.max(added_up.amax().max(1.0) * singular[0] / singular[n - 1]);
-    }
-    largest
-}
+/// That of the judge, as a part of the largest of what is added up.
+const ROUND_OFF_OF_JUDGE: f64 = 1e-30;
 
 /// What the comparison along a motion found.
 struct Found {
-    /// Largest difference over what round-off allows.
+    /// Largest error of a rate or multiplier, in either form, over what round-off allows.
     worst: f64,
     /// Blocks that are solved numerically all the same.
     left: usize,
 }
 
-/// Compares rates and outputs of the form chosen at the start and the plain one; `None` if not linear.
+/// Compares rates and outputs of the form chosen at the start and of the plain one with those in
+/// double-double arithmetic; `None` if not linear.
+///
+/// What is allowed is what [`Compiled::terms_of_evaluation`] says: of block, rates and outputs.
 fn compare(motion: &mut Motion) -> Option<Found> {
     let equations = motion.equations.clone();
     let constants = motion.constants.clone();
@@ -66,22 +44,30 @@ fn compare(motion: &mut Motion) -> Option<Found> {
     let mut chosen = Compiled::with_plan(&equations, &form).expect("compiles");
     plain.set_constants(&constants);
     chosen.set_constants(&constants);
+    let mut exact = Instant::new(&equations, &constants).expect("compiles");
     let mut worst = 0.0_f64;
     for t in motion.grid(INSTANTS) {
         let y = motion.states_at(t).expect("readable");
-        let mut rates = [vec![0.0; y.len()], vec![0.0; y.len()]];
-        chosen.rates(t, &y, &mut rates[0]).expect("regular");
-        plain.rates(t, &y, &mut rates[1]).expect("regular");
-        let outputs = [&mut chosen, &mut plain].map(|c| c.outputs(t, &y).expect("regular"));
-        let unknowns = plain.settle(t, &y).expect("regular");
-        let largest = |list: &[f64]| list.iter().fold(0.0_f64, |a, x| a.max(x.abs()));
-        let size = 1.0 + largest(unknowns) + largest(&rates[1]);
-        let [mut one, mut two] = rates;
-        one.extend(&outputs[0].multipliers);
-        two.extend(&outputs[1].multipliers);
+        let wide: Vec<DoubleDouble> = y.iter().map(|&y| DoubleDouble::from_f64(y)).collect();
+        let mut rates = wide.clone();
+        exact.rates(DoubleDouble::from_f64(t), &wide, &mut rates).expect("regular");
+        rates.extend(exact.point(DoubleDouble::from_f64(t), &wide).expect("regular").multipliers);
+        let outputs = [&mut chosen, &mut plain].map(|form| {
+            let terms = form.terms_of_evaluation(t, &y).expect("regular");
+            let largest = terms.iter().fold(0.0_f64, |a, x| a.max(*x));
+            let mut found = vec![0.0; y.len()];
+            form.rates(t, &y, &mut found).expect("regular");
+            let outputs = form.outputs(t, &y).expect("regular");
+            found.extend(&outputs.multipliers);
+            for ((x, exact), terms) in found.iter().zip(&rates).zip(&terms) {
+                let error = (DoubleDouble::from_f64(*x) - *exact).to_f64().abs();
+                let allowed = ROUND_OFF * f64::EPSILON * terms + ROUND_OFF_OF_JUDGE * largest;
+                worst = worst.max(if error == 0.0 { 0.0 } else { error / allowed });
+                assert!(!error.is_nan(), "at {t}");
+            }
+            outputs
+        });
         assert_eq!(outputs[0].coordinates, outputs[1].coordinates);
-        let difference = one.iter().zip(&two).fold(0.0_f64, |a, (x, y)| a.max((x - y).abs()));
-        worst = worst.max(difference / (ROUND_OFF * condition(&equations, &inputs(t, &y)) * size));
     }
     Some(Found { worst, left: form.left.len() })
 }

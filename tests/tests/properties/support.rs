@@ -15,8 +15,9 @@ const SEED: u64 = 1894;
 /// The part of the systems on which a claim may be undecided.
 const UNDECIDED: f64 = 0.02;
 
-/// How often proptest may try a simpler system.
+/// How often proptest may try a simpler system, and for how long, in ms.
 const SHRINKING: u32 = 2_000;
+const SHRINKING_TIME: u32 = 10_000;
 
 fn runner(cases: u32) -> TestRunner {
     let mut config = Config::default();
@@ -27,6 +28,7 @@ fn runner(cases: u32) -> TestRunner {
         config.rng_seed = RngSeed::Fixed(SEED);
     }
     config.max_shrink_iters = SHRINKING;
+    config.max_shrink_time = SHRINKING_TIME;
     config.failure_persistence = Some(Box::new(FileFailurePersistence::Direct(SEEDS)));
     TestRunner::new(config)
 }

@@ -43,6 +43,10 @@ const RATE: std::ops::RangeInclusive<f64> = 0.95..=1.05;
 /// Distances at `N = 10³` from which a rate can be told.
 const VISIBLE: f64 = 1e-6;
 
+/// Words where there is no rate.
+const TOO_CLOSE: &str = "too close to tell";
+const STOPS: &str = "stops";
+
 /// What a realization tends to, and the distances from it.
 #[derive(Clone, Debug)]
 struct Approach {
@@ -52,6 +56,21 @@ struct Approach {
 }
 
 impl Approach {
+    /// Whether a run that tells the rate stopped early.
+    fn stops(&self) -> bool {
+        self.distances[1].is_nan() || self.distances[2].is_nan()
+    }
+
+    /// Why there is no rate, or how near it is to 1.
+    fn word(&self) -> &'static str {
+        match self.rate() {
+            Some(rate) if RATE.contains(&rate) => "rate 1",
+            Some(_) => "other rate",
+            None if self.stops() => STOPS,
+            None => TOO_CLOSE,
+        }
+    }
+
     /// `log₁₀` of the distance at `N = 10³` over that at `10⁴`; `None` where it cannot be told.
     fn rate(&self) -> Option<f64> {
         let rate = (self.distances[1] / self.distances[2]).log10();
@@ -87,12 +106,13 @@ impl RealizationReport {
         Ok(RealizationReport { scenes, random })
     }
 
-    /// Rates of one realization on the random systems, sorted; and how many cannot be told.
-    fn random_rates(&self, name: &str) -> (Vec<f64>, usize) {
+    /// Rates of one realization on the random systems, sorted; how many are too close to tell, and how many
+    /// stop.
+    fn random_rates(&self, name: &str) -> (Vec<f64>, [usize; 2]) {
         let all = self.random.iter().flatten().filter(|a| a.name == name);
         let mut rates: Vec<f64> = all.clone().filter_map(Approach::rate).collect();
         rates.sort_by(f64::total_cmp);
-        (rates, all.filter(|a| a.rate().is_none()).count())
+        (rates, [TOO_CLOSE, STOPS].map(|word| all.clone().filter(|a| a.word() == word).count()))
     }
 
     /// Every rate on the page that can be told.
@@ -117,11 +137,8 @@ impl RealizationReport {
 
     /// The verdicts for machines.
     pub fn verdicts(&self) -> Value {
-        let word = |a: &Approach| {
-            a.rate().map_or("too close to tell", |r| if RATE.contains(&r) { "rate 1" } else { "other rate" })
-        };
         let scene = |approaches: &[Approach]| -> Map<String, Value> {
-            approaches.iter().map(|a| (a.name.to_string(), word(a).into())).collect()
+            approaches.iter().map(|a| (a.name.to_string(), a.word().into())).collect()
         };
         let scenes: Map<String, Value> =
             self.scenes.iter().map(|(name, a)| (name.clone(), Value::Object(scene(a)))).collect();
@@ -146,19 +163,19 @@ impl RealizationReport {
         let scene = |(name, approaches): &(String, Vec<Approach>)| {
             let mut table = Table::new(["realization", ">$N = 10^2$", ">$10^3$", ">$10^4$", ">$10^5$", ">rate"]);
             for a in approaches {
-                let cells = a.distances.iter().map(|d| if d.is_nan() { "stops".into() } else { short(*d) });
-                let rate = a.rate().map_or("too close to tell".into(), short);
+                let cells = a.distances.iter().map(|d| if d.is_nan() { STOPS.into() } else { short(*d) });
+                let rate = a.rate().map_or(a.word().into(), short);
                 table.cells([a.name.to_string()].into_iter().chain(cells).chain([rate]));
             }
             format!("\n## {name}\n\n![Distance over strength](realization-{name}.svg)\n\n{table}")
         };
-        let columns = ["realization", ">least rate", ">median", ">largest", ">systems", ">too close to tell"];
+        let columns = ["realization", ">least rate", ">median", ">largest", ">systems", ">too close to tell", ">stop"];
         let mut random = Table::new(columns);
         for name in [FRICTION, ADDED_MASS, BOTH, AUGMENTED] {
-            let (rates, open) = self.random_rates(name);
+            let (rates, [close, stop]) = self.random_rates(name);
             if let (Some(least), Some(most)) = (rates.first(), rates.last()) {
                 let [least, median, most] = [*least, rates[rates.len() / 2], *most].map(short);
-                random.row(&[&name, &least, &median, &most, &rates.len(), &open]);
+                random.row(&[&name, &least, &median, &most, &rates.len(), &close, &stop]);
             }
         }
         fill(
@@ -275,7 +292,8 @@ mod tests {
         let scenes = vec![("sledge".to_string(), vec![approach(FRICTION, [1e-3, 1e-4]), approach(BOTH, [1e-3, 1e-5])])];
         let random = vec![
             vec![approach(FRICTION, [1e-3, 1.1e-4]), approach(ADDED_MASS, [1e-7, 1e-8])],
-            vec![approach(FRICTION, [1e-3, 2e-4])],
+            vec![approach(FRICTION, [1e-3, 2e-4]), approach(ADDED_MASS, [1e-3, f64::NAN])],
+            vec![approach(ADDED_MASS, [f64::NAN, 1e-4]), approach(FRICTION, [1e-3, f64::NAN])],
         ];
         let report = RealizationReport { scenes, random };
         let headline = report.headline();
@@ -283,13 +301,15 @@ mod tests {
             headline.ends_with(": in 2 of 4 cases the distance falls as 1/N (measured exponents 0.699 to 2)."),
             "{headline}"
         );
-        assert_eq!(report.random_rates(ADDED_MASS), (Vec::new(), 1));
+        assert_eq!(report.random_rates(ADDED_MASS), (Vec::new(), [1, 2]));
+        let words: Vec<&str> = report.random.iter().flatten().map(Approach::word).collect();
+        assert_eq!(words, ["rate 1", "too close to tell", "other rate", "stops", "stops", "stops"]);
         let verdicts = report.verdicts();
         let of = &verdicts["scenes"]["sledge"];
         assert_eq!((of[FRICTION].as_str(), of[BOTH].as_str()), (Some("rate 1"), Some("other rate")));
         assert_eq!(verdicts["random systems off rate 1"], 1);
         let page = report.page();
         assert!(page.contains("| friction, to Chetaev | 0.01 | 0.001 | 1.0e-4 | 1.0e-5 | 1 |"), "{page}");
-        assert!(page.contains("| friction, to Chetaev | 0.699 | 0.959 | 0.959 | 2 | 0 |"), "{page}");
+        assert!(page.contains("| friction, to Chetaev | 0.699 | 0.959 | 0.959 | 2 | 0 | 1 |"), "{page}");
     }
 }
