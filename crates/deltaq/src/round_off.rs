@@ -120,3 +120,59 @@ impl Motion {
         largest(looked, sizes)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use scene::Scene;
+
+    use super::*;
+    use crate::{choices, setting, solve_choice};
+
+    /// A particle from the origin at this speed, on a spring.
+    fn particle(speed: f64, spring: f64, duration: f64) -> Motion {
+        let text = format!(
+            "title = \"free\"\n[coordinates]\nx = {{ start = 0 }}\n[system]\nlagrangian = \"x'^2/2 - {spring:?}*x^2\"\n\
+             [start.velocities]\n\"x'\" = {speed:?}\n[run]\nduration = {duration:?}\n"
+        );
+        let scene = Scene::parse("free", &text).unwrap_or_else(|e| panic!("{e}"));
+        assert_eq!(setting(&scene).end, duration);
+        solve_choice(&scene, &choices(&scene)[0], &Settings::default()).expect("a motion")
+    }
+
+    /// `x = v t`, to whose rate `v` is added up: together `v t + |x|`.
+    #[test]
+    fn what_is_added_up_to_a_coordinate_is_a_sum_over_time() {
+        for speed in [3.0, -0.25] {
+            let found = particle(speed, 0.0, 2.0).terms_of_coordinates_along();
+            assert!(found.len() > FEW, "{found:?}");
+            for (t, terms) in found {
+                let known = 2.0 * (speed * t).abs();
+                assert!((terms[0] - known).abs() <= 1e-12 * known, "{speed}, at {t}: {terms:?}, {known}");
+            }
+        }
+    }
+
+    #[test]
+    fn states_are_as_large_as_the_scene_or_the_motion_makes_them() {
+        // a velocity of 10⁹ is integrated by 10⁻⁵ of it
+        for (speed, known) in [(1e-9, 1e-9), (1.0, 1.0), (1e9, 1e4)] {
+            let motion = particle(speed, 0.1, 2.0);
+            let sizes = motion.sizes_of(&[(0.0, vec![0.0; 2], vec![0.0; 2])]);
+            assert!(sizes.iter().all(|size| (0.1 * known..=10.0 * known).contains(size)), "{speed:e}: {sizes:?}");
+            let sizes = motion.sizes_of(&[(0.0, vec![-5.0 * speed, speed], vec![0.0; 2])]);
+            assert_eq!(sizes[0].max(5.0 * speed), sizes[0], "{speed:e}");
+        }
+    }
+
+    #[test]
+    fn a_looser_run_is_replaced_by_one_that_comes_as_far() {
+        let mut motion = particle(1.0, 0.7, 2.0);
+        let apart = motion.difference_of_runs(2.0).expect("the end")[0];
+        assert!(apart != 0.0);
+        let short = particle(1.0, 0.7, 1.9);
+        motion.replace_looser(short.kept);
+        assert_eq!(motion.difference_of_runs(2.0).expect("the end")[0], apart);
+        motion.replace_looser(motion.kept.clone());
+        assert_eq!(motion.difference_of_runs(2.0).expect("the end")[0], 0.0);
+    }
+}

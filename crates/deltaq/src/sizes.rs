@@ -230,3 +230,30 @@ fn largest_part(differences: &[f64], sizes: &[f64]) -> Option<f64> {
     let known = differences.iter().zip(sizes).filter(|(_, size)| **size > 0.0);
     known.map(|(d, size)| (d / size).abs()).filter(|part| *part > 0.0 && part.is_finite()).reduce(f64::max)
 }
+
+#[cfg(test)]
+mod tests {
+    use scene::Scene;
+
+    use super::*;
+    use crate::{choices, derive_at};
+
+    /// A free particle goes `v T` far; its size by which it is integrated is at most 1.
+    #[test]
+    fn large_states_have_their_size_where_it_is_unbounded() {
+        for (speed, bounded) in [(3e-7, 3e-7), (0.25, 0.25), (5e8, 5e3)] {
+            let text = format!(
+                "title = \"free\"\n[coordinates]\nx = {{ start = 0 }}\n[system]\nlagrangian = \"x'^2/2\"\n\
+                 [start.velocities]\n\"x'\" = {speed:?}\n[run]\nduration = 2\n"
+            );
+            let scene = Scene::parse("free", &text).unwrap_or_else(|e| panic!("{e}"));
+            let equations = derive_at(&scene.system, &scene.start, &choices(&scene)[0]).expect("equations");
+            let mut compiled = Compiled::new(&equations).expect("compiled");
+            let mut metric = Metric::new(&scene.system).expect("a metric");
+            let whole = unbounded_sizes(&mut compiled, &mut metric, 0.0, &[0.0, speed], 2.0);
+            assert_eq!(whole, [2.0 * speed, speed]);
+            let least = sizes(&mut compiled, &mut metric, 0.0, &[0.0, speed], 2.0);
+            assert!((least[1] / bounded - 1.0).abs() < 1e-9, "{speed:e}: {least:?}");
+        }
+    }
+}
