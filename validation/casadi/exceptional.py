@@ -1,6 +1,6 @@
 """All starts with which Chetaev's motion of a small system is vakonomic, and for which multipliers, in exact algebra by SymPy.
 
-Along Chetaev's motion mu' = X (C mu - Q) - lam with a left inverse X of A', and the motion is vakonomic just where p_0 = (1 - A' X)(C mu - Q) and all
+Along Chetaev's motion mu' = X C mu - lam with a left inverse X of A', and the motion is vakonomic just where p_0 = (1 - A' X) C mu and all
 its rates p_1, p_2, ... vanish. With cos and sin of each angle for variables these are polynomials in (q, v, mu), so the pairs of a start and its multipliers
 are a variety. STATED says what it is: a union of components, each by polynomials that vanish there. Two things are shown.
 
@@ -58,13 +58,13 @@ class System:
         rest = Q + sp.Matrix([L.diff(x) for x in q]) - sp.Matrix([L]).jacobian(v).T.jacobian(q) * sp.Matrix(v)
         rate_of_A = sp.Matrix(h, n, lambda i, j: sum(A[i, j].diff(x) * y for x, y in zip(q, v)))
         C = f.jacobian(q).T - rate_of_A.T
-        A, M, C, rest, drift, Q = map(plain, (A, M, C, rest, f.jacobian(q) * sp.Matrix(v), Q))
+        A, M, C, rest, drift = map(plain, (A, M, C, rest, f.jacobian(q) * sp.Matrix(v)))
         self.relations = [plain(x) for x in f] + [c**2 + s**2 - 1 for c, s in circle.values()]
         saddle = sp.Matrix(sp.BlockMatrix([[M, -A.T], [A, sp.zeros(h, h)]]))
         gram = A * A.T
         self.nonzero = [saddle.det(method="berkowitz"), gram.det(), *(sp.Symbol(f"k{i}") for i in range(len(numbers)))]
         solved = saddle.adjugate() * rest.col_join(-drift) / self.nonzero[0]
-        pull = C * sp.Matrix(mu) - Q
+        pull = C * sp.Matrix(mu)
         left = gram.adjugate() * A / self.nonzero[1]
         rates = dict(zip(v, solved[:n])) | dict(zip(mu, left * pull - solved[n:, :]))
         for x, y in zip(q, v):

@@ -1,8 +1,9 @@
 """The three formulations, derived by CasADi's differentiation from the text of L, f, Q and the removals.
 
     Chetaev             d/dt L_v - L_q = Q + A' lambda,   d/dt f = 0,     A = f_v;     unknowns z = (a, lambda)
-    vakonomic           F = L + mu . f:   d/dt F_v - F_q = 0,  d/dt f = 0;             unknowns z = (a, mu')
-    removed constraint  G = L + P . B:    d2/dt2 G_u'' - d/dt G_u' + G_u = 0,  P' = -G_w,  w' = B;   unknowns z = u'' (u''' where G holds u'')
+    vakonomic           F = L + mu . f:   d/dt F_v - F_q = Q,  d/dt f = 0;             unknowns z = (a, mu')
+    removed constraint  G = L + P . B:    d2/dt2 G_u'' - d/dt (G_u' + (dq/du')' Q) + G_u + (dq/du)' Q = 0,  P' = -G_w - (dq/dw)' Q,  w' = B;
+                        unknowns z = u'' (u''' where G or the virtual work Q . dq holds u'')
 
 Every formulation becomes an `Instant`: states y with tags, unknowns z, the residual R(z; t, y), linear in z, and the rates of y.
 A tag is what a state is and of what: ("q", "x"), ("v", "x"), ("mu", "1"), ("u", "s"), ("du", "s"), ("ddu", "s"), ("p", "s"), ("w", "x"), ("P", "x").
@@ -112,14 +113,14 @@ def chetaev(scene):
 
 
 def vakonomic(scene):
-    """F = L + mu . f: d/dt F_v - F_q = 0, d/dt f = 0."""
+    """F = L + mu . f: d/dt F_v - F_q = Q, d/dt f = 0."""
     n, h = len(scene.coordinates), len(scene.constraints)
     t, q, v, a = ca.SX.sym("t"), ca.SX.sym("q", n), ca.SX.sym("v", n), ca.SX.sym("a", n)
     mu, mu_rate = ca.SX.sym("mu", h), ca.SX.sym("mu_rate", h)
-    lagrangian, f, _ = system(scene, q, v, t)
+    lagrangian, f, force = system(scene, q, v, t)
     augmented = lagrangian + (ca.dot(mu, f) if h else 0)
     flow = [(q, v), (v, a), (mu, mu_rate), (t, ca.SX(1))]
-    balance = rate(ca.gradient(augmented, v), flow) - ca.gradient(augmented, q)
+    balance = rate(ca.gradient(augmented, v), flow) - ca.gradient(augmented, q) - force
     residual = ca.vertcat(balance, rate(f, flow)) if h else balance
     tags = [("q", x) for x in scene.coordinates] + [("v", x) for x in scene.coordinates]
     tags += [("mu", str(i + 1)) for i in range(h)]
@@ -128,7 +129,7 @@ def vakonomic(scene):
 
 
 class Substitution:
-    """A removal put into the system: symbols t, u, du, ddu (m x 1), w (k x 1), and B (k x 1), q, q' (n x 1), L, f in them."""
+    """A removal put into the system: symbols t, u, du, ddu (m x 1), w (k x 1), and B (k x 1), q, q' (n x 1), L, f, Q in them."""
 
     def __init__(self, scene, name):
         removal = scene.removals[name]
@@ -148,18 +149,20 @@ class Substitution:
         self.q = vector([positions[x] for x in scene.coordinates])
         flow = [(self.u, self.du), (self.du, self.ddu), (self.w, self.rates), (self.t, ca.SX(1))]
         self.v = rate(self.q, flow)
-        self.lagrangian, self.constraints, _ = system(scene, self.q, self.v, self.t)
+        self.lagrangian, self.constraints, self.forces = system(scene, self.q, self.v, self.t)
 
 
 def removed_constraint(scene, name):
-    """G = L + P . B; first order in u unless G holds u'', and then with states u'' and p = G_u' - d/dt G_u''."""
+    """G = L + P . B; first order in u unless G or Q . dq holds u'', and then with states u'' and p = G_u' + (dq/du')' Q - d/dt G_u''."""
     s = Substitution(scene, name)
     m, k = len(s.parameters), len(s.memory)
     costates, p, u3 = ca.SX.sym("P", k), ca.SX.sym("p", m), ca.SX.sym("u3", m)
     generating = s.lagrangian + (ca.dot(costates, s.rates) if k else 0)
-    first, second = ca.gradient(generating, s.du), ca.gradient(generating, s.ddu)
-    by_u, by_w = ca.gradient(generating, s.u), ca.gradient(generating, s.w)
-    high = [i for i in range(m) if ca.depends_on(generating, s.ddu[i])]
+    work = lambda x: jacobian_product(s.q, x, s.forces)
+    first, second = ca.gradient(generating, s.du) + work(s.du), ca.gradient(generating, s.ddu)
+    by_u, by_w = ca.gradient(generating, s.u) + work(s.u), ca.gradient(generating, s.w) + work(s.w)
+    varied = ca.vertcat(generating, first, by_u, by_w)
+    high = [i for i in range(m) if ca.depends_on(varied, s.ddu[i])]
     low = [i for i in range(m) if i not in high]
     pick = lambda x, places: vector([x[i] for i in places])
     flow = [(s.u, s.du), (s.du, s.ddu), (pick(s.ddu, high), pick(u3, high)), (s.w, s.rates), (costates, -by_w), (s.t, ca.SX(1))]

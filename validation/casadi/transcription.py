@@ -42,6 +42,8 @@ def points():
 
 def problem(scene, case):
     """(x tags, lambda tags, integrand(t, x, x', multipliers), function of x that gives q, tags free at the end)."""
+    if scene.forces:
+        raise ValueError("forces are left to the other comparisons: the discretized action has no virtual work in it")
     n, h = len(scene.coordinates), len(scene.constraints)
     t, multiplier = ca.SX.sym("t"), None
     if case["formulation"] == "vakonomic":

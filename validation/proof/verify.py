@@ -3,10 +3,10 @@
 Plain Python, and nothing of the program that wrote the certificate (`deltaq prove SCENE --out CERTIFICATE.json`). It ends with 0: verified;
 with 1: forged, something that was read is not so; with 2: cannot read, and what.
 
-Theorem. Let L, f of the certificate's plain scene be analytic at its start (q, v, t), with f = 0 there, h constraints, A = f_v, and let the
-bordered matrix [L_vv, -A'; A, 0] be regular. Then there is one Chetaev motion, E := d/dt L_v - L_q = A' lambda with f = 0. It is
-vakonomic if and only if some mu = mu_0 + mu_1 t + ... solves A' mu' + (d/dt A' - f_q') mu = -E in each power of t. (There are no forces: a
-variational principle has no place for them.) Through order K these are linear equations S x = b for x = (mu_0 .. mu_(K+1)). If the named
+Theorem. Let L, f, Q of the certificate's plain scene be analytic at its start (q, v, t), with f = 0 there, h constraints, A = f_v, and let the
+bordered matrix [L_vv, -A'; A, 0] be regular. Then there is one Chetaev motion, E := d/dt L_v - L_q - Q = A' lambda with f = 0. It is
+vakonomic if and only if some mu = mu_0 + mu_1 t + ... solves A' mu' + (d/dt A' - f_q') mu = -E in each power of t: forces Q act by
+virtual work in every formulation, int (delta L + Q . delta q) dt = 0. Through order K these are linear equations S x = b for x = (mu_0 .. mu_(K+1)). If the named
 rows of [S | -b] have a determinant that is not 0, no x solves them.
 
 What is computed here are images mod p of numbers made from fractions, e^(2 pi i/M), e^(ia) and e^a for fractions a (independent over the
@@ -15,7 +15,7 @@ of e^i and e is 1, so e^(n/d) has an image where r and d have no common factor. 
 Gauss sum. This is a homomorphism on all quotients whose divisors do not go to 0: what is not 0 mod p is not 0, whoever has chosen p, z, r.
 p is a prime over 2^50 and over K + 2, by which series divide. Doubt is left in two places: that f = 0 at a start with all velocities given
 is found exactly where all numbers are fractions, else mod p and in decimals; and the scene file is held against the plain scene by Taylor
-coefficients of L and f along a random curve mod p. From a start drawn at random follows the same for almost every start on that piece of
+coefficients of L, f and Q along a random curve mod p. From a start drawn at random follows the same for almost every start on that piece of
 f = 0, if this is a connected analytic manifold, as the minor is analytic on it."""
 
 import hashlib, json, math, operator, re, secrets, sys, tomllib
@@ -421,6 +421,7 @@ def verify(proof):
         demand(len(c) == SIZE and at[x].c[0] == c[0] and (x + "'" not in at or at[x + "'"].plain().c[0] == c[1]), f"{x} at the start")
     formulas = Formulas()
     L, f = formulas.read(scene["lagrangian"]), [formulas.read(text) for text in scene["constraints"]]
+    forces = [formulas.read(scene["forces"].get(x, "0")) for x in names]
     divisors = {text: formulas.read(text) for text in proof["divided_by"] if text not in UNIQUE}
     scope = along(names, at, q, v, [at["t"].c[0], 1])
     values, leaves = formulas.run(scope), [scope[x] for x in names] + [scope[x + "'"] for x in names]
@@ -428,7 +429,8 @@ def verify(proof):
     both = [slopes_of(values[place].plain(), leaves) for place in f]
     A, B, momenta = [x[n:] for x in both], [x[:n] for x in both], slopes[n:]
     demand(h > 0 and len(reactions) == order + 1 and all(len(x) == h for x in reactions), "the number of reactions")
-    E = [[((k + 1) * momenta[i][k + 1] - slopes[i][k]) % P for k in range(order + 1)] for i in range(n)]
+    Q = [values[place].plain().c for place in forces]
+    E = [[((k + 1) * momenta[i][k + 1] - slopes[i][k] - Q[i][k]) % P for k in range(order + 1)] for i in range(n)]
     for i, k in product(range(n), range(order + 1)):
         demand((E[i][k] - sum(A[j][i][k - l] * reactions[l][j] for l in range(k + 1) for j in range(h))) % P == 0, "the motion")
     demand(not any(c for place in f for c in values[place].c[: order + 2]), "the constraints along the motion")
@@ -522,7 +524,7 @@ def hold(table, proof):
         if not any(kind == "rate" or kind == "name" and args[0][-1] == "'" for kind, *args in below):
             f[i] = formulas.rate(place)
     file = [formulas.read(table["system"]["lagrangian"]), *f, *(formulas.read(forces.get(x, 0)) for x in names)]
-    texts = [scene["lagrangian"], *scene["constraints"], *("0" for x in names)]
+    texts = [scene["lagrangian"], *scene["constraints"], *(scene["forces"].get(x, "0") for x in names)]
     words = ["the Lagrangian", *(f"constraint {i + 1}" for i in range(len(f))), *(f"the force on {x}" for x in names)]
     demand(len(file) == len(texts), "the number of constraints is not that of the file")
     own, values = [plain.read(text) for text in texts], formulas.run(scope, rates)
@@ -585,7 +587,7 @@ def checked(proof):
     plain, names = proof["scene"], set(proof["scene"]["coordinates"])
     rates = {x + "'" for x in names}
     demand(proof["motion"].keys() == names == plain["positions"].keys() and len(names) == len(plain["coordinates"]), "the coordinates")
-    readable(not plain["forces"], "forces: a variational principle has no place for them")
+    demand(plain["forces"].keys() <= names, "a force on no coordinate")
     demand(plain["velocities"].keys() <= rates, "a velocity of no coordinate")
     demand(not plain["parameters"].keys() & (names | rates | {"t", "pi"}), "a name that is used twice")
     digest = hashlib.sha256(json.dumps(plain, separators=(",", ":"), ensure_ascii=False).encode()).hexdigest()

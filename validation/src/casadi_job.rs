@@ -5,8 +5,8 @@
 //!
 //! ```text
 //! Chetaev             d/dt L_v − L_q = Q + Aᵀ λ ,                     d/dt f = 0
-//! vakonomic           d/dt 𝓛_v − 𝓛_q = 0 ,                            d/dt f = 0
-//! removed constraint  d²/dt² G_ü − d/dt G_u̇ + G_u = 0 ,  Ṗ = −G_w ,   ẇ = B
+//! vakonomic           d/dt 𝓛_v − 𝓛_q = Q ,                            d/dt f = 0
+//! removed constraint  d²/dt² G_ü − d/dt (G_u̇ + Q_u̇) + G_u + Q_u = 0 ,  Ṗ = −G_w − Q_w ,   ẇ = B
 //! ```
 //!
 //! and compares
@@ -29,10 +29,12 @@ use program::parallel;
 use random::{Batch, Kind, draw_recipe};
 
 mod environment;
+mod forced;
 mod python_environment;
 mod questions;
 mod table;
 
+pub use forced::forced;
 pub use python_environment::NotRun;
 pub use questions::{Amount, Question};
 pub use table::{headline, referee_table, verdict_words};
@@ -126,7 +128,9 @@ pub fn prepare() -> std::result::Result<(), NotRun> {
 
 /// States and times for each formulation of a built-in scene in the main job.
 pub const BUILT_IN: Amount = Amount { states: 1_000, times: 20 };
-/// The same for a random system.
+/// States for each formulation of a scene in which forces act.
+pub const FORCED: usize = 200;
+/// States and times for a random system.
 pub const RANDOM: Amount = Amount { states: 40, times: 0 };
 /// Random systems in the main job.
 pub const RANDOM_SYSTEMS: usize = 50;
@@ -158,6 +162,14 @@ pub fn built_in(name: &str, amount: Amount) -> Result<Question> {
     Ok(question)
 }
 
+/// The right-hand sides of a scene in which forces act.
+///
+/// # Errors
+/// Where the text is no scene, or a rate of ours cannot be evaluated.
+pub fn pushed(name: &str, text: &str, states: usize) -> Result<Question> {
+    Question::new(&Scene::parse(name, text)?, text, Amount { states, times: 0 })
+}
+
 /// The right-hand sides of a random system.
 ///
 /// # Errors
@@ -169,7 +181,8 @@ pub fn random(index: u64, amount: Amount) -> Result<Question> {
     Question::new(&scene, &text, amount)
 }
 
-/// The section of the main job: the named built-in scenes, and, where all of them are, random systems.
+/// The section of the main job: the named built-in scenes, and, where all of them are, those in which forces
+/// act, and random systems.
 ///
 /// # Errors
 /// Where a motion of ours cannot be read off, or the answer of the referee cannot be read.
@@ -177,13 +190,16 @@ pub fn section(names: &[&str]) -> Result<Outcome> {
     if let Err(reason) = prepare() {
         return Ok(Outcome::NotRun(reason));
     }
+    let forces = forced();
     let mut tasks: Vec<Task> = names.iter().map(|&name| Task::BuiltIn(name)).collect();
     if names.len() == catalogue::SCENES.len() {
         let is_solved = |index: &u64| draw_recipe(SEED, *index, &Kind::ALL).drawn.closeness.is_none();
+        tasks.extend(forces.iter().map(|(name, text)| Task::Forced(name, text)));
         tasks.extend((0..).filter(is_solved).take(RANDOM_SYSTEMS).map(Task::Random));
     }
     let questions = parallel::map(&tasks, |task| match task {
         Task::BuiltIn(name) => built_in(name, BUILT_IN).with_context(|| format!("scene `{name}`")),
+        Task::Forced(name, text) => pushed(name, text, FORCED).with_context(|| format!("scene `{name}`")),
         Task::Random(index) => random(*index, RANDOM).with_context(|| format!("random system {index}")),
     });
     ask(&questions.into_iter().collect::<Result<Vec<_>>>()?)
@@ -191,5 +207,6 @@ pub fn section(names: &[&str]) -> Result<Outcome> {
 
 enum Task<'a> {
     BuiltIn(&'a str),
+    Forced(&'a str, &'a str),
     Random(u64),
 }

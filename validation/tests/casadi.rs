@@ -1,9 +1,9 @@
 //! The referee in Python: it must run, agree where we are right, and disagree where we are not.
 
-use deltaq::CHETAEV;
+use deltaq::{CHETAEV, VAKONOMIC};
 use random::{Batch, Kind, draw_recipe};
 use scene::Scene;
-use validation::casadi_job::{Amount, Outcome, Question, Row, Word, ask, built_in, random};
+use validation::casadi_job::{Amount, Outcome, Question, Row, Word, ask, built_in, forced, pushed, random};
 
 const FEW: Amount = Amount { states: 50, times: 5 };
 
@@ -29,6 +29,42 @@ fn the_referee_agrees() {
     for scene in scenes.map(String::from).into_iter().chain((0..5).map(|i| format!("random-1-{i}"))) {
         assert!(rows.iter().any(|row| row.scene == scene && row.who == "CasADi"), "{scene}");
     }
+}
+
+#[test]
+fn the_referee_agrees_where_forces_act_in_every_formulation() {
+    let scenes: Vec<(Scene, String)> =
+        forced().into_iter().map(|(name, text)| (Scene::parse(&name, &text).expect("a scene"), text)).collect();
+    let questions = scenes.iter().map(|(scene, text)| pushed(&scene.name, text, FEW.states).expect("questions"));
+    let rows = rows(&questions.collect::<Vec<_>>());
+    for row in &rows {
+        assert_eq!(row.verdict, Word::Agrees, "{row:?}");
+    }
+    let derived = || rows.iter().filter(|row| row.who == "CasADi");
+    let worst = derived().filter_map(|row| row.largest).fold(0.0, f64::max);
+    println!("{} comparisons of rates, largest difference {worst:.1e}", derived().count());
+    assert!(worst < 1e-12, "{worst:.1e}");
+    for (scene, _) in &scenes {
+        for formulation in ["Chetaev", "vakonomic", "removed constraint"] {
+            let named = |row: &&Row| row.scene == scene.name && row.what.starts_with(formulation);
+            assert!(derived().any(|row| named(&row)), "{}, {formulation}", scene.name);
+        }
+    }
+}
+
+#[test]
+fn a_force_that_does_no_virtual_work_is_found() {
+    let (name, text) = forced().swap_remove(0);
+    let scene = Scene::parse(&name, &text).expect("a scene");
+    let mut question = Question::new(&scene, &text, FEW).expect("questions");
+    let forgotten = |equations: &mut equations::Equations| {
+        for (residual, &force) in equations.blocks[0].residuals.iter_mut().zip(&scene.system.forces) {
+            *residual = equations.graph.add(*residual, force);
+        }
+    };
+    question.corrupt(&scene, VAKONOMIC, FEW.states, forgotten).expect("rates");
+    let rows = rows(&[question]);
+    assert!(rows.iter().any(|row| row.verdict == Word::Disagrees && row.largest > Some(1e-2)), "{rows:?}");
 }
 
 /// `d/dt L_v + L_q = Aᵀ λ` is no equation of motion, and `λ` with the other sign is not ours.

@@ -52,7 +52,6 @@ pub const FORMULATION: Formulation = Formulation {
     title: "Chetaev",
     needs_removal: false,
     starts_multipliers: false,
-    takes_forces: true,
     parameter: None,
     derive,
 };

@@ -39,15 +39,13 @@ pub fn forces(v: &[f64]) -> [f64; 3] {
     [-v[0] / 5.0, 0.0, 0.3]
 }
 
-/// The system, with or without forces.
-pub fn system(with_forces: bool) -> System {
+/// The system.
+pub fn system() -> System {
     let mut system = System::new(Default::default(), &[("x", "m"), ("y", "m"), ("phi", "rad")]);
     let text = "(1 + x^2)/2*x'^2 + y'^2/2 + (2 + cos(phi))/4*phi'^2 + x'*y'*sin(t)/3 - x*y";
     system.lagrangian = system.expression(text).expect("L");
     system.constraints = vec![system.expression("y'*cos(phi) - x'*sin(phi) - t*x/2").expect("f")];
-    if with_forces {
-        system.forces = ["-x'/5", "0", "0.3"].map(|text| system.expression(text).expect("Q")).to_vec();
-    }
+    system.forces = ["-x'/5", "0", "0.3"].map(|text| system.expression(text).expect("Q")).to_vec();
     system
 }
 

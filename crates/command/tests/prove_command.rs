@@ -98,7 +98,7 @@ fn what_has_no_text_is_said() {
 }
 
 #[test]
-fn forces_are_refused_in_the_words_of_a_comparison() {
+fn forces_act_in_what_is_compared_and_proved() {
     let folder = tempfile::tempdir().expect("a folder");
     let file = folder.path().join("pushed.toml").display().to_string();
     let particle = include_str!("../../catalogue/scenes/particle.toml");
@@ -108,14 +108,16 @@ fn forces_are_refused_in_the_words_of_a_comparison() {
         assert!(text.contains("forces ="), "{text}");
         std::fs::write(&file, text).expect("written");
         let compared = answer(&["compare", &file], 0).0;
-        let words = "a generalized force acts on `x`, and a variational principle has no place for it; only \
-                     Chetaev's formulation and the family between (kappa) take forces";
-        assert!(compared.contains(words), "{compared}");
-        for arguments in [&["--out", "-"][..], &["--out", "-", "--almost-every"], &["--out", "-", "--format", "json"]] {
-            refused(&[&["prove", &file], arguments].concat(), &["vakonomic", words]);
+        assert!(!compared.contains("no motion"), "{compared}");
+        for formulation in ["chetaev", "vakonomic", "removed-constraint"] {
+            answer(&["solve", &file, "--formulation", formulation], 0);
         }
-        refused(&["solve", &file, "--formulation", "vakonomic"], &["vakonomic", words]);
     }
+    let (_, complaint) = answer(&["prove", &file, "--out", "-"], 3);
+    assert!(complaint.contains("nothing is constrained"), "{complaint}");
+    std::fs::write(&file, &pushed).expect("written");
+    let value: Value = serde_json::from_str(&answer(&["prove", &file, "--out", "-"], 0).0).expect("JSON");
+    assert_eq!(value["scene"]["forces"], json!({ "x": "-x'*z" }));
 }
 
 #[test]

@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 
 use equations::{Equations, Role};
-use mechanics::{DisplacementParameter, Removal, System};
+use mechanics::System;
 use symbolic::{Expr, Graph, Scalar, Symbol};
 
 use crate::DecisionError;
@@ -18,12 +18,11 @@ use crate::program::{Evaluator, Program};
 pub struct Family {
     pub(crate) formulation: &'static str,
     pub(crate) shape: Shape,
-    /// Whether time stands in no equation, and in no force.
+    /// Whether time stands in no equation.
     pub(crate) timeless: bool,
     names: Vec<String>,
     parameters: Vec<f64>,
     pub(crate) equations: Equations,
-    pub(crate) carries_forces: bool,
     pub(crate) program: Program,
     start: Program,
     pub(crate) lift: Option<Lift>,
@@ -74,12 +73,9 @@ pub(crate) struct Instant<'a, T> {
 impl Family {
     /// Reads `equations` of `system`, as derived: nothing left out, nothing substituted.
     ///
-    /// Forces of `system` act by `∫ (δL + Q·δq) dt = 0` for the variations `δq` that the family's principle
-    /// admits: a variational formulation is derived without; `carries_forces` says if `equations` have `Q`.
-    ///
     /// # Errors
     /// [`DecisionError::Unsuited`] for equations not affine in costates, or that ask more than a curve tells.
-    pub fn new(system: &System, equations: &Equations, carries_forces: bool) -> Result<Self, DecisionError> {
+    pub fn new(system: &System, equations: &Equations) -> Result<Self, DecisionError> {
         let unsuited = |reason: String| DecisionError::Unsuited { formulation: equations.formulation, reason };
         let system = &System { graph: equations.graph.clone(), ..system.clone() };
         let g = &system.graph;
@@ -95,11 +91,8 @@ impl Family {
             return Err(unsuited("costates p stand in the place of velocities; take the form with multipliers".into()));
         }
         let unknowns = equations.unknowns();
-        let mut residuals: Vec<Expr> = equations.blocks.iter().flat_map(|b| b.residuals.clone()).collect();
-        let mut rates: Vec<Expr> = equations.states.iter().filter(|y| costate(y.role)).map(|y| y.rate).collect();
-        if !carries_forces && system.has_forces() {
-            add_forces(system, equations.removal.as_ref(), &mut residuals, &mut rates).map_err(unsuited)?;
-        }
+        let residuals: Vec<Expr> = equations.blocks.iter().flat_map(|b| b.residuals.clone()).collect();
+        let rates: Vec<Expr> = equations.states.iter().filter(|y| costate(y.role)).map(|y| y.rate).collect();
 
         let mut kinds = Vec::new();
         let mut explicit = Vec::new();
@@ -166,12 +159,10 @@ impl Family {
                 rates: kinds,
                 explicit: explicit.len(),
             },
-            timeless: timeless(system.time, equations)
-                && !system.forces.iter().any(|&force| g.depends_on(force, system.time)),
+            timeless: timeless(system.time, equations),
             names: constants.iter().map(|&s| g.name(s)).collect(),
             parameters: system.parameters.iter().map(|p| p.value).collect(),
             equations: equations.clone(),
-            carries_forces,
             program: Program::new(g, &inputs, &outputs)?,
             start,
             lift,
@@ -254,35 +245,6 @@ fn system_matrices(g: &Graph, system: &System) -> Vec<Expr> {
     let mut entries = g.jacobian(&g.gradient(system.lagrangian, &v), &v).entries().to_vec();
     entries.extend(g.jacobian(&system.constraints, &v).entries());
     entries
-}
-
-/// `Q` beside `L_q`: `R_i −= Σ Q_j ∂q_j/∂x_i` where equation `i` balances `x_i`, `Ṗ_w −= Σ Q_j ∂q_j/∂w`.
-pub(crate) fn add_forces(
-    system: &System,
-    removal: Option<&Removal>,
-    residuals: &mut [Expr],
-    rates: &mut [Expr],
-) -> Result<(), String> {
-    let g = &system.graph;
-    let Some(removal) = removal else {
-        for (residual, &force) in residuals.iter_mut().zip(&system.forces) {
-            *residual = g.sub(*residual, force);
-        }
-        return Ok(());
-    };
-    let moved = |u: &DisplacementParameter| removal.coordinates.iter().any(|&q| g.depends_on(q, u.rate));
-    if removal.parameters.iter().any(moved) || rates.len() != removal.memory.len() {
-        return Err("forces act, and coordinates contain rates of parameters or costates were dropped".into());
-    }
-    let forces: Vec<Expr> = system.forces.iter().map(|&force| removal.rewrite(system, force)).collect();
-    let work = |s: Symbol| g.dot(&forces, g.jacobian(&removal.coordinates, &[s]).entries());
-    for (residual, u) in residuals.iter_mut().zip(&removal.parameters) {
-        *residual = g.sub(*residual, work(u.symbol));
-    }
-    for (rate, w) in rates.iter_mut().zip(&removal.memory) {
-        *rate = g.sub(*rate, work(w.symbol));
-    }
-    Ok(())
 }
 
 type Started = Result<Program, symbolic::CompileError>;

@@ -7,7 +7,7 @@ use equations::Equations;
 use mechanics::System;
 use symbolic::{Expr, Graph, Symbol, Vanishing};
 
-use crate::family::{Family, add_forces, costate};
+use crate::family::{Family, costate};
 
 /// Nodes over which an elimination is given up.
 const LARGEST: usize = 20_000;
@@ -54,13 +54,7 @@ fn remainders(
     // the equations of the family along the curve
     let etas: Vec<_> = equations.states.iter().filter(|y| costate(y.role)).collect();
     let mut residuals: Vec<Expr> = equations.blocks.iter().flat_map(|b| b.residuals.clone()).collect();
-    let mut explicit: Vec<Expr> = etas.iter().map(|y| y.rate).collect();
-    if !family.carries_forces && system.has_forces() {
-        let forces = g.adopt(&system.graph, &system.forces);
-        let with_forces = System { graph: g.clone(), forces, ..system.clone() };
-        add_forces(&with_forces, None, &mut residuals, &mut explicit).ok()?;
-        residuals = g.adopt(&with_forces.graph, &residuals);
-    }
+    let explicit: Vec<Expr> = etas.iter().map(|y| y.rate).collect();
     let unknowns = equations.unknowns();
     let is_unknown = |rate: Expr| g.as_symbol(rate).filter(|rate| unknowns.contains(rate));
     let mut put_in: HashMap<Symbol, Expr> =

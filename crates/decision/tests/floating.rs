@@ -195,7 +195,7 @@ fn a_question_is_judged_up_to_where_its_chart_is_too_loud() {
     let mu = [0.3; 4];
     let derivation = Derivation { removal: Some(&removal), start: None, all_costates: true };
     let equations = removed_constraint::derive(&scene.system, &derivation).expect("equations");
-    let family = Family::new(&scene.system, &equations, false).expect("a family");
+    let family = Family::new(&scene.system, &equations).expect("a family");
     let decision = decided(&family, &flow(&scene, &vakonomic_equations(&scene), &mu));
     let (system, g) = (&scene.system, &scene.system.graph);
     let augmented = g.add(system.lagrangian, g.dot(&mu.map(|mu| g.number(mu)), &system.constraints));

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use decision::{Decision, DecisionSettings, ExactStart, Family, Flow, Proof, Question, Section, decide_flow};
 use equations::{Derivation, Equations};
-use mechanics::{Removal, System};
+use mechanics::Removal;
 use scene::{Number, Scene};
 
 /// A built-in scene with other numbers.
@@ -34,17 +34,12 @@ pub(crate) fn written(text: &str, overrides: &[(&str, f64)]) -> Scene {
     Scene::parse_with("written", text, &overrides).unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// The system with no force, from which a variational principle is derived.
-fn without_forces(system: &System) -> System {
-    System { forces: vec![system.graph.zero(); system.dimension()], ..system.clone() }
-}
-
 pub(crate) fn chetaev_equations(scene: &Scene) -> Equations {
     chetaev::derive(&scene.system, &Derivation::default()).expect("equations")
 }
 
 pub(crate) fn vakonomic_equations(scene: &Scene) -> Equations {
-    vakonomic::derive(&without_forces(&scene.system), &Derivation::default()).expect("equations")
+    vakonomic::derive(&scene.system, &Derivation::default()).expect("equations")
 }
 
 pub(crate) fn flow(scene: &Scene, equations: &Equations, constants: &[f64]) -> Flow {
@@ -57,16 +52,16 @@ pub(crate) fn chetaev(scene: &Scene) -> Flow {
 }
 
 pub(crate) fn vakonomic(scene: &Scene) -> Family {
-    Family::new(&scene.system, &vakonomic_equations(scene), false).expect("a family")
+    Family::new(&scene.system, &vakonomic_equations(scene)).expect("a family")
 }
 
 pub(crate) fn removed_equations(scene: &Scene, removal: &Removal) -> Equations {
     let derivation = Derivation { removal: Some(removal), ..Derivation::default() };
-    removed_constraint::derive(&without_forces(&scene.system), &derivation).expect("equations")
+    removed_constraint::derive(&scene.system, &derivation).expect("equations")
 }
 
 pub(crate) fn removed(scene: &Scene, removal: &Removal) -> Family {
-    Family::new(&scene.system, &removed_equations(scene, removal), false).expect("a family")
+    Family::new(&scene.system, &removed_equations(scene, removal)).expect("a family")
 }
 
 pub(crate) fn decided(family: &Family, flow: &Flow) -> Decision {

@@ -15,7 +15,7 @@ fn changed(scene: &Scene, change: impl Fn(&Equations, Expr) -> Expr) -> Decision
     let n = scene.system.dimension();
     let residuals: Vec<Expr> = equations.blocks[0].residuals[..n].iter().map(|&r| change(&equations, r)).collect();
     equations.blocks[0].residuals[..n].copy_from_slice(&residuals);
-    decided(&Family::new(&scene.system, &equations, false).expect("a family"), &chetaev(scene))
+    decided(&Family::new(&scene.system, &equations).expect("a family"), &chetaev(scene))
 }
 
 /// `R` with `±` in front of some symbols.
@@ -59,7 +59,7 @@ fn of_the_costate_equations() {
     let verdict = |change: &dyn Fn(&mut Equations)| {
         let mut equations = removed_equations(&scene, &scene.removals[0]);
         change(&mut equations);
-        decided(&Family::new(&scene.system, &equations, false).expect("a family"), &curve).verdict
+        decided(&Family::new(&scene.system, &equations).expect("a family"), &curve).verdict
     };
     assert_eq!(verdict(&|_| ()), Verdict::Contained);
     let rate = |equations: &mut Equations| {
@@ -107,7 +107,7 @@ fn of_the_force() {
             let residual = &mut equations.blocks[0].residuals[i];
             *residual = g.add(*residual, g.mul(g.integer(factor), force));
         }
-        let other = decided(&Family::new(system, &equations, false).expect("a family"), &chetaev(&scene));
+        let other = decided(&Family::new(system, &equations).expect("a family"), &chetaev(&scene));
         assert_eq!(other.verdict, Verdict::NotContained, "{factor}");
     }
 }

@@ -51,7 +51,7 @@ pub fn integrals_by_ranks(system: &System, state: &State) -> Result<Option<(usiz
     let lagrangian = g.sum(&system.coordinates.iter().enumerate().map(term).collect::<Vec<_>>());
     let driven = System { lagrangian, forces: vec![g.zero(); system.dimension()], ..system.clone() };
     let equations = vakonomic::derive(&driven, &Derivation::default())?;
-    let family = Family::new(&driven, &equations, true)?;
+    let family = Family::new(&driven, &equations)?;
     let multipliers: Vec<f64> = (0..h).map(|j| (2 * j + 3) as f64).collect();
     let question = Question::new(&driven, &equations, &multipliers, &family)?;
     let start = ExactStart::new(&driven, state, &Completion::default(), None)?;

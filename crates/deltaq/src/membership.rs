@@ -4,7 +4,7 @@ use decision::{
     Certificate, Decision, DecisionError, DecisionSettings, ExactStart, Family, Finding, Proof, Question, Section,
     Verdict, decide_flow,
 };
-use equations::{Derivation, Equations, Formulation, refuse_forces};
+use equations::{Derivation, Equations, Formulation};
 use mechanics::{ConstantsRule, Removal, System};
 use nalgebra::{DMatrix, DVector};
 use scene::Scene;
@@ -14,7 +14,7 @@ use crate::{CHETAEV, Choice, LeadingTerm, Metric, SolveError, VAKONOMIC, choices
 
 /// All constants that give a formulation a given motion: what was computed and what was proved of them.
 ///
-/// Where forces act, a variational principle has no motion, here as in a comparison, and nothing is asked.
+/// Forces act in every family by virtual work, `∫ (δL + Q·δq) dt = 0` for its own `δq`.
 #[derive(Clone, Debug)]
 pub struct Membership {
     /// The set in floating point, with the least mismatch of accelerations ρ and its noise.
@@ -141,7 +141,7 @@ impl<'a> Pairing<'a> {
         family: &Choice,
     ) -> Result<Self, SolveError> {
         let equations = as_derived(&scene.system, family)?;
-        let family = Family::new(&scene.system, &equations, true)?;
+        let family = Family::new(&scene.system, &equations)?;
         Ok(Pairing { scene, curve, constants, family })
     }
 
@@ -229,7 +229,7 @@ fn as_derived(system: &System, choice: &Choice) -> Result<Equations, SolveError>
 /// Decides whether Chetaev's motion of a scene up to `end` is vakonomic; `None` where there is no constraint.
 ///
 /// # Errors
-/// [`SolveError::Derivation`] where forces act; as [`Pairing::new`] and [`Pairing::decide`].
+/// As [`Pairing::new`] and [`Pairing::decide`].
 pub fn membership(scene: &Scene, end: f64) -> Result<Option<Membership>, SolveError> {
     principal(scene)?.map(|pairing| pairing.decide(end)).transpose()
 }
@@ -238,15 +238,14 @@ pub fn membership(scene: &Scene, end: f64) -> Result<Option<Membership>, SolveEr
 /// every one; or the reason in words.
 ///
 /// # Errors
-/// [`SolveError::Derivation`] where forces act; as [`Pairing::new`] and [`Pairing::certificate`].
+/// As [`Pairing::new`] and [`Pairing::certificate`].
 pub fn certificate(scene: &Scene, almost_every_start: bool) -> Result<Result<Certificate, String>, SolveError> {
     let nothing = Ok(Err("nothing is constrained".into()));
     principal(scene)?.map_or(nothing, |pairing| pairing.certificate(almost_every_start))
 }
 
-/// Chetaev's motion and the vakonomic family; refused where forces act, constrained or not.
+/// Chetaev's motion and the vakonomic family; none where nothing is constrained.
 fn principal(scene: &Scene) -> Result<Option<Pairing<'_>>, SolveError> {
-    refuse_forces(&scene.system, VAKONOMIC.name)?;
     let choices = choices(scene);
     let of = |own: &Formulation| choices.iter().find(|choice| choice.formulation == own);
     match (of(CHETAEV), of(VAKONOMIC)) {

@@ -3,8 +3,8 @@
 use std::collections::BTreeMap;
 
 use deltaq::{
-    CHETAEV, Choice, Motion, Pairing, REMOVED_CONSTRAINT, Settings, SolveError, VAKONOMIC, VAKONOMIC_COSTATE,
-    certificate, choices, compare, derive, membership, removals, setting, solve_choice,
+    CHETAEV, Choice, Motion, REMOVED_CONSTRAINT, Settings, SolveError, VAKONOMIC, VAKONOMIC_COSTATE, choices, compare,
+    derive, removals, setting, solve_choice,
 };
 use equations::{DerivationError, EvaluationFailure, Formulation};
 use integrate::{BoundaryError, CallError};
@@ -140,30 +140,6 @@ fn a_search_that_comes_to_motions_of_many_steps_is_given_up() {
     let settings = Settings { tolerance: 1e-9, ..Settings::default() };
     let error = refused(solve_choice(&scene, &natural, &settings));
     assert!(matches!(error, SolveError::Search { horizon: 3.0, steps: 1..2_000_000 }), "{error}");
-}
-
-#[test]
-fn forces_are_for_chetaev_only() {
-    let text = SLEDGE.replace("[start.velocities]", "forces = { phi = 0.2, y = 0 }\n[start.velocities]");
-    let scene = Scene::parse("sledge", &text).unwrap_or_else(|e| panic!("{e}"));
-    for name in [VAKONOMIC, VAKONOMIC_COSTATE, REMOVED_CONSTRAINT] {
-        let error = refused(solve(&scene, name, ConstantsRule::Zero));
-        let formulation = name.name;
-        let derivation = DerivationError::ForceInVariationalPrinciple { formulation, coordinate: "phi".into() };
-        let error_of_a_motion = SolveError::Derivation(derivation);
-        assert_eq!(error, error_of_a_motion);
-        let [chetaev, family] = [CHETAEV, name].map(|name| {
-            let removal = choices(&scene).into_iter().find(|c| c.formulation == name).and_then(|c| c.removal);
-            choice(name, removal.as_ref(), ConstantsRule::Zero)
-        });
-        let Err(error) = Pairing::new(&scene, &chetaev, &family) else { panic!("{name:?} has a family") };
-        assert_eq!(error, error_of_a_motion);
-    }
-    assert!(membership(&scene, 1.0).is_err() && certificate(&scene, true).is_err());
-    // φ'' = 0.2/0.5
-    let mut motion = solve(&scene, CHETAEV, ConstantsRule::Zero).expect("Chetaev takes forces");
-    let phi = motion.at(1.0).expect("readable").coordinates[2];
-    assert!((phi - (0.3 + 1.1 + 0.2)).abs() < 1e-10, "{phi}");
 }
 
 #[test]

@@ -42,8 +42,8 @@ pub enum DiscreteError {
         /// Time.
         t: f64,
     },
-    /// A force acts, and a stationary action has no place for it.
-    #[error("a force acts on coordinate {number}, and a stationary action has no place for it")]
+    /// A force acts: the discrete action here has none.
+    #[error("a force acts on coordinate {number}, and these discrete equations are without forces")]
     Force {
         /// Which coordinate, counted from 1.
         number: usize,

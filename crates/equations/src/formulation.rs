@@ -19,17 +19,6 @@ pub struct Derivation<'a> {
 /// A system for which a formulation has no equations.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum DerivationError {
-    /// Generalized forces in a variational principle.
-    #[error(
-        "{formulation}: a generalized force acts on `{coordinate}`, and a variational principle has no place for it; \
-         only Chetaev's formulation and the family between (kappa) take forces"
-    )]
-    ForceInVariationalPrinciple {
-        /// Name of the formulation.
-        formulation: &'static str,
-        /// First coordinate on which a force acts.
-        coordinate: String,
-    },
     /// No parametrization was given.
     #[error("{formulation}: a parametrization that removes the constraints is needed")]
     RemovalMissing {
@@ -52,17 +41,18 @@ pub enum DerivationError {
         /// Why not.
         error: RemovalError,
     },
-    /// `∂²G/∂ü²` is singular although `L` contains `ü`.
+    /// `∂²G/∂ü²` is singular although `L`, or the work of the forces, contains `ü`.
     #[error(
-        "{formulation}, removal `{removal}`: L contains second rates {second_rates}, and the Hessian of G with respect to \
-         the highest rates has rank {rank} of {size}; choose parameters in which L is of first order"
+        "{formulation}, removal `{removal}`: L or the virtual work of forces contains second rates {second_rates}, and the \
+         Hessian of G with respect to the highest rates has rank {rank} of {size}; choose parameters in which L is of \
+         first order"
     )]
     SingularHighestHessian {
         /// Name of the formulation.
         formulation: &'static str,
         /// Name of the removal.
         removal: String,
-        /// The second rates that `L` contains.
+        /// The second rates that `L` or the work of the forces contains.
         second_rates: String,
         /// Rank found.
         rank: usize,
@@ -82,8 +72,6 @@ pub struct Formulation {
     pub needs_removal: bool,
     /// Whether its free constants are multipliers `μ₀` at the start, one per constraint.
     pub starts_multipliers: bool,
-    /// Whether generalized forces `Q` stand in its equations; if not, its derivation refuses them.
-    pub takes_forces: bool,
     /// The parameter needed beyond `L`, `f` and `Q`. Systems without it are not compared in this formulation.
     pub parameter: Option<&'static str>,
     /// The derivation.
@@ -101,19 +89,5 @@ impl Eq for Formulation {}
 impl fmt::Debug for Formulation {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         f.write_str(self.name)
-    }
-}
-
-/// Refuses generalized forces on behalf of a variational formulation.
-///
-/// # Errors
-/// [`DerivationError::ForceInVariationalPrinciple`].
-pub fn refuse_forces(system: &System, formulation: &'static str) -> Result<(), DerivationError> {
-    match system.forces.iter().position(|&force| !system.graph.is_zero(force)) {
-        None => Ok(()),
-        Some(i) => Err(DerivationError::ForceInVariationalPrinciple {
-            formulation,
-            coordinate: system.coordinates[i].name.clone(),
-        }),
     }
 }

@@ -83,7 +83,7 @@ pub use definitions::Definitions;
 pub use equations::{
     Block, Chart, ConstraintProjection, Equations, FreeConstant, LeftOut, Named, Role, StateVariable, Statement,
 };
-pub use formulation::{Derivation, DerivationError, Formulation, refuse_forces};
+pub use formulation::{Derivation, DerivationError, Formulation};
 pub use lanes::LaneEquations;
 pub use outputs::{Cost, Outputs};
 pub use plan::{Collected, Plan};

@@ -43,7 +43,6 @@ pub const FORMULATION: Formulation = Formulation {
     title: "between, κ",
     needs_removal: false,
     starts_multipliers: true,
-    takes_forces: true,
     parameter: Some("kappa"),
     derive,
 };

@@ -74,10 +74,17 @@ def test_names(comparison):
 
 
 def test_refused_formulations_say_why(sledge):
-    # a force has no place in a variational principle
+    # forces act in every formulation
     comparison = sledge.system(duration=1.0, removals=None, forces={"x": "-x'"}).compare(tolerance=1e-9)
-    run = next(run for run in comparison.runs if run.formulation == "vakonomic")
-    assert run.motion is None and "variational principle" in run.error
+    assert {run.formulation for run in comparison.runs} == {"chetaev", "vakonomic", "removed-constraint"}
+    assert all(run.motion is not None and run.error is None for run in comparison.runs)
+    # nothing removes a constraint that is not linear
+    cone = deltaq.System(
+        coordinates=["x", "y", "z"], lagrangian="(x'^2 + y'^2 + z'^2)/2", constraints=["z'^2 - x'^2 - y'^2"],
+        start={"x": 0, "y": 0, "z": 0}, velocities={"x'": 3, "y'": 4, "z'": 5}, duration=1.0,
+    )
+    run = next(run for run in cone.compare(tolerance=1e-9).runs if run.formulation == "removed-constraint")
+    assert run.motion is None and "not linear" in run.error
     with pytest.raises(deltaq.CallError, match="tolerance"):
         sledge.system().compare(tolerance=0)
     with pytest.raises(ValueError, match="unknown fits `some`; known: undecided, all, none"):

@@ -228,14 +228,15 @@ def test_another_scene_is_not_proved(tmp_path):
         certificate = written(tmp_path, scene)
         assert verdict(tmp_path, certificate, scene)[0] == VERIFIED
         assert verdict(tmp_path, certificate, file(*own))[0] == FORGED
-    # a variational principle has no place for forces
+    # forces act by virtual work, and are part of what is proved
     pushed = file(*own, '\nforces = { x = "-1.001*x\'*z" }')
-    assert "a generalized force acts on `x`" in written(tmp_path, pushed, code=2)
-    with pytest.raises(deltaq.DeltaqError, match="a generalized force acts on `x`"):
-        deltaq.load(pushed).prove()
-    assert verdict(tmp_path, true, pushed) == (FORGED, "forged: the force on x is not that of the file\n")
-    forged = signed(true | {"scene": true["scene"] | {"forces": {"x": "-x'*z"}}})
-    assert verdict(tmp_path, forged)[0] == UNREADABLE
+    certificate = written(tmp_path, pushed)
+    assert certificate["scene"]["forces"].keys() == {"x"} and deltaq.load(pushed).prove()
+    assert verdict(tmp_path, certificate, pushed)[0] == VERIFIED
+    assert verdict(tmp_path, certificate, file(*own, '\nforces = { x = "-1.002*x\'*z" }')) == (FORGED, "forged: the force on x is not that of the file\n")
+    assert verdict(tmp_path, true, file(*own, '\nforces = { x = "-1.001*x\'*z" }'))[0] == FORGED
+    for forces in ({"x": "-x'*z"}, {}, {"x": "1.001*x'*z"}, {"w": "1"}):
+        assert verdict(tmp_path, signed(certificate | {"scene": certificate["scene"] | {"forces": forces}}))[0] == FORGED
 
 
 def test_no_certificate_is_verified_where_there_are_multipliers(tmp_path):

@@ -43,7 +43,6 @@ pub const REDUCED_CHETAEV: Formulation = Formulation {
     title: "Chetaev, quasi-velocities",
     needs_removal: false,
     starts_multipliers: false,
-    takes_forces: true,
     parameter: None,
     derive: derive_chetaev,
 };

@@ -5,12 +5,12 @@
 //! ```text
 //! K(q, p, w, t) = p·v − L(q, v, t) ,   v = S w + s ,        ∂K/∂w = Sᵀ (p − L_v) = 0   determines w;
 //!
-//! q̇ = v ,        ṗ = −∂K/∂q |_w = L_q − (∂v/∂q)ᵀ (p − L_v) .
+//! q̇ = v ,        ṗ = −∂K/∂q |_w + Q = L_q + Q − (∂v/∂q)ᵀ (p − L_v) .
 //! ```
 //!
 //! `H(q, p, t)` is the stationary value of `K` over `w`, so that `∂w/∂q` does not enter. These are the
 //! equations of the costate form: `Sᵀ (p − L_v) = 0` says that `p − L_v = Aᵀ μ`, and `A (S w + s) + b = 0`,
-//! differentiated at fixed `w`, that `A ∂v/∂q = −∂f/∂q`; hence `ṗ = L_q + f_qᵀ μ = ∂(L + μ·f)/∂q`.
+//! differentiated at fixed `w`, that `A ∂v/∂q = −∂f/∂q`; hence `ṗ = L_q + f_qᵀ μ + Q = ∂(L + μ·f)/∂q + Q`.
 //!
 //! For `L` quadratic in the velocities, `w` solves n − h linear equations, `SᵀMS w = Sᵀ (p − L_v(q, s, t))`.
 //!
@@ -25,7 +25,7 @@
 //! are cheaper so, the states are `e_k · p`, the momenta along the vectors of that frame:
 //!
 //! ```text
-//! d/dt (e_k · p) = e_k · (R_q − (∂u/∂q)ᵀ (p − L_u)) − Σ_c (e_c · p) dω^c(q̇, e_k) ,      R = L − ½ vᵀMv.
+//! d/dt (e_k · p) = e_k · (R_q + Q − (∂u/∂q)ᵀ (p − L_u)) − Σ_c (e_c · p) dω^c(q̇, e_k) ,      R = L − ½ vᵀMv.
 //! ```
 //!
 //! A chain of n bodies takes O(n). One more recursion gives multipliers: [`crate::EliminatedConstraint`].
@@ -38,7 +38,6 @@ use crate::expressions::{SHORT, Sparse, sparse_rows};
 use crate::{Frame, QuasiVelocities, cheapest, matrix_moves};
 use equations::{
     Block, Definitions, Derivation, DerivationError, Equations, Formulation, Named, Role, StateVariable, Statement,
-    refuse_forces,
 };
 use mechanics::{System, fresh_symbol};
 use symbolic::{Expr, Graph, Symbol};
@@ -50,7 +49,6 @@ pub const REDUCED_VAKONOMIC: Formulation = Formulation {
     title: "vakonomic, quasi-velocities",
     needs_removal: false,
     starts_multipliers: true,
-    takes_forces: false,
     parameter: None,
     derive: derive_vakonomic,
 };
@@ -66,8 +64,7 @@ const WHOLE: usize = 16;
 /// The equations for `w` are linear where `L` is quadratic in `v`; else Newton from the last accepted state.
 ///
 /// # Errors
-/// [`DerivationError::ForceInVariationalPrinciple`] for a generalized force; [`DerivationError::Reduction`]
-/// for constraints that are not linear in the velocities, or dependent.
+/// [`DerivationError::Reduction`] for constraints that are not linear in the velocities, or dependent.
 ///
 /// ```
 /// # let mut system = mechanics::System::new(Default::default(), &[("x", "m"), ("y", "m"), ("phi", "rad")]);
@@ -81,7 +78,6 @@ const WHOLE: usize = 16;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn derive_vakonomic(system: &System, derivation: &Derivation) -> Result<Equations, DerivationError> {
-    refuse_forces(system, REDUCED_VAKONOMIC.name)?;
     if let Some(chain) = Chain::new(system) {
         return Ok(chain.own(system, derive_vakonomic(&chain.system, derivation)?));
     }
@@ -103,7 +99,7 @@ pub fn derive_vakonomic(system: &System, derivation: &Derivation) -> Result<Equa
 struct Whole {
     /// `−∂K/∂w`
     balance: Vec<Expr>,
-    /// `−∂K/∂q`
+    /// `−∂K/∂q + Q`
     rates: Vec<Expr>,
 }
 
@@ -147,14 +143,16 @@ impl Problem {
         (u, momenta)
     }
 
-    /// `ṗ`, where `along` is `(∂v/∂q)ᵀ (p − L_v)` at fixed `w`; in a frame `e_k · (R_q − along) − Σ_c p_c
+    /// `ṗ`, where `along` is `(∂v/∂q)ᵀ (p − L_v)` at fixed `w`; in a frame `e_k · (R_q + Q − along) − Σ_c p_c
     /// dω^c(q̇, e_k)`, with `R` what `L` is without its squares.
     fn rates(&self, system: &System, momenta: &[Expr], along: &[Expr]) -> Vec<Expr> {
         let g = &system.graph;
         let q = system.positions();
+        let applied = |potential: Expr| -> Vec<Expr> {
+            g.gradient(potential, &q).into_iter().zip(&system.forces).map(|(e, &force)| g.add(e, force)).collect()
+        };
         let Some(frame) = &self.frame else {
-            let gradient = g.gradient(system.lagrangian, &q);
-            return gradient
+            return applied(system.lagrangian)
                 .iter()
                 .zip(along)
                 .map(|(&l_q, &along)| g.expand_if_shorter(g.sub(l_q, along), LONG))
@@ -163,8 +161,8 @@ impl Problem {
         let u = frame.velocities.iter().map(|u| g.variable(u.symbol));
         let linear = momenta.iter().zip(&frame.inertia).zip(u).map(|((&l_u, &c), u)| g.mul(u, g.sub(l_u, g.mul(c, u))));
         let rest: Vec<Expr> = linear.chain([g.substitute(system.lagrangian, &at_rest(system))]).collect();
-        let gradient = g.gradient(g.sum(&rest), &q);
-        let applied: Vec<Expr> = gradient.iter().zip(along).map(|(&r_q, &along)| g.sub(r_q, along)).collect();
+        let applied: Vec<Expr> =
+            applied(g.sum(&rest)).iter().zip(along).map(|(&r_q, &along)| g.sub(r_q, along)).collect();
         let (applied, turned) = (frame.along(g, &applied), frame.turned(g, &self.p));
         applied.into_iter().zip(turned).map(|(applied, turned)| g.sub(applied, turned)).collect()
     }
@@ -253,9 +251,12 @@ impl Problem {
         let lagrangian = g.substitute(system.lagrangian, &at);
         let function = g.sub(g.dot(&self.p, &v), g.expand_if_shorter(lagrangian, LONG));
         let w: Vec<Symbol> = self.quasi.free.iter().map(|w| w.symbol).collect();
-        let minus =
-            |by: &[Symbol]| g.gradient(function, by).into_iter().map(|e| g.expand_if_shorter(g.neg(e), LONG)).collect();
-        Some(Whole { balance: minus(&w), rates: minus(&system.positions()) })
+        let minus = |by: &[Symbol]| {
+            g.gradient(function, by).into_iter().map(|e| g.expand_if_shorter(g.neg(e), LONG)).collect::<Vec<Expr>>()
+        };
+        let forces = g.substitute_all(&system.forces, &at);
+        let rates = minus(&system.positions()).into_iter().zip(forces).map(|(e, force)| g.add(e, force)).collect();
+        Some(Whole { balance: minus(&w), rates })
     }
 }
 
@@ -306,12 +307,12 @@ fn hand_over(equations: &mut Equations, system: &System, augmented: &Augmented, 
     let named = |&mu: &Symbol| Named { name: g.name(mu), expression: g.variable(mu) };
     equations.multipliers = augmented.multipliers.iter().map(named).collect();
     equations.free_constants = augmented.free_constants();
-    if system.is_autonomous() {
+    if system.is_autonomous() && !system.has_forces() {
         let energy = g.sub(g.dot(&v, p), system.lagrangian);
         equations.invariants.push(Named { name: "energy".into(), expression: energy });
     }
     for (i, c) in system.coordinates.iter().enumerate() {
-        if g.is_zero(augmented.gradient[i]) {
+        if g.is_zero(augmented.applied[i]) {
             equations.invariants.push(Named { name: format!("momentum {}", c.name), expression: p[i] });
         }
     }

@@ -4,6 +4,8 @@ use equations::{Equations, FreeConstant, LeftOut, Named, Role, StateVariable, St
 use mechanics::{Removal, fresh_symbol};
 use symbolic::{Expr, Graph, Symbol};
 
+use crate::work::Work;
+
 pub(crate) struct Costates {
     /// `G = L + P·B`.
     pub(crate) generating_function: Expr,
@@ -16,23 +18,25 @@ struct Costate {
     symbol: Symbol,
     /// `P(t₀)`.
     start: Symbol,
-    /// `Ṗ = −∂G/∂w`; `None` where `P` is zero throughout.
+    /// `Ṗ = −∂G/∂w − Q_w`; `None` where `P` is zero throughout.
     rate: Option<Expr>,
 }
 
 impl Costates {
     /// Finds the costates that `removal` needs for the rewritten Lagrangian.
     ///
-    /// A memory variable in neither `L` nor a `B` with a costate is a mere quadrature: its costate does not
-    /// move, and is zero if it starts or ends at zero. Their set is the largest consistent one, unless `all`.
-    pub(crate) fn new(g: &Graph, removal: &Removal, lagrangian: Expr, all: bool) -> Self {
+    /// A memory variable in neither `L` nor a `B` with a costate, and on which no force does work, is a mere
+    /// quadrature: its costate does not move, and is zero if it starts or ends at zero. Their set is the
+    /// largest consistent one, unless `all`.
+    pub(crate) fn new(g: &Graph, removal: &Removal, lagrangian: Expr, work: &Work, all: bool) -> Self {
         let memory = &removal.memory;
         let named = |stem: &str| -> Vec<Symbol> {
             memory.iter().map(|w| fresh_symbol(g, &format!("{stem}_{}", g.name(w.symbol)))).collect()
         };
         let (starts, symbols) = (named("P0"), named("P"));
-        let mut zero = vec![!all; memory.len()];
-        let mut reached = vec![lagrangian];
+        let mut zero: Vec<bool> = work.by_memory.iter().map(|&work| !all && g.is_zero(work)).collect();
+        let worked = (0..memory.len()).filter(|&i| !all && !zero[i]).map(|i| memory[i].rate);
+        let mut reached: Vec<Expr> = [lagrangian].into_iter().chain(worked).collect();
         while let Some(e) = reached.pop() {
             for (i, w) in memory.iter().enumerate() {
                 if zero[i] && !g.is_zero(g.derivative(e, w.symbol)) {
@@ -46,7 +50,8 @@ impl Costates {
         let costate = |i: usize| Costate {
             symbol: symbols[i],
             start: starts[i],
-            rate: (!zero[i]).then(|| g.neg(g.derivative(generating_function, memory[i].symbol))),
+            rate: (!zero[i])
+                .then(|| g.neg(g.add(g.derivative(generating_function, memory[i].symbol), work.by_memory[i]))),
         };
         Costates { generating_function, costates: (0..memory.len()).map(costate).collect() }
     }
@@ -69,7 +74,7 @@ impl Costates {
         for (i, p) in self.costates.iter().enumerate() {
             let Some(rate) = p.rate else {
                 let words =
-                    "costate identically zero: neither L nor a rate with a costate contains the variable".into();
+                    "costate identically zero: neither L nor a rate with a costate contains the variable, no force acts on it".into();
                 equations.left_out.push(LeftOut { variables: vec![p.symbol], words });
                 continue;
             };

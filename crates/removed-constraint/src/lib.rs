@@ -12,58 +12,69 @@
 //! `u` and `φ` are free, `x` and `y` are memory.
 //!
 //! **The principle.** The system being unconstrained now, the action `∫ L dt` is stationary for all `δu` that
-//! vanish at both ends. What a variation of `u` does to `w` it does through `B`; `w(t₁)` is free.
+//! vanish at both ends; generalized forces `Q(q, q̇, t)` act by virtual work, `∫ (δL + Q·δq) dt = 0`. What a
+//! variation of `u` does to `w` it does through `B`; `w(t₁)` is free. With `qᵢ(u̇, u, w, t)`,
+//!
+//! ```text
+//! Q·δq = Q_u·δu + Q_u̇·δu̇ + Q_w·δw ,     Q_u = (∂q/∂u)ᵀQ ,   Q_u̇ = (∂q/∂u̇)ᵀQ ,   Q_w = (∂q/∂w)ᵀQ .
+//! ```
 //!
 //! **The equations.** Take `ẇ = B` into account with costates `P ∈ Rᵏ`. With
 //!
 //! ```text
 //! G = L(ü, u̇, u, w, t) + P·B(ü, u̇, u, w, t)
 //!
-//! d²/dt² ∂G/∂ü − d/dt ∂G/∂u̇ + ∂G/∂u = 0 ,      Ṗ = −∂G/∂w ,      ẇ = B .
+//! d²/dt² ∂G/∂ü − d/dt (∂G/∂u̇ + Q_u̇) + ∂G/∂u + Q_u = 0 ,      Ṗ = −∂G/∂w − Q_w ,      ẇ = B .
 //! ```
 //!
-//! (Varying `w` in `∫ [L + P·(B − ẇ)] dt` gives `Ṗ = −G_w` and the boundary term `−P(t₁)·δw(t₁)`; varying `u`
-//! gives the first.) The paper's (34) and (35) are contained: their integration constants `Cᵢ` are `Pᵢ(t₀)`.
+//! (The variation of `∫ [L + P·(B − ẇ)] dt` and the virtual work are `∫ [G_ü·δü + (G_u̇ + Q_u̇)·δu̇ +
+//! (G_u + Q_u)·δu + (G_w + Q_w)·δw − P·δẇ] dt`. By parts, `δw` gives `Ṗ` and the boundary term
+//! `−P(t₁)·δw(t₁)`, `δu` the first. A force on a position that contains `u̇` does work on `δu̇`: it goes with
+//! the momentum.) The paper's (34) and (35) are contained: their integration constants `Cᵢ` are `Pᵢ(t₀)`.
 //! A motion has to choose one of three: *given*, *zero at the start* `P(t₀) = 0`, or *natural at a horizon*
 //! `P(t₁) = 0`, which is what the principle itself asks for: the motion at `t` then depends on `t₁`.
 //!
 //! **One instant, L of first order.** State `(u, u̇, w, P)`, linear in the unknown `ü`:
 //!
 //! ```text
-//! G_u̇u̇ ü = G_u − G_u̇u u̇ − G_u̇w B − G_u̇P Ṗ − G_u̇t .
+//! G_u̇u̇ ü = G_u + Q_u − G_u̇u u̇ − G_u̇w B − G_u̇P Ṗ − G_u̇t − dQ_u̇/dt .
 //! ```
 //!
 //! **One instant, L contains ü.** For those parameters the state also holds `ü` and the momentum
-//! `p = G_u̇ − d/dt G_ü`; then `ṗ = G_u`, and `d/dt G_ü = G_u̇ − p` is linear in the unknown `u⃛`. The
-//! Hessian of `G` in the highest rates has to be regular, else [`DerivationError::SingularHighestHessian`].
+//! `p = G_u̇ + Q_u̇ − d/dt G_ü`; then `ṗ = G_u + Q_u`, and `d/dt G_ü = G_u̇ + Q_u̇ − p` is linear in
+//! the unknown `u⃛`. The Hessian of `G` in the highest rates has to be regular, else
+//! [`DerivationError::SingularHighestHessian`]: also where `ü` is in `Q_u`, `Q_u̇`, `Q_w` alone.
 //!
 //! **What the motion depends on.** On `(q₀, v₀)`, on the constants `P(t₀)` or the horizon, *and on the choice
 //! of `u`*: other parametrizations of the same constraint may give another family of motions.
 //!
-//! **What stays constant.** `u̇·G_u̇ − G` (with `ü`: `u̇·p + ü·G_ü − G`) when nothing depends on time; `G_u̇`
-//! (or `p`) of a parameter that `G` does not contain.
+//! **What stays constant.** `u̇·G_u̇ − G` (with `ü`: `u̇·p + ü·G_ü − G`) when nothing depends on time and no
+//! force acts: its rate is `Q·q̇`. `G_u̇ + Q_u̇` (or `p`) of a parameter with `G_u + Q_u = 0`.
 //!
 //! **Where it breaks.** Where the chart of the removal does. What coordinates, `B` and `G` divide by (for
 //! `tan` the cosine) is in the graph, and is collected as guards; a motion stops where one changes its sign.
 //! Where all `u` are coordinates, and others would do as well, it goes on in those before ([`Chart`]): the
 //! momenta `p_u = G_u̇`, `p_w = −P` belong to the coordinates, whichever of them are called `u`.
 //!
-//! **What is left out.** A memory variable that neither `L` nor a rate with a costate of its own contains is
-//! a quadrature; its costate does not move. Zero at the start or at the free end it is zero throughout, and
-//! takes its terms with it; given, it stays ([`Derivation::all_costates`]).
+//! **What is left out.** A memory variable that neither `L` nor a rate with a costate of its own contains,
+//! and on which no force does work, is a quadrature; its costate does not move. Zero at the start or at the
+//! free end it is zero throughout, and takes its terms with it; given, it stays
+//! ([`Derivation::all_costates`]).
 //!
 //! Source: P. Y. Gao, *Derivation of Lagrange equations of the first-order nonholonomic system based on the
 //! principle of removal of constraint*, 2017.
 
 mod costates;
+mod work;
 
 use costates::Costates;
 use equations::{
     Block, Chart, Derivation, DerivationError, Equations, Formulation, FreeConstant, Named, Role, StateVariable,
-    Statement, refuse_forces,
+    Statement,
 };
 use mechanics::{DisplacementParameter, Removal, Surroundings, System, fresh_symbol, generic_rank};
 use symbolic::{Expr, Graph, Symbol};
+use work::Work;
 
 /// Entry of the table of formulations.
 pub const FORMULATION: Formulation = Formulation {
@@ -71,7 +82,6 @@ pub const FORMULATION: Formulation = Formulation {
     title: "removed constraint",
     needs_removal: true,
     starts_multipliers: false,
-    takes_forces: false,
     parameter: None,
     derive,
 };
@@ -80,8 +90,7 @@ pub const FORMULATION: Formulation = Formulation {
 /// order of the memory variables, then `p(t₀)` of parameters whose second rate `L` contains.
 ///
 /// # Errors
-/// [`DerivationError::RemovalMissing`], [`DerivationError::ForceInVariationalPrinciple`],
-/// [`DerivationError::SingularHighestHessian`].
+/// [`DerivationError::RemovalMissing`], [`DerivationError::SingularHighestHessian`].
 ///
 /// ```
 /// # let mut system = mechanics::System::new(Default::default(), &[("x", "m"), ("y", "m"), ("phi", "rad")]);
@@ -103,18 +112,17 @@ pub const FORMULATION: Formulation = Formulation {
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn derive(system: &System, derivation: &Derivation) -> Result<Equations, DerivationError> {
-    refuse_forces(system, FORMULATION.name)?;
     let removal = derivation.removal.ok_or(DerivationError::RemovalMissing { formulation: FORMULATION.name })?;
     let system = system.clone();
     let g = &system.graph;
     let mut equations = Equations::new(FORMULATION.name, &system);
     let lagrangian = removal.rewrite(&system, system.lagrangian);
-    let costates = Costates::new(g, removal, lagrangian, derivation.all_costates);
+    let work = Work::new(&system, removal);
+    let costates = Costates::new(g, removal, lagrangian, &work, derivation.all_costates);
     let generating = costates.generating_function; // G
-    let parameters = classify(g, removal, generating);
-    let highest: Vec<Symbol> = parameters.iter().map(|p| p.highest).collect();
+    let parameters = classify(g, removal, &[&[generating], &work.all()[..]].concat());
     if parameters.iter().any(|p| p.momentum.is_some()) {
-        require_regular(&system, removal, generating, &parameters, &highest)?;
+        require_regular(&system, removal, (generating, &work), &parameters)?;
     }
 
     let mut flow = costates.flow(removal);
@@ -128,16 +136,16 @@ pub fn derive(system: &System, derivation: &Derivation) -> Result<Equations, Der
     flow.push((system.time, g.one()));
 
     let mut residuals = Vec::new();
-    for p in &parameters {
+    for (i, p) in parameters.iter().enumerate() {
         let u = p.u;
-        let gradient = g.derivative(generating, u.symbol);
-        let first = g.derivative(generating, u.rate);
+        let gradient = g.add(g.derivative(generating, u.symbol), work.by_parameter[i]);
+        let first = g.add(g.derivative(generating, u.rate), work.by_rate[i]);
         let role = if u.coordinate.is_some() { Role::Position } else { Role::DisplacementParameter };
         equations.states.push(state(g, u.symbol, role, g.variable(u.rate), u.symbol));
         let (residual, conserved) = match p.momentum {
-            // d/dt ∂G/∂u̇ − ∂G/∂u = 0
+            // d/dt (∂G/∂u̇ + Q_u̇) − ∂G/∂u − Q_u = 0
             None => (g.sub(g.total_derivative(first, &flow), gradient), first),
-            // d/dt ∂G/∂ü − ∂G/∂u̇ + p = 0,  ṗ = ∂G/∂u
+            // d/dt ∂G/∂ü − ∂G/∂u̇ − Q_u̇ + p = 0,  ṗ = ∂G/∂u + Q_u
             Some(Momentum { state: momentum, start }) => {
                 let second = g.total_derivative(g.derivative(generating, u.second_rate), &flow);
                 equations.states.push(state(
@@ -178,7 +186,7 @@ pub fn derive(system: &System, derivation: &Derivation) -> Result<Equations, Der
     }];
     equations.coordinates = removal.coordinates.clone();
     equations.velocities = removal.velocities(&system);
-    if system.is_autonomous() {
+    if system.is_autonomous() && !system.has_forces() {
         equations.invariants.push(Named { name: "energy".into(), expression: energy(g, generating, &parameters) });
     }
     let mut singular = equations.coordinates.clone();
@@ -198,24 +206,24 @@ pub fn derive(system: &System, derivation: &Derivation) -> Result<Equations, Der
 /// A displacement parameter together with how its equation is solved.
 struct Parameter<'a> {
     u: &'a DisplacementParameter,
-    /// `ü`, or `u̇` where `G` does not contain `ü`: the highest rate in `G`.
+    /// `ü`, or `u̇` where neither `G` nor virtual work contains `ü`: the highest rate.
     highest: Symbol,
     /// What the instant is solved for: the rate of `highest`.
     unknown: Symbol,
-    /// Present where `G` contains `ü`.
+    /// Present where `G` or virtual work contains `ü`.
     momentum: Option<Momentum>,
 }
 
-/// `p = G_u̇ − d/dt G_ü` and its value at the start.
+/// `p = G_u̇ + Q_u̇ − d/dt G_ü` and its value at the start.
 #[derive(Clone, Copy)]
 struct Momentum {
     state: Symbol,
     start: Symbol,
 }
 
-fn classify<'a>(g: &Graph, removal: &'a Removal, generating: Expr) -> Vec<Parameter<'a>> {
+fn classify<'a>(g: &Graph, removal: &'a Removal, terms: &[Expr]) -> Vec<Parameter<'a>> {
     let classified = removal.parameters.iter().map(|u| {
-        if !g.depends_on(generating, u.second_rate) {
+        if !terms.iter().any(|&e| g.depends_on(e, u.second_rate)) {
             return Parameter { u, highest: u.rate, unknown: u.second_rate, momentum: None };
         }
         let name = g.name(u.symbol);
@@ -230,12 +238,16 @@ fn classify<'a>(g: &Graph, removal: &'a Removal, generating: Expr) -> Vec<Parame
 fn require_regular(
     system: &System,
     removal: &Removal,
-    generating: Expr,
+    (generating, work): (Expr, &Work),
     parameters: &[Parameter],
-    highest: &[Symbol],
 ) -> Result<(), DerivationError> {
     let g = &system.graph;
-    let hessian = g.jacobian(&g.gradient(generating, highest), highest);
+    let highest: Vec<Symbol> = parameters.iter().map(|p| p.highest).collect();
+    let mut momenta = g.gradient(generating, &highest);
+    for (i, _) in parameters.iter().enumerate().filter(|(_, p)| p.momentum.is_none()) {
+        momenta[i] = g.add(momenta[i], work.by_rate[i]);
+    }
+    let hessian = g.jacobian(&momenta, &highest);
     // without a value at any point tried, the start will tell
     let rank = generic_rank(g, &hessian, &Surroundings::of_zero(system.parameter_values()));
     let Some(rank) = rank.filter(|&rank| rank < highest.len()) else { return Ok(()) };

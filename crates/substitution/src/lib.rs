@@ -21,7 +21,6 @@ pub static SUBSTITUTION: Formulation = Formulation {
     title: "substitution (wrong on purpose)",
     needs_removal: true,
     starts_multipliers: false,
-    takes_forces: false,
     parameter: None,
     derive: derive_for,
 };

@@ -4,19 +4,24 @@
 //! `f(q, v, t) = 0 ∈ Rʰ`. Write `A = ∂f/∂v` (h×n).
 //!
 //! **The principle.** Among all curves with fixed ends that satisfy the constraint, the motion makes the
-//! action stationary. Varied curves satisfy the constraint too, so to first order
+//! action stationary; generalized forces `Q(q, v, t)`, where there are any, act by virtual work. Varied
+//! curves satisfy the constraint too, so to first order
 //!
 //! ```text
-//! δ ∫ L dt = 0     for all δq with   f_v δq̇ + f_q δq = 0 ,   δq = 0 at both ends.
+//! ∫ (δL + Q·δq) dt = 0     for all δq with   f_v δq̇ + f_q δq = 0 ,   δq = 0 at both ends.
 //! ```
 //!
-//! **The equations.** Multipliers `μ(t) ∈ Rʰ` take the constraint into the Lagrangian, `𝓛 = L + μ·f`, and
+//! **The equations.** Multipliers `μ(t) ∈ Rʰ` take the constraint into the Lagrangian, `𝓛 = L + μ·f`. On
+//! admissible `δq` the term `μ·δf` adds nothing, so `∫ (δ𝓛 + Q·δq) dt = 0`; by parts, with `μ` such that the
+//! balance holds for `h` of the `δqᵢ`, the other `n − h` being free,
 //!
 //! ```text
-//! d/dt ∂𝓛/∂v − ∂𝓛/∂q = 0 ,        f(q, v, t) = 0 .
+//! d/dt ∂𝓛/∂v − ∂𝓛/∂q = Q ,        f(q, v, t) = 0 .
 //! ```
 //!
-//! Written out, `d/dt L_v − L_q = (f_qᵀ − Ȧᵀ) μ − Aᵀ μ̇`: where Chetaev's `Aᵀ λ` stood, the *curvature*
+//! `Q` is work on `δq` and not on `δf`: it stands beside `∂𝓛/∂q`, and `μ` is not in it.
+//!
+//! Written out, `d/dt L_v − L_q = Q + (f_qᵀ − Ȧᵀ) μ − Aᵀ μ̇`: where Chetaev's `Aᵀ λ` stood, the *curvature*
 //! `f_qᵀ − Ȧᵀ` of the constraint enters too, and `−μ̇` corresponds to `λ`. The curvature vanishes where `f`
 //! is a total time derivative; for all integrable constraints the two formulations agree. `μᵢ` has the unit
 //! of action over that of `∫ fᵢ dt`.
@@ -24,33 +29,33 @@
 //! **One instant, multiplier form** ([`derive()`]). In the state `(q, v, μ)`, linear in `(a, μ̇)`:
 //!
 //! ```text
-//! [ 𝓛_vv  Aᵀ ] [ a  ]   [ 𝓛_q − 𝓛_vq v − 𝓛_vt ]
-//! [ A      0 ] [ μ̇ ] = [ −(f_q v + f_t)       ]
+//! [ 𝓛_vv  Aᵀ ] [ a  ]   [ 𝓛_q + Q − 𝓛_vq v − 𝓛_vt ]
+//! [ A      0 ] [ μ̇ ] = [ −(f_q v + f_t)           ]
 //! ```
 //!
 //! **One instant, costate form** ([`derive_costate_form`]). With costates `p = ∂𝓛/∂v`, the state `(q, p)`,
 //!
 //! ```text
-//! p − L_v − Aᵀ μ = 0 ,   f = 0    determine (v, μ);        q̇ = v ,   ṗ = ∂𝓛/∂q .
+//! p − L_v − Aᵀ μ = 0 ,   f = 0    determine (v, μ);        q̇ = v ,   ṗ = ∂𝓛/∂q + Q .
 //! ```
 //!
-//! These are Hamilton's equations of `H(q, p, t)` = stationary value of `p·v − L` over `v` with `f = 0`. The
-//! constraint holds at every instant, not only by its derivative. For `L` kinetic energy the motions are the
-//! normal sub-Riemannian geodesics. The two forms are derived differently and have to agree.
+//! Without `Q` these are Hamilton's equations of `H(q, p, t)` = stationary value of `p·v − L` over `v` with
+//! `f = 0`. The constraint holds at every instant, not only by its derivative. For `L` kinetic energy the
+//! motions are the normal sub-Riemannian geodesics. The two forms are derived differently and have to
+//! agree.
 //!
 //! **What the motion depends on.** `(q₀, v₀)` *and* `μ₀ ∈ Rʰ`: one start, an `h`-parameter family of motions.
 //!
-//! **What stays constant.** The energy `v·𝓛_v − 𝓛` when nothing depends on time; the momentum `∂𝓛/∂vᵢ` of
-//! every coordinate that neither `L` nor `f` contains.
-//!
-//! A generalized force has no place in a variational principle and is refused.
+//! **What stays constant.** The energy `v·𝓛_v − 𝓛` when nothing depends on time and no force acts, its rate
+//! being `Q·v − ∂𝓛/∂t`; the momentum `∂𝓛/∂vᵢ` of every coordinate that neither `L` nor `f` contains and on
+//! which no force acts.
 //!
 //! Sources: V. V. Kozlov 1983; V. I. Arnold, V. V. Kozlov, A. I. Neishtadt, *Mathematical Aspects of
 //! Classical and Celestial Mechanics*, chapter 1.
 
 use equations::{
     Block, ConstraintProjection, Derivation, DerivationError, Equations, Formulation, FreeConstant, Named, Role,
-    StateVariable, Statement, refuse_forces,
+    StateVariable, Statement,
 };
 use mechanics::{System, fresh_symbol};
 use symbolic::{Expr, Graph, Symbol};
@@ -61,7 +66,6 @@ pub const FORMULATION: Formulation = Formulation {
     title: "vakonomic",
     needs_removal: false,
     starts_multipliers: true,
-    takes_forces: false,
     parameter: None,
     derive,
 };
@@ -72,12 +76,11 @@ pub const COSTATE_FORM: Formulation = Formulation {
     title: "vakonomic, costate form",
     needs_removal: false,
     starts_multipliers: true,
-    takes_forces: false,
     parameter: None,
     derive: derive_costate_form,
 };
 
-/// What all forms of the vakonomic equations start from: `𝓛 = L + μ·f` and its derivatives.
+/// What all forms of the vakonomic equations start from: `𝓛 = L + μ·f`, its derivatives, and `Q`.
 pub struct Augmented {
     /// Symbols of `μ` at an instant, one per constraint.
     pub multipliers: Vec<Symbol>,
@@ -87,8 +90,8 @@ pub struct Augmented {
     pub lagrangian: Expr,
     /// `∂𝓛/∂v = L_v + Aᵀ μ`, length n.
     pub momenta: Vec<Expr>,
-    /// `∂𝓛/∂q`, length n.
-    pub gradient: Vec<Expr>,
+    /// `∂𝓛/∂q + Q`, length n: what changes the momenta.
+    pub applied: Vec<Expr>,
 }
 
 impl Augmented {
@@ -102,7 +105,8 @@ impl Augmented {
         let lagrangian = graph.add(system.lagrangian, coupling);
         let momenta = graph.gradient(lagrangian, &system.velocities());
         let gradient = graph.gradient(lagrangian, &system.positions());
-        Augmented { multipliers, starts, lagrangian, momenta, gradient }
+        let applied = gradient.into_iter().zip(&system.forces).map(|(l_q, &force)| graph.add(l_q, force)).collect();
+        Augmented { multipliers, starts, lagrangian, momenta, applied }
     }
 
     /// `μ₀`, which `(q₀, v₀)` does not determine.
@@ -114,7 +118,7 @@ impl Augmented {
 /// Derives the multiplier form: states `(q, v, μ)`, unknowns `(a, μ̇)`, free constants `μ₀`.
 ///
 /// # Errors
-/// [`DerivationError::ForceInVariationalPrinciple`] where a generalized force acts.
+/// None: every system has these equations.
 ///
 /// ```
 /// # let mut system = mechanics::System::new(Default::default(), &[("x", "m"), ("y", "m"), ("phi", "rad")]);
@@ -131,7 +135,6 @@ impl Augmented {
 pub fn derive(system: &System, _: &Derivation) -> Result<Equations, DerivationError> {
     let system = system.clone();
     let g = &system.graph;
-    refuse_forces(&system, FORMULATION.name)?;
     let mut equations = Equations::new(FORMULATION.name, &system);
     let augmented = Augmented::new(&system);
     let (q, v, a) = (system.positions(), system.velocities(), system.accelerations());
@@ -140,9 +143,9 @@ pub fn derive(system: &System, _: &Derivation) -> Result<Equations, DerivationEr
     let mut flow = system.flow();
     flow.extend(augmented.multipliers.iter().zip(&rates).map(|(&mu, &rate)| (mu, g.variable(rate))));
 
-    // d/dt ∂𝓛/∂v − ∂𝓛/∂q = 0
+    // d/dt ∂𝓛/∂v − ∂𝓛/∂q − Q = 0
     let mut residuals: Vec<Expr> =
-        (0..q.len()).map(|i| g.sub(g.total_derivative(augmented.momenta[i], &flow), augmented.gradient[i])).collect();
+        (0..q.len()).map(|i| g.sub(g.total_derivative(augmented.momenta[i], &flow), augmented.applied[i])).collect();
     equations.statements = statements(&system, &residuals);
     // d/dt f = 0
     residuals.extend(system.constraints.iter().map(|&f| g.total_derivative(f, &flow)));
@@ -176,7 +179,7 @@ pub fn derive(system: &System, _: &Derivation) -> Result<Equations, DerivationEr
 /// solved by Newton's method from the last accepted state.
 ///
 /// # Errors
-/// [`DerivationError::ForceInVariationalPrinciple`] where a generalized force acts.
+/// None: every system has these equations.
 ///
 /// ```
 /// # let mut system = mechanics::System::new(Default::default(), &[("x", "m"), ("y", "m"), ("phi", "rad")]);
@@ -186,7 +189,7 @@ pub fn derive(system: &System, _: &Derivation) -> Result<Equations, DerivationEr
 /// let equations = vakonomic::derive_costate_form(&system, &equations::Derivation::default())?;
 /// let line = |i: usize| equations.graph.plain(equations.statements[i].left);
 /// assert_eq!(line(0), "mu_1*sin(phi) - x' + p_x");
-/// // p_phi' = ∂𝓛/∂phi
+/// // p_phi' = ∂𝓛/∂phi + Q_phi, here without a force
 /// let p_phi = equations.states.iter().find(|y| equations.graph.name(y.symbol) == "p_phi").unwrap();
 /// assert_eq!(equations.graph.plain(p_phi.rate), "-mu_1*(x'*cos(phi) + y'*sin(phi))");
 /// # Ok::<(), Box<dyn std::error::Error>>(())
@@ -194,7 +197,6 @@ pub fn derive(system: &System, _: &Derivation) -> Result<Equations, DerivationEr
 pub fn derive_costate_form(system: &System, _: &Derivation) -> Result<Equations, DerivationError> {
     let system = system.clone();
     let g = &system.graph;
-    refuse_forces(&system, COSTATE_FORM.name)?;
     let mut equations = Equations::new(COSTATE_FORM.name, &system);
     let augmented = Augmented::new(&system);
     let (q, v) = (system.positions(), system.velocities());
@@ -211,7 +213,7 @@ pub fn derive_costate_form(system: &System, _: &Derivation) -> Result<Equations,
     }
     for (i, &symbol) in costates.iter().enumerate() {
         let start = g.substitute(augmented.momenta[i], &at_start);
-        equations.states.push(StateVariable { symbol, role: Role::Costate, rate: augmented.gradient[i], start });
+        equations.states.push(StateVariable { symbol, role: Role::Costate, rate: augmented.applied[i], start });
     }
     equations.blocks = vec![Block {
         unknowns: v.iter().chain(&augmented.multipliers).copied().collect(),
@@ -270,12 +272,12 @@ fn finish(equations: &mut Equations, system: System, augmented: Augmented) {
     equations.multipliers =
         augmented.multipliers.iter().map(|&mu| Named { name: g.name(mu), expression: g.variable(mu) }).collect();
     equations.free_constants = augmented.free_constants();
-    if system.is_autonomous() {
+    if system.is_autonomous() && !system.has_forces() {
         let action = g.dot(&g.variables(&system.velocities()), &augmented.momenta);
         equations.invariants.push(Named { name: "energy".into(), expression: g.sub(action, augmented.lagrangian) });
     }
     for (i, c) in system.coordinates.iter().enumerate() {
-        if g.is_zero(augmented.gradient[i]) {
+        if g.is_zero(augmented.applied[i]) {
             let name = format!("momentum {}", c.name);
             equations.invariants.push(Named { name, expression: augmented.momenta[i] });
         }

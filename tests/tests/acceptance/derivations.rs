@@ -15,14 +15,9 @@ fn derived(scene: &Scene, name: &Formulation, removal: Option<&Removal>) -> Equa
 
 /// Every formulation of a scene, removals included.
 fn all(scene: &Scene) -> Vec<Equations> {
-    let variational = !scene.system.has_forces();
-    let mut all = vec![derived(scene, CHETAEV, None)];
-    if variational {
-        all.push(derived(scene, VAKONOMIC, None));
-        all.push(derived(scene, VAKONOMIC_COSTATE, None));
-        all.extend(regular_removals(scene).iter().map(|r| derived(scene, REMOVED_CONSTRAINT, Some(r))));
-    }
-    all
+    let own = [CHETAEV, VAKONOMIC, VAKONOMIC_COSTATE].map(|name| derived(scene, name, None));
+    let removed = regular_removals(scene);
+    own.into_iter().chain(removed.iter().map(|r| derived(scene, REMOVED_CONSTRAINT, Some(r)))).collect()
 }
 
 #[test]
@@ -68,9 +63,9 @@ fn states_can_be_put_back_onto_the_constraint_where_they_can_leave_it() {
 
 #[test]
 fn first_order_is_said_where_no_second_rate_is_needed() {
-    for scene in constrained_scenes().iter().filter(|s| !s.system.has_forces()) {
-        for removal in regular_removals(scene) {
-            let equations = derived(scene, REMOVED_CONSTRAINT, Some(&removal));
+    for scene in constrained_scenes() {
+        for removal in regular_removals(&scene) {
+            let equations = derived(&scene, REMOVED_CONSTRAINT, Some(&removal));
             let said = equations.left_out.iter().any(|l| l.words.starts_with("second rates"));
             let states = equations.states.iter().any(|y| y.role == Role::ParameterSecondRate);
             assert_eq!(said, !states, "{}, {}", scene.name, removal.name);

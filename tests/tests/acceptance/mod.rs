@@ -6,6 +6,7 @@ mod charts;
 mod closed_forms;
 mod derivations;
 mod ensembles;
+mod forces;
 mod frames;
 mod leading_term;
 mod linearization;

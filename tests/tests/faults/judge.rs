@@ -129,8 +129,8 @@ pub fn judge(truth: &Truth, principle: Principle, samples: &[Sample], reading: &
             *constant &= small(applied[i]) && !(pulls && reactions.row(i).iter().any(|x| !small(*x)));
         }
         let power = reactions.transpose() * DVector::from_row_slice(&at.v);
-        let driven = forces.iter().chain(power.iter()).any(|x| !small(*x));
-        constant[truth.n] &= small(truth.by_time(&at)) && !(pulls && driven);
+        let driven = forces.iter().any(|x| !small(*x)) || pulls && power.iter().any(|x| !small(*x));
+        constant[truth.n] &= small(truth.by_time(&at)) && !driven;
         let values = truth.momenta(&at).into_iter().chain([truth.energy(&at)]);
         for (i, (name, value)) in reading.invariants.iter().zip(&instant.now.invariants).enumerate() {
             let wanted = values.clone().zip(0..).find(|(_, place)| truth.conserved(*place) == *name);

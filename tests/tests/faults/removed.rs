@@ -7,7 +7,7 @@ use symbolic::{Evaluator, Symbol};
 
 use super::judge::{Findings, common};
 use super::reading::{Instant, Reading, Sample};
-use super::truth::{Truth, slope, slopes};
+use super::truth::{Point, Truth, slope, slopes};
 
 pub struct Parametrized {
     /// Numbers of parameters and of memory variables.
@@ -57,9 +57,22 @@ impl Parametrized {
         truth.lagrangian(t, q, v) + p.iter().zip(rates).map(|(p, rate)| p * rate).sum::<f64>()
     }
 
-    /// `∂G/∂x`
+    /// `Q` at the variables.
+    fn forces(&self, truth: &Truth, t: f64, x: &[f64]) -> Vec<f64> {
+        let mut values = Vec::new();
+        let [q, v, _] = self.at(truth, &mut values, t, x).map(<[f64]>::to_vec);
+        truth.forces(&Point { t, q, v, mu: Vec::new() })
+    }
+
+    /// `∂G/∂x + (∂q/∂x)ᵀ Q`
     fn gradient(&self, truth: &Truth, t: f64, x: &[f64], p: &[f64]) -> Vec<f64> {
-        slopes(x, |x| vec![self.generating(truth, t, x, p)]).concat()
+        let forces = self.forces(truth, t, x);
+        let both = |x: &[f64]| {
+            let mut values = Vec::new();
+            let [q, ..] = self.at(truth, &mut values, t, x);
+            vec![self.generating(truth, t, x, p) + q.iter().zip(&forces).map(|(q, force)| q * force).sum::<f64>()]
+        };
+        slopes(x, both).concat()
     }
 
     /// Values of `(u, u̇, ü, w)` and their rates, where the equations say them.
@@ -121,7 +134,8 @@ pub fn judge(truth: &Truth, removed: &Parametrized, samples: &[Sample], reading:
             moves[i] |= gradient[i].abs() > 1e-6 * (1.0 + size);
         }
         let by_time = slope(|s| vec![removed.generating(truth, at.t + s, &x, &p)]);
-        moves[m] |= by_time[0].abs() > 1e-6 * (1.0 + size);
+        let driven = removed.forces(truth, at.t, &x);
+        moves[m] |= by_time.iter().chain(&driven).any(|x| x.abs() > 1e-6 * (1.0 + size));
         let power: f64 = (0..m).map(|i| x[m + i] * momentum[i] + x[2 * m + i] * gradient[2 * m + i]).sum();
         let energy = power - removed.generating(truth, at.t, &x, &p);
         for (i, (name, value)) in reading.invariants.iter().zip(&instant.now.invariants).enumerate() {
