@@ -16,12 +16,13 @@ use substitution::SUBSTITUTION;
 /// # Errors
 /// Where a motion cannot be read off.
 pub fn bodies(comparison: &mut Comparison) -> Result<Option<File>> {
-    let (shown, message) = (drawn(comparison), message(comparison));
+    let mut shown = drawn(comparison);
+    shown.retain(|&run| comparison.runs[run].choice.formulation != &SUBSTITUTION);
+    let message = message(comparison, &shown);
     let mut motions = Vec::new();
     for (i, run) in comparison.runs.iter_mut().enumerate() {
         let (style, mut label) = (style(run), run.choice.label.clone());
-        let is_shown = shown.contains(&i) && run.choice.formulation != &SUBSTITUTION;
-        let (true, Ok(motion)) = (is_shown, &mut run.outcome) else { continue };
+        let (true, Ok(motion)) = (shown.contains(&i), &mut run.outcome) else { continue };
         if let Ending::Stopped { t, .. } = motion.ending {
             label += &format!("; stops at {} s", short(t));
         }
@@ -37,9 +38,7 @@ pub fn bodies(comparison: &mut Comparison) -> Result<Option<File>> {
 }
 
 /// What the picture shows: how many motions the formulations have from the start of the scene.
-fn message(comparison: &Comparison) -> String {
-    let mut shown = drawn(comparison);
-    shown.retain(|&run| comparison.runs[run].choice.formulation != &SUBSTITUTION);
+fn message(comparison: &Comparison, shown: &[usize]) -> String {
     let verdict = |a: usize, b: usize| comparison.pair(a, b).map(|pair| &pair.gap.verdict);
     let pairs =
         |run: usize| shown.iter().take_while(move |&&other| other != run).map(move |&other| verdict(other, run));

@@ -1,17 +1,17 @@
 //! Removed-constraint equations of an ice sledge against `G` written by hand, derivatives by differences.
 
-use equations::{Compiled, Derivation};
+#[path = "../../chetaev/tests/differences.rs"]
+#[allow(dead_code, reason = "shared with tests of other formulations")]
+mod differences;
+
+use differences::{derivative, rates};
+use equations::Derivation;
 use mechanics::{Removal, State, System};
 
 /// `G(u̇, w, P)` for `x' = u' cos φ`, `y' = u' sin φ`; the parameters are `u` and `φ`.
 fn generating(speeds: [f64; 2], [phi, x]: [f64; 2], [p_x, p_y]: [f64; 2]) -> f64 {
     let [u, turn] = speeds;
     (u * u + turn * turn) / 2.0 + x + p_x * u * phi.cos() + p_y * u * phi.sin()
-}
-
-fn derivative(f: impl Fn(f64) -> f64) -> f64 {
-    let h = 1e-2;
-    (8.0 * (f(h) - f(-h)) - (f(2.0 * h) - f(-2.0 * h))) / (12.0 * h)
 }
 
 #[test]
@@ -27,8 +27,7 @@ fn parameters_balance_and_costates_follow_the_memory() {
     let names: Vec<String> = equations.states.iter().map(|state| equations.graph.name(state.symbol)).collect();
     let value = |name: &str| values.iter().find(|(known, _)| *known == name).map_or(0.0, |(_, value)| *value);
     let y: Vec<f64> = names.iter().map(|name| value(name)).collect();
-    let mut rates = vec![0.0; y.len()];
-    Compiled::new(&equations).expect("compiled").rates(0.0, &y, &mut rates).expect("regular");
+    let rates = rates(&equations, &y);
     let rate = |name: &str| rates[names.iter().position(|known| known == name).unwrap_or_else(|| panic!("{names:?}"))];
 
     let at = |name: &str, s: f64| value(name) + rate(name) * s;
