@@ -40,12 +40,23 @@ pub const CLASSICS: &[(&str, &str)] = beside!(
 /// Systems whose steady motions are looked at: in no comparison.
 pub const STEADY: &[(&str, &str)] = &[("bicycle", include_str!("../scenes/bicycle.toml"))];
 
+/// Systems whose constraints are kept by reactions of their own kind: in no report.
+pub const PRESCRIBED: &[(&str, &str)] = &[
+    ("servo-pendulum", include_str!("../scenes/servo-pendulum.toml")),
+    ("one-motor-robot", include_str!("../scenes/one-motor-robot.toml")),
+    ("rudder-skate", include_str!("../scenes/rudder-skate.toml")),
+];
+
 /// Names and texts of scenes.
 type Group = &'static [(&'static str, &'static str)];
 
 /// The scenes that are found by their names and not made for them, and what each list of them is called.
-pub const GROUPS: [(&str, Group); 3] =
-    [("compared in the reports", SCENES), ("more from the literature", CLASSICS), ("steady motions", STEADY)];
+pub const GROUPS: [(&str, Group); 4] = [
+    ("compared in the reports", SCENES),
+    ("more from the literature", CLASSICS),
+    ("steady motions", STEADY),
+    ("reactions of their own", PRESCRIBED),
+];
 
 /// Name and text of all of them.
 pub fn built_in() -> impl Iterator<Item = &'static (&'static str, &'static str)> {

@@ -40,21 +40,38 @@
 //! itself is a virtual displacement, `A v = 0` wherever `f = 0` (constraints homogeneous in `v`; *not* affine
 //! ones). The momentum `∂L/∂vᵢ` of a coordinate not in `L` on which no reaction or force acts.
 //!
-//! Sources: N. G. Chetaev 1932; Ju. I. Neimark, N. A. Fufaev, *Dynamics of Nonholonomic Systems*, 1972.
+//! **Reactions of one's own** ([`PRESCRIBED`]). Where a motor, a servo or friction keeps the constraint, what is
+//! virtual is not `A δq = 0`. Conditions `w(q, v, t) ∈ Rʰ` say what is: with `W = ∂w/∂v`
+//!
+//! ```text
+//! ( d/dt ∂L/∂v − ∂L/∂q − Q ) · δq = 0  wherever  W δq = 0 :     d/dt ∂L/∂v − ∂L/∂q = Q + Wᵀ λ ,     f = 0 .
+//! ```
+//!
+//! Only `A` of the first rows of the saddle-point system becomes `W`. It has one solution where `W M⁻¹ Aᵀ` is
+//! regular. Reactions do no work where `W v = 0`; else they feed the motion. `w = f` is Chetaev.
+//!
+//! Sources: N. G. Chetaev 1932; P. Appell 1911 and H. Béghin 1922 (servo constraints); C.-M. Marle 1998; Ju. I.
+//! Neimark, N. A. Fufaev, *Dynamics of Nonholonomic Systems*, 1972.
 
-use equations::{Block, ConstraintProjection, Derivation, DerivationError, Equations, Formulation, Named, Statement};
+use equations::{Block, Derivation, DerivationError, Equations, Formulation, Named, Needs};
 use mechanics::{System, fresh_symbol};
-use symbolic::{Expr, Symbol};
+use symbolic::{Expr, Matrix, Symbol};
 
 /// Entry of the table of formulations.
-pub const FORMULATION: Formulation = Formulation {
-    name: "chetaev",
-    title: "Chetaev",
-    needs_removal: false,
+pub const FORMULATION: Formulation =
+    Formulation { name: "chetaev", title: "Chetaev", needs: Needs::Nothing, starts_multipliers: false, derive };
+
+/// Entry of the table: virtual displacements as the system prescribes them, `W δq = 0`.
+pub const PRESCRIBED: Formulation = Formulation {
+    name: "prescribed",
+    title: "prescribed δq",
+    needs: Needs::VirtualConditions,
     starts_multipliers: false,
-    parameter: None,
-    derive,
+    derive: derive_prescribed,
 };
+
+const WITH_CHETAEV: &str = "constraint Jacobian of full row rank, mass matrix regular on its kernel";
+const WITH_PRESCRIBED: &str = "W M⁻¹ Aᵀ regular: virtual displacements leave the reactions that keep the constraint";
 
 /// Derives the Chetaev equations with states `(q, v)` and unknowns `(a, λ)`.
 ///
@@ -75,36 +92,59 @@ pub const FORMULATION: Formulation = Formulation {
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn derive(system: &System, _: &Derivation) -> Result<Equations, DerivationError> {
+    Ok(balance(FORMULATION.name, system, &system.constraint_jacobian()))
+}
+
+/// Derives `E = Q + Wᵀ λ`, `f = 0` with states `(q, v)` and unknowns `(a, λ)`.
+///
+/// # Errors
+/// [`DerivationError::VirtualConditionsMissing`], [`DerivationError::VirtualConditions`].
+///
+/// ```
+/// # let mut system = mechanics::System::new(Default::default(), &[("x", "m"), ("y", "m"), ("phi", "rad")]);
+/// # system.lagrangian = system.expression("(x'^2 + y'^2 + phi'^2)/2 + x")?;
+/// # system.constraints = vec![system.expression("y'*cos(phi) - x'*sin(phi)")?];
+/// // the ice sledge, kept on its course by the rudder's torque: δφ = 0
+/// system.virtual_conditions = vec![system.expression("phi'")?];
+/// let equations = (chetaev::PRESCRIBED.derive)(&system, &equations::Derivation::default())?;
+/// let line = |i: usize| equations.graph.plain(equations.statements[i].left);
+/// assert_eq!([line(0), line(1), line(2)], ["x'' - 1", "y''", "phi'' - lambda_1"]);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+fn derive_prescribed(system: &System, _: &Derivation) -> Result<Equations, DerivationError> {
+    let (formulation, found) = (PRESCRIBED.name, system.virtual_conditions.len());
+    match system.constraints.len() {
+        _ if found == 0 => Err(DerivationError::VirtualConditionsMissing { formulation }),
+        expected if found != expected => Err(DerivationError::VirtualConditions { formulation, found, expected }),
+        _ => {
+            let rows = system.graph.jacobian(&system.virtual_conditions, &system.velocities());
+            Ok(balance(formulation, system, &rows))
+        }
+    }
+}
+
+/// `E = Q + Wᵀ λ`, `f = 0` for the rows `W` (h×n).
+fn balance(formulation: &'static str, system: &System, rows: &Matrix) -> Equations {
     let system = system.clone();
     let g = &system.graph;
-    let mut equations = Equations::new(FORMULATION.name, &system);
+    let mut equations = Equations::new(formulation, &system);
     let (q, v, a) = (system.positions(), system.velocities(), system.accelerations());
     let flow = system.flow();
+    let prescribed = rows.entries() != system.constraint_jacobian().entries();
     let lambda: Vec<Symbol> = (1..=system.constraints.len()).map(|i| fresh_symbol(g, &format!("lambda_{i}"))).collect();
 
-    // d/dt ∂L/∂v − ∂L/∂q − Q − Aᵀλ = 0
-    let jacobian = g.jacobian(&system.constraints, &v);
+    // d/dt ∂L/∂v − ∂L/∂q − Q − Wᵀλ = 0
+    let jacobian = system.constraint_jacobian();
     let momenta = g.gradient(system.lagrangian, &v);
     let gradient = g.gradient(system.lagrangian, &q);
-    let reaction = g.transpose_vec(&jacobian, &g.variables(&lambda));
+    let reaction = g.transpose_vec(rows, &g.variables(&lambda));
     let mut residuals: Vec<Expr> = (0..q.len())
         .map(|i| {
             let inertia = g.total_derivative(momenta[i], &flow);
             g.sub(inertia, g.sum(&[gradient[i], system.forces[i], reaction[i]]))
         })
         .collect();
-    equations.statements = (0..q.len())
-        .map(|i| Statement {
-            meaning: format!("balance for {}", system.coordinates[i].name),
-            left: residuals[i],
-            right: g.zero(),
-        })
-        .chain(system.constraints.iter().map(|&f| Statement {
-            meaning: "constraint".into(),
-            left: f,
-            right: system.graph.zero(),
-        }))
-        .collect();
+    equations.state_balances(&system, &residuals);
     // d/dt f = 0
     residuals.extend(system.constraints.iter().map(|&f| g.total_derivative(f, &flow)));
 
@@ -113,33 +153,20 @@ pub fn derive(system: &System, _: &Derivation) -> Result<Equations, DerivationEr
         unknowns: a.iter().chain(&lambda).copied().collect(),
         residuals,
         guess: Vec::new(),
-        regular: "constraint Jacobian of full row rank, mass matrix regular on its kernel",
+        regular: if prescribed { WITH_PRESCRIBED } else { WITH_CHETAEV },
     }];
     let moves = |&a: &Expr| g.symbols_of(a).iter().any(|symbol| v.contains(symbol));
-    if (0..jacobian.rows()).any(|i| jacobian.row(i).iter().any(moves)) {
+    if prescribed {
+        equations.guard_regular(g);
+    } else if jacobian.entries().iter().any(moves) {
         equations.guard_rank(g);
     }
     equations.coordinates = g.variables(&q);
     equations.velocities = g.variables(&v);
     equations.multipliers = lambda.iter().map(|&s| Named { name: g.name(s), expression: g.variable(s) }).collect();
-    equations.projection = (!system.constraints.is_empty()).then(|| ConstraintProjection {
-        velocities: v.clone(),
-        constraints: system.constraints.clone(),
-        jacobian: jacobian.clone(),
-        metric: g.jacobian(&momenta, &v),
-    });
-
-    if system.is_autonomous() && !system.has_forces() && system.is_workless() {
-        equations.invariants.push(Named { name: "energy".into(), expression: system.energy() });
-    }
-    for i in 0..q.len() {
-        let free =
-            g.is_zero(gradient[i]) && g.is_zero(system.forces[i]) && jacobian.column(i).iter().all(|&e| g.is_zero(e));
-        if free {
-            let name = format!("momentum {}", system.coordinates[i].name);
-            equations.invariants.push(Named { name, expression: momenta[i] });
-        }
-    }
+    equations.return_onto_constraints(&system);
+    let energy = system.is_workless(rows).then(|| system.energy());
+    equations.add_invariants(&system, energy, &momenta, &[&gradient, &system.forces, &reaction]);
     equations.graph = system.graph;
-    Ok(equations)
+    equations
 }

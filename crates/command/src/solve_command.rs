@@ -165,7 +165,7 @@ pub(crate) fn choice(
 ) -> Result<Choice> {
     let no_such_form = || format!("--form {word}: {} has no such form", own.name);
     let (entry, _) = formulation_in(word, own).with_context(no_such_form)?;
-    let removal = if entry.needs_removal { Some(pick_removal(scene, arguments.removal.as_deref())?) } else { None };
+    let removal = if entry.needs_removal() { Some(pick_removal(scene, arguments.removal.as_deref())?) } else { None };
     if removal.is_none() && (arguments.removal.is_some() || arguments.constants.is_some()) {
         bail!("--removal and --constants belong to the removed-constraint formulation, not to {}", entry.name);
     }

@@ -2,8 +2,8 @@
 
 use std::collections::{HashMap, HashSet};
 
-use equations::{Derivation, Equations, Formulation, Named};
-use mechanics::{ConstantsRule, Recombination, Removal, RemovalError, State, System};
+use equations::{Derivation, Equations, Formulation, Named, Needs};
+use mechanics::{ConstantsRule, Recombination, Removal, RemovalError, State, System, check_reactions};
 use scene::Scene;
 use symbolic::{Expr, Range, Symbol};
 
@@ -32,11 +32,9 @@ pub fn choices(scene: &Scene) -> Vec<Choice> {
 /// [`choices`] of the formulations that are wanted.
 pub fn choices_among(scene: &Scene, wanted: impl Fn(&Formulation) -> bool) -> Vec<Choice> {
     let mut choices = Vec::new();
-    let parameters: Vec<String> = scene.system.parameters.iter().map(|p| scene.system.graph.name(p.symbol)).collect();
-    let has = |name: &str| parameters.iter().any(|p| p == name);
-    let suits = |entry: &&'static Formulation| wanted(entry) && entry.parameter.is_none_or(has);
+    let suits = |entry: &&'static Formulation| wanted(entry) && entry.needs.are_met_by(&scene.system);
     for formulation in FORMULATIONS.iter().copied().filter(suits) {
-        let removals = if formulation.needs_removal { removals(scene).unwrap_or_default() } else { Vec::new() };
+        let removals = if formulation.needs_removal() { removals(scene).unwrap_or_default() } else { Vec::new() };
         if removals.is_empty() {
             choices.push(without_removal(formulation, scene));
         }
@@ -175,6 +173,10 @@ fn in_variables_of(equations: &Equations, system: &System, es: &[Expr]) -> Vec<E
 }
 
 fn derive_combined(system: &System, start: &State, choice: &Choice) -> Result<Equations, SolveError> {
+    let prescribed = choice.formulation.needs == Needs::VirtualConditions;
+    if prescribed && system.virtual_conditions.len() == system.constraints.len() {
+        check_reactions(system, start)?;
+    }
     let combined = Recombination::at(system, start);
     if choice.removal.is_some() {
         // the constraints stand no more in the equations, but they gave the start
@@ -184,6 +186,12 @@ fn derive_combined(system: &System, start: &State, choice: &Choice) -> Result<Eq
     }
     match combined? {
         None => derive_from(system, Some(start), choice),
+        // multipliers belong to the rows prescribed, which stay as they are
+        Some(combined) if prescribed => {
+            let mut equations = derive_from(&combined.system(system), Some(start), choice)?;
+            equations.lost_digits = combined.ratio.recip();
+            Ok(equations)
+        }
         Some(combined) => {
             Ok(derive_from(&combined.system(system), Some(start), choice)?.with_multipliers_restored(&combined))
         }

@@ -10,7 +10,7 @@ use scene::Scene;
 
 use crate::runs::{Decided, Pair};
 use crate::table::is_in_table;
-use crate::{Answer, CHETAEV, Comparison, Growth, LeadingTerm, Membership, Run, Verdict, membership};
+use crate::{Answer, CHETAEV, Comparison, Growth, LeadingTerm, Membership, PRESCRIBED, Run, Verdict, membership};
 
 /// Two results that exclude each other.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -166,11 +166,13 @@ impl Comparison {
     }
 
     /// Whether T1 says that two runs agree: Chetaev's, vakonomic motions and removals by coordinates do for
-    /// an integrable constraint.
+    /// an integrable constraint; not where it creeps, nor where reactions are prescribed.
     fn agree_if_integrable(&self, first: usize, second: usize) -> bool {
         let is_bound = |run: &Run| {
             let by_coordinates = |u: &mechanics::DisplacementParameter| u.coordinate.is_some();
             is_in_table(run.choice.formulation)
+                && run.choice.formulation != PRESCRIBED
+                && run.outcome.as_ref().is_ok_and(|motion| !motion.equations.creeps)
                 && run.choice.removal.as_ref().is_none_or(|removal| removal.parameters.iter().all(by_coordinates))
         };
         self.integrability.is_integrable() && [first, second].into_iter().all(|i| is_bound(&self.runs[i]))

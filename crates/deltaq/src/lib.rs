@@ -2,8 +2,8 @@
 //!
 //! Given `L(q, v, t)`, `q ∈ Rⁿ`, and constraints `f(q, v, t) = 0 ∈ Rʰ`, what are the equations of motion?
 //! Chetaev's, the vakonomic and the removed-constraint formulation answer differently where `f` cannot be
-//! integrated; `kappa` is a family between the first two. Their derivations are the front pages of the crates
-//! of these names. This crate puts them into one table, integrates them with one time loop, and says whether
+//! integrated; `kappa` is a family between the first two, `first-order` its end at Chetaev, with slip, and
+//! `prescribed` has reactions of the user's own. Their derivations are the front pages of the crates. This crate puts them into one table, integrates them with one time loop, and says whether
 //! two motions are the same.
 //!
 //! - [`FORMULATIONS`]: the table: [`CHETAEV`], [`VAKONOMIC`], …; [`formulation`] reads a name.
@@ -72,6 +72,7 @@ mod ensemble;
 mod equations_text;
 mod error;
 mod error_estimate;
+mod first_trace;
 mod fit;
 mod fits;
 mod form;
@@ -127,6 +128,7 @@ pub use ensemble::{
 pub use equations_text::{EquationStyle, equations_text, shared_text, system_text};
 pub use error::SolveError;
 pub use error_estimate::{ErrorEstimate, TRUSTED, error_estimate, error_estimates};
+pub use first_trace::{FirstTrace, first_trace};
 pub use fit::best_fit;
 pub use fits::{Fit, Fits, FittedMotion};
 pub use form::{ChosenForm, FORM_WORDS, Form, derive_in_form, formulation_in};
@@ -144,7 +146,7 @@ pub use single_run::SingleRun;
 pub use steps::{STEP_LIMIT, Stepping, Steps, discrete_of, solve_by_steps};
 pub use sweep::{Sweep, SweepPoint};
 pub use table::{
-    CHETAEV, FORMS, FORMULATIONS, KAPPA, REDUCED_CHETAEV, REDUCED_VAKONOMIC, REMOVED_CONSTRAINT, UnknownFormulation,
-    VAKONOMIC, VAKONOMIC_COSTATE, formulation,
+    CHETAEV, FIRST_ORDER, FORMS, FORMULATIONS, KAPPA, PRESCRIBED, REDUCED_CHETAEV, REDUCED_VAKONOMIC,
+    REMOVED_CONSTRAINT, UnknownFormulation, VAKONOMIC, VAKONOMIC_COSTATE, formulation,
 };
 pub use varying::Varying;

@@ -253,7 +253,7 @@ pub fn solve(
     let by = motion.method.as_ref().map(|chosen| chosen.method);
     motion.doubt = Doubt::of([&steps[0], &steps[1]], motion.end, motion.is_complete(), by);
     if motion.doubt.is_none() && !settings.plain {
-        motion.doubt = motion.broken(Watch::new(setting.system, &[])?);
+        motion.doubt = motion.broken(Watch::new(setting.system, &motion.equations, &[])?);
         if motion.doubt.is_none() {
             motion.count_round_off(setting, &Settings { method: by, ..settings.clone() })?;
         }
@@ -308,7 +308,7 @@ fn run(setting: Setting, prepared: &mut Prepared, settings: &Settings) -> Result
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn solve_choice(scene: &Scene, choice: &Choice, settings: &Settings) -> Result<Motion, SolveError> {
-    if choice.removal.is_none() && choice.formulation.needs_removal {
+    if choice.removal.is_none() && choice.formulation.needs_removal() {
         removals(scene)?;
     }
     solve_from(setting(scene), choice, settings)

@@ -14,8 +14,14 @@ pub const REMOVED_CONSTRAINT: &Formulation = &removed_constraint::FORMULATION;
 /// The family between Chetaev's and the vakonomic equations.
 pub const KAPPA: &Formulation = &kappa::FORMULATION;
 
+/// The constraint law of first order.
+pub const FIRST_ORDER: &Formulation = &first_order::FORMULATION;
+/// Virtual displacements as the system prescribes them.
+pub const PRESCRIBED: &Formulation = &chetaev::PRESCRIBED;
+
 /// Every formulation, in the order of reports. A further one is one crate, and its constant here.
-pub const FORMULATIONS: &[&Formulation] = &[CHETAEV, VAKONOMIC, VAKONOMIC_COSTATE, REMOVED_CONSTRAINT, KAPPA];
+pub const FORMULATIONS: &[&Formulation] =
+    &[CHETAEV, VAKONOMIC, VAKONOMIC_COSTATE, REMOVED_CONSTRAINT, KAPPA, FIRST_ORDER, PRESCRIBED];
 
 /// Chetaev's equations in quasi-velocities.
 pub const REDUCED_CHETAEV: &Formulation = &reduction::REDUCED_CHETAEV;

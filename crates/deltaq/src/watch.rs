@@ -1,7 +1,7 @@
 //! What has to hold along a motion whatever was derived: the scene's own constraints, and what is listed as
 //! constant. `f` is compiled from the scene alone, so a term that a derivation lost shows here.
 
-use equations::{Named, Outputs};
+use equations::{Equations, Named, Outputs};
 use mechanics::System;
 use symbolic::{Bounded, CompileError, Evaluator, Scalar, Symbol};
 
@@ -20,7 +20,7 @@ pub(crate) type Terms<'a> = &'a mut dyn FnMut() -> Option<Vec<f64>>;
 /// Holds `f = 0` and the invariants against the error estimate.
 #[derive(Clone)]
 pub(crate) struct Watch {
-    /// `f(t, q, v)` and parameters that vary.
+    /// `f(t, q, v)` and parameters that vary; nothing where constraints creep.
     constraints: Evaluator<Bounded>,
     inputs: Vec<Bounded>,
     /// Units of the coordinates.
@@ -34,13 +34,14 @@ pub(crate) struct Watch {
 }
 
 impl Watch {
-    /// Of a system with these varying parameters.
-    pub(crate) fn new(system: &System, parameters: &[Symbol]) -> Result<Watch, CompileError> {
+    /// Of a motion by `equations` of a system with these varying parameters.
+    pub(crate) fn new(system: &System, equations: &Equations, parameters: &[Symbol]) -> Result<Watch, CompileError> {
         let mut inputs = vec![system.time];
         inputs.extend(system.positions().into_iter().chain(system.velocities()).chain(parameters.iter().copied()));
         let mut values = system.parameter_values();
         values.retain(|symbol, _| !parameters.contains(symbol));
-        let constraints = Evaluator::new(system.graph.compile(&inputs, &system.constraints, &values)?);
+        let kept = if equations.creeps { &[][..] } else { &system.constraints };
+        let constraints = Evaluator::new(system.graph.compile(&inputs, kept, &values)?);
         let inputs = vec![Bounded::from_f64(0.0); inputs.len()];
         let (start, sizes, differences) = Default::default();
         let units = system.coordinates.iter().map(|c| c.unit.clone()).collect();

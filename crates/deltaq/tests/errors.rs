@@ -42,7 +42,7 @@ fn choice(formulation: &'static Formulation, removal: Option<&Removal>, constant
 }
 
 fn solve(scene: &Scene, formulation: &'static Formulation, constants: ConstantsRule) -> Result<Motion, SolveError> {
-    let removal = formulation.needs_removal.then(|| &scene.removals[0]);
+    let removal = formulation.needs_removal().then(|| &scene.removals[0]);
     solve_choice(scene, &choice(formulation, removal, constants), &Settings::default())
 }
 

@@ -194,7 +194,7 @@ fn an_unknown_formulation_is_refused_by_name() {
     assert_eq!(
         error,
         "unknown formulation `vakonomik`, did you mean `vakonomic`?; known: chetaev, vakonomic, vakonomic-costate, \
-         removed-constraint, kappa, chetaev-reduced, vakonomic-reduced"
+         removed-constraint, kappa, first-order, prescribed, chetaev-reduced, vakonomic-reduced"
     );
     assert!(formulation("control").is_err() && formulation("").is_err() && formulation("Chetaev").is_err());
     for own in FORMULATIONS.iter().chain(FORMS) {

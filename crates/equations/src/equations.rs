@@ -160,6 +160,8 @@ pub struct Equations {
     pub watched: usize,
     /// Projection onto the constraint, where the states can leave it.
     pub projection: Option<ConstraintProjection>,
+    /// Whether the constraints are not kept, but creep.
+    pub creeps: bool,
     /// Expressions in `(t, y)` whose zero is a singularity of the equations.
     pub guards: Vec<Expr>,
     /// Those of the guards at which formulas, as they were written, cease to have values.
@@ -189,7 +191,7 @@ impl Equations {
             graph: Graph::new(),
             time: system.time,
             parameters: system.parameter_values(),
-            given: [&[system.lagrangian], &system.constraints[..], &system.forces].concat(),
+            given: system.written(),
             definitions: Vec::new(),
             states: Vec::new(),
             blocks: Vec::new(),
@@ -200,6 +202,7 @@ impl Equations {
             invariants: Vec::new(),
             watched: 0,
             projection: None,
+            creeps: false,
             guards: Vec::new(),
             domains: Vec::new(),
             silent: Vec::new(),
@@ -229,6 +232,14 @@ impl Equations {
     pub fn guard(&mut self, g: &Graph, of: &[Expr]) {
         self.guards = self.singularities(g, of);
         self.guard_determinants(g, |role| matches!(role, Role::Multiplier | Role::MemoryCostate));
+    }
+
+    /// Guards against equations of the instant that become singular along a motion; of more than twelve
+    /// unknowns, whose determinants are too long, only what they divide by is watched.
+    pub fn guard_regular(&mut self, g: &Graph) {
+        if self.blocks.iter().all(|block| block.unknowns.len() <= 12) {
+            self.guard_determinants(g, |role| matches!(role, Role::Position | Role::Velocity));
+        }
     }
 
     /// Guards against equations of the instant that become singular where `∂f/∂v` of constraints not linear

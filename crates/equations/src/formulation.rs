@@ -4,6 +4,7 @@ use std::fmt;
 
 use crate::Equations;
 use mechanics::{Removal, RemovalError, State, System};
+use symbolic::Symbol;
 
 /// What a derivation may depend on besides the system.
 #[derive(Clone, Copy, Debug, Default)]
@@ -25,13 +26,34 @@ pub enum DerivationError {
         /// Name of the formulation.
         formulation: &'static str,
     },
-    /// A parameter of the formulation is not among those of the system.
-    #[error("{formulation}: a parameter `{parameter}` is needed; give it in the scene, or set it: {parameter}=1")]
+    /// A parameter of the formulation is not among those of the system, or is a number of the system itself.
+    #[error(
+        "{formulation}: a parameter `{parameter}` is needed that stands in none of L, f and Q; give it in the scene, or set \
+         it: {parameter}=1"
+    )]
     ParameterMissing {
         /// Name of the formulation.
         formulation: &'static str,
         /// Name of the parameter.
         parameter: &'static str,
+    },
+    /// The system says nothing of its virtual displacements.
+    #[error(
+        "{formulation}: conditions on virtual displacements are needed, as many as constraints; give `virtual` in `[system]`"
+    )]
+    VirtualConditionsMissing {
+        /// Name of the formulation.
+        formulation: &'static str,
+    },
+    /// There are not as many conditions on virtual displacements as constraints.
+    #[error("{formulation}: {found} conditions on virtual displacements for {expected} constraints")]
+    VirtualConditions {
+        /// Name of the formulation.
+        formulation: &'static str,
+        /// Conditions found.
+        found: usize,
+        /// Constraints.
+        expected: usize,
     },
     /// The constraints cannot be solved for the velocities.
     #[error("{formulation}: {error}")]
@@ -61,6 +83,43 @@ pub enum DerivationError {
     },
 }
 
+/// What a formulation needs of a system beyond `L`, `f` and `Q`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Needs {
+    /// Nothing.
+    Nothing,
+    /// A parametrization that removes the constraints: [`Derivation::removal`].
+    Removal,
+    /// One at least of these parameters, which are numbers of the law and stand in none of `L`, `f`, `Q`.
+    Parameters(&'static [&'static str]),
+    /// Conditions on virtual displacements: [`System::virtual_conditions`].
+    VirtualConditions,
+}
+
+impl Needs {
+    /// Whether `system` has it, removals aside, which are made.
+    pub fn are_met_by(self, system: &System) -> bool {
+        match self {
+            Needs::Nothing | Needs::Removal => true,
+            Needs::Parameters(names) => names.iter().any(|name| parameter(system, name).is_some()),
+            Needs::VirtualConditions => !system.virtual_conditions.is_empty(),
+        }
+    }
+
+    /// The names of parameters.
+    pub fn parameters(self) -> &'static [&'static str] {
+        if let Needs::Parameters(names) = self { names } else { &[] }
+    }
+}
+
+/// The parameter of a law: one of `system` by that name, which stands in none of `L`, `f` and `Q`.
+pub fn parameter(system: &System, name: &str) -> Option<Symbol> {
+    let g = &system.graph;
+    let symbol = system.parameters.iter().map(|p| p.symbol).find(|&symbol| g.name(symbol) == name)?;
+    let mut expressions = std::iter::once(&system.lagrangian).chain(&system.constraints).chain(&system.forces);
+    (!expressions.any(|&e| g.depends_on(e, symbol))).then_some(symbol)
+}
+
 /// One entry of the table of formulations; equal where the names are.
 #[derive(Clone, Copy)]
 pub struct Formulation {
@@ -68,14 +127,19 @@ pub struct Formulation {
     pub name: &'static str,
     /// Name for the reader.
     pub title: &'static str,
-    /// Whether [`Derivation::removal`] is needed.
-    pub needs_removal: bool,
+    /// What it needs beyond `L`, `f` and `Q`. Systems without it are not compared in this formulation.
+    pub needs: Needs,
     /// Whether its free constants are multipliers `μ₀` at the start, one per constraint.
     pub starts_multipliers: bool,
-    /// The parameter needed beyond `L`, `f` and `Q`. Systems without it are not compared in this formulation.
-    pub parameter: Option<&'static str>,
     /// The derivation.
     pub derive: fn(&System, &Derivation) -> Result<Equations, DerivationError>,
+}
+
+impl Formulation {
+    /// Whether [`Derivation::removal`] is needed.
+    pub fn needs_removal(&self) -> bool {
+        self.needs == Needs::Removal
+    }
 }
 
 impl PartialEq for Formulation {

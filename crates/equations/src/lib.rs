@@ -68,6 +68,7 @@ mod jacobian;
 mod lanes;
 mod leave_out;
 mod outputs;
+mod parts;
 mod plan;
 mod planned;
 mod projection;
@@ -83,7 +84,7 @@ pub use definitions::Definitions;
 pub use equations::{
     Block, Chart, ConstraintProjection, Equations, FreeConstant, LeftOut, Named, Role, StateVariable, Statement,
 };
-pub use formulation::{Derivation, DerivationError, Formulation};
+pub use formulation::{Derivation, DerivationError, Formulation, Needs, parameter};
 pub use lanes::LaneEquations;
 pub use outputs::{Cost, Outputs};
 pub use plan::{Collected, Plan};

@@ -31,8 +31,8 @@
 //! Sources: C. Carathéodory 1933; A. V. Karapetyan 1981; V. V. Kozlov 1992.
 
 use equations::{
-    Block, ConstraintProjection, Derivation, DerivationError, Equations, Formulation, FreeConstant, Named, Role,
-    StateVariable, Statement,
+    Block, Derivation, DerivationError, Equations, Formulation, FreeConstant, Named, Needs, Role, StateVariable,
+    parameter,
 };
 use mechanics::{System, fresh_symbol};
 use symbolic::{Expr, Symbol};
@@ -41,9 +41,8 @@ use symbolic::{Expr, Symbol};
 pub const FORMULATION: Formulation = Formulation {
     name: "kappa",
     title: "between, κ",
-    needs_removal: false,
+    needs: Needs::Parameters(&["kappa"]),
     starts_multipliers: true,
-    parameter: Some("kappa"),
     derive,
 };
 
@@ -69,7 +68,7 @@ pub fn derive(system: &System, _: &Derivation) -> Result<Equations, DerivationEr
     let system = system.clone();
     let g = &system.graph;
     let missing = DerivationError::ParameterMissing { formulation: FORMULATION.name, parameter: "kappa" };
-    let kappa = system.parameters.iter().find(|p| g.name(p.symbol) == "kappa").ok_or(missing)?;
+    let kappa = parameter(&system, "kappa").ok_or(missing)?;
     let mut equations = Equations::new(FORMULATION.name, &system);
     let (q, v, a) = (system.positions(), system.velocities(), system.accelerations());
     let fresh = |stem: &str, tail: &str| -> Vec<Symbol> {
@@ -88,13 +87,10 @@ pub fn derive(system: &System, _: &Derivation) -> Result<Equations, DerivationEr
     let mut residuals: Vec<Expr> = (0..q.len())
         .map(|i| {
             let inertia = g.sub(g.total_derivative(momenta[i], &flow), gradient[i]);
-            g.sum(&[inertia, g.neg(system.forces[i]), g.mul(g.variable(kappa.symbol), pull[i])])
+            g.sum(&[inertia, g.neg(system.forces[i]), g.mul(g.variable(kappa), pull[i])])
         })
         .collect();
-    let statement = |meaning: String, left: Expr| Statement { meaning, left, right: g.zero() };
-    let balances = residuals.iter().zip(&system.coordinates);
-    equations.statements = balances.map(|(&e, c)| statement(format!("balance for {}", c.name), e)).collect();
-    equations.statements.extend(system.constraints.iter().map(|&f| statement("constraint".into(), f)));
+    equations.state_balances(&system, &residuals);
     // d/dt f = 0
     residuals.extend(system.constraints.iter().map(|&f| g.total_derivative(f, &flow)));
 
@@ -114,22 +110,10 @@ pub fn derive(system: &System, _: &Derivation) -> Result<Equations, DerivationEr
     equations.guard(g, &system.constraints);
     equations.coordinates = g.variables(&q);
     equations.velocities = g.variables(&v);
-    equations.projection = (!system.constraints.is_empty()).then(|| ConstraintProjection {
-        velocities: v.clone(),
-        constraints: system.constraints.clone(),
-        jacobian: jacobian.clone(),
-        metric: system.velocity_hessian(),
-    });
-    if system.is_autonomous() && !system.has_forces() && system.is_workless() {
-        let energy = g.sub(g.dot(&g.variables(&v), &momenta), augmented);
-        equations.invariants.push(Named { name: "energy".into(), expression: energy });
-    }
-    for (i, c) in system.coordinates.iter().enumerate() {
-        let applied = [gradient[i], system.forces[i]];
-        if applied.iter().all(|&e| g.is_zero(e)) && jacobian.column(i).iter().all(|&e| g.is_zero(e)) {
-            equations.invariants.push(Named { name: format!("momentum {}", c.name), expression: momenta[i] });
-        }
-    }
+    equations.return_onto_constraints(&system);
+    let energy = g.sub(g.dot(&g.variables(&v), &momenta), augmented);
+    let energy = system.is_workless(&jacobian).then_some(energy);
+    equations.add_invariants(&system, energy, &momenta, &[&gradient, &system.forces, &pull]);
     equations.graph = system.graph;
     Ok(equations)
 }

@@ -18,5 +18,5 @@ pub use data::{Completion, StartData, StartNumbers, StartShape};
 pub use error::{Quantity, StartError};
 pub use project::project_velocity;
 pub use recombination::Recombination;
-pub use regularity::check_regularity;
+pub use regularity::{check_reactions, check_regularity};
 pub use removal_start::{RemovalProgram, RemovalStart, complete_removal_start};

@@ -62,6 +62,9 @@ pub struct System {
     pub constraints: Vec<Expr>,
     /// `Q(q, v, t)`, one per coordinate; the number 0 where no force was given.
     pub forces: Vec<Expr>,
+    /// `w(q, v, t)`, none, or as many as constraints: displacements with `∂w/∂v δq = 0` are virtual, where the
+    /// constraint is not kept by reactions along its own normals. No formulation but one looks at them.
+    pub virtual_conditions: Vec<Expr>,
     /// What has to be no less than zero for `L`, `f` and `Q` as they were written, where their simpler
     /// forms do not say so: `√x √x` is `x`, for `x ≥ 0`.
     pub domains: Vec<Expr>,
@@ -105,6 +108,7 @@ impl System {
             lagrangian: graph.zero(),
             constraints: Vec::new(),
             forces: vec![graph.zero(); coordinates.len()],
+            virtual_conditions: Vec::new(),
             domains: Vec::new(),
             breakpoints: Vec::new(),
             watched: Vec::new(),
@@ -173,6 +177,11 @@ impl System {
         rates
     }
 
+    /// `L`, `f`, `Q` and `w`, as they were given.
+    pub fn written(&self) -> Vec<Expr> {
+        [&[self.lagrangian], &self.constraints[..], &self.forces, &self.virtual_conditions].concat()
+    }
+
     /// Constraint Jacobian `A = ∂f/∂v`, h×n.
     pub fn constraint_jacobian(&self) -> Matrix {
         self.graph.jacobian(&self.constraints, &self.velocities())
@@ -204,13 +213,13 @@ impl System {
         self.linear_constraints().is_ok()
     }
 
-    /// Whether reactions do no work: `A v = 0` wherever `f = 0`, `A = ∂f/∂v`.
+    /// Whether reactions along the rows `W` do no work: `W v = 0` wherever `f = 0`.
     ///
-    /// That is recognized where `A v` is a multiple of `f` with a constant factor: `f` homogeneous of degree
-    /// `d` in `v` gives `A v = d f` (Euler).
-    pub fn is_workless(&self) -> bool {
+    /// That is recognized where `W v` is a multiple of `f` with a constant factor: for `W = ∂f/∂v`, `f`
+    /// homogeneous of degree `d` in `v` gives `W v = d f` (Euler).
+    pub fn is_workless(&self, rows: &Matrix) -> bool {
         let g = &self.graph;
-        let work = g.mat_vec(&self.constraint_jacobian(), &g.variables(&self.velocities()));
+        let work = g.mat_vec(rows, &g.variables(&self.velocities()));
         self.constraints.iter().zip(work).all(|(&f, av)| {
             (1..=4).any(|degree| {
                 let rest = g.sub(av, g.mul(g.integer(degree), f));

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use anyhow::Result;
-use deltaq::{CHETAEV, Comparison, REMOVED_CONSTRAINT, Run, VAKONOMIC, Verdict};
+use deltaq::{CHETAEV, Comparison, PRESCRIBED, REMOVED_CONSTRAINT, Run, VAKONOMIC, Verdict};
 use equations::Outputs;
 use mechanics::Observables;
 use scene::Scene;
@@ -24,7 +24,7 @@ pub(crate) fn style(run: &Run) -> Style {
 
 /// The runs drawn: the first of each formulation, without the costate form (the vakonomic motion again).
 pub(crate) fn drawn(comparison: &Comparison) -> Vec<usize> {
-    [CHETAEV, VAKONOMIC, REMOVED_CONSTRAINT, &SUBSTITUTION]
+    [CHETAEV, VAKONOMIC, REMOVED_CONSTRAINT, PRESCRIBED, &SUBSTITUTION]
         .iter()
         .filter_map(|own| comparison.run(own))
         .filter(|&i| comparison.runs[i].outcome.is_ok())

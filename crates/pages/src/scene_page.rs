@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use anyhow::{Context, Result};
-use deltaq::{Comparison, EquationStyle, derive_at, equations_text};
+use deltaq::{CHETAEV, Comparison, EquationStyle, FirstTrace, derive_at, equations_text};
 
 use crate::bodies::bodies;
 use crate::markdown::{folded, image, inert};
@@ -77,6 +77,7 @@ pub fn scene_page(comparison: &mut Comparison, pictures: &[File]) -> Result<Stri
     page += "Gaps are lengths in the kinetic metric $\\sqrt{\\Delta q^T |M| \\Delta q}$, in m √kg where $L$ is in J; times in s. Two motions are *different* where the gap, or the \
              difference of a coordinate, is over ten times the sum of both error estimates, or where that is proved. *Same* says what was measured: up to the end, neither is, and the estimates \
              are below 1e-8 of the way.\n";
+    page += &first_trace(comparison)?;
     let growth = tables::growth(comparison);
     if !growth.is_empty() {
         let _ = writeln!(page, "\n### How the gaps start\n\n{growth}");
@@ -100,6 +101,30 @@ pub fn scene_page(comparison: &mut Comparison, pictures: &[File]) -> Result<Stri
     Ok(page)
 }
 
+/// Instants at which the trace is looked at.
+const TRACED: usize = 64;
+
+/// How large the first trace of vakonomic mechanics is in Chetaev's motion.
+fn first_trace(comparison: &mut Comparison) -> Result<String> {
+    let Some(run) = comparison.run(CHETAEV) else { return Ok(String::new()) };
+    let Comparison { scene, runs, .. } = comparison;
+    let Ok(motion) = &mut runs[run].outcome else { return Ok(String::new()) };
+    let Some(FirstTrace { slope, acceleration }) = deltaq::first_trace(scene, motion, TRACED)? else {
+        return Ok(String::new());
+    };
+    let size = match slope / acceleration {
+        part if part > 1e-9 => format!(
+            "changes accelerations along Chetaev's motion by {} per ms of $\\varepsilon$, {} of the largest of them",
+            short(1e-3 * slope),
+            short(1e-3 * part)
+        ),
+        _ => "changes no acceleration along Chetaev's motion".into(),
+    };
+    Ok(format!(
+        "\nThe first trace of vakonomic mechanics, the force $-\\varepsilon C\\lambda$ of the formulation `first-order`, {size} (lengths in the kinetic metric).\n"
+    ))
+}
+
 fn list(names: &[String]) -> String {
     if names.is_empty() {
         "nothing".into()
@@ -115,6 +140,12 @@ fn system(comparison: &Comparison) -> String {
     let _ = writeln!(text, "```math\nL = {}\n```", g.latex(system.lagrangian));
     for &f in &system.constraints {
         let _ = writeln!(text, "```math\n{} = 0\n```", g.latex(f));
+    }
+    for &w in &system.virtual_conditions {
+        let _ = writeln!(text, "```math\nw = {}\n```", g.latex(w));
+    }
+    if !system.virtual_conditions.is_empty() {
+        text += "Virtual displacements, as prescribed: $\\partial w/\\partial\\dot q\\,\\delta q = 0$.\n\n";
     }
     for (c, &force) in system.coordinates.iter().zip(&system.forces).filter(|(_, force)| !g.is_zero(**force)) {
         let _ = writeln!(text, "```math\nQ_{{{}}} = {}\n```", g.latex_symbol(c.position), g.latex(force));

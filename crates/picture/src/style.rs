@@ -76,6 +76,8 @@ impl Style {
             ("removed-constraint", Style::RemovedConstraint),
             ("substitution", Style::Substituted),
             ("kappa", Style::Member(7)),
+            ("first-order", Style::Member(11)),
+            ("prescribed", Style::Member(3)),
         ];
         styles.into_iter().find(|(start, _)| name.starts_with(start)).map(|(_, style)| style)
     }

@@ -129,10 +129,10 @@ fn chosen(
     removal: Option<&str>,
     constants: Option<ConstantsRule>,
 ) -> PyResult<Choice> {
-    if removal.is_some() && !formulation.needs_removal {
+    if removal.is_some() && !formulation.needs_removal() {
         return Err(PyValueError::new_err(format!("the {} formulation takes no removal", formulation.name)));
     }
-    let removal = if formulation.needs_removal { Some(pick(scene, removal)?) } else { None };
+    let removal = if formulation.needs_removal() { Some(pick(scene, removal)?) } else { None };
     let usual = || removal.as_ref().map_or_else(|| default_constants(formulation, scene), |r| r.constants.clone());
     let constants = constants.unwrap_or_else(usual);
     Ok(Choice { label: formulation.title.into(), formulation, removal, constants })

@@ -65,6 +65,7 @@ pub(crate) struct Arguments<'py> {
     pub(crate) tables: Vec<(&'static str, Option<Table<'py>>)>,
     pub(crate) lagrangian: String,
     pub(crate) constraints: Vec<String>,
+    pub(crate) virtual_conditions: Vec<String>,
     pub(crate) start_equations: Vec<String>,
     pub(crate) time: f64,
     pub(crate) project: bool,
@@ -98,15 +99,15 @@ pub(crate) fn write(arguments: &Arguments<'_>) -> PyResult<String> {
         }
         let _ = writeln!(text, "{} = {{ {} }}", quoted(name), said.join(", "));
     }
-    let _ = writeln!(text, "[system]\nlagrangian = {}\nconstraints = [", quoted(&arguments.lagrangian));
-    for constraint in &arguments.constraints {
-        let _ = writeln!(text, "  {},", quoted(constraint));
-    }
-    let _ = writeln!(text, "]\n[start]\ntime = {:?}\nproject = {}", arguments.time, arguments.project);
-    if !arguments.start_equations.is_empty() {
-        let equations: Vec<String> = arguments.start_equations.iter().map(|e| format!("  {},\n", quoted(e))).collect();
-        let _ = writeln!(text, "equations = [\n{}]", equations.concat());
-    }
+    let list = |key: &str, written: &[String]| {
+        let lines: Vec<String> = written.iter().map(|e| format!("  {},\n", quoted(e))).collect();
+        if lines.is_empty() { String::new() } else { format!("{key} = [\n{}]\n", lines.concat()) }
+    };
+    let _ = writeln!(text, "[system]\nlagrangian = {}", quoted(&arguments.lagrangian));
+    text += &list("constraints", &arguments.constraints);
+    text += &list("virtual", &arguments.virtual_conditions);
+    let _ = writeln!(text, "[start]\ntime = {:?}\nproject = {}", arguments.time, arguments.project);
+    text += &list("equations", &arguments.start_equations);
     for (section, table) in &arguments.tables {
         let Some(table) = table else { continue };
         let _ = writeln!(text, "[{section}]");

@@ -42,7 +42,8 @@ impl State {
 ///
 /// coordinates: names of the n coordinates. lagrangian: L(q, v, t). constraints: f(q, v, t), h of them, each
 /// to be zero. parameters: name to number. definitions: name to expression, usable in all others. units:
-/// coordinate to text. forces: coordinate to expression, generalized forces Q. observables: name to
+/// coordinate to text. forces: coordinate to expression, generalized forces Q. virtual: what rates of virtual
+/// displacements satisfy, h of them, for the formulation prescribed. observables: name to
 /// expression, what motions list besides; invariants: likewise, what should stay constant. view: name of a
 /// body to {"shape": ..., "size": [...], "at": ..., "rotation": ...}, as in [view.NAME]. start: every
 /// coordinate to its start. velocities: some ("x'") to their start; constraints supply the others, and
@@ -103,7 +104,7 @@ impl System {
     #[expect(clippy::too_many_arguments, reason = "named in Python, and most of them left out")]
     #[pyo3(signature = (
         coordinates, lagrangian, constraints=None, *, start, parameters=None, definitions=None, units=None,
-        forces=None, observables=None, invariants=None, view=None, velocities=None, start_equations=None, guess=None, project=false, removals=None, multipliers=None, time=0.0, duration=1.0,
+        r#virtual=None, forces=None, observables=None, invariants=None, view=None, velocities=None, start_equations=None, guess=None, project=false, removals=None, multipliers=None, time=0.0, duration=1.0,
         breakpoints=None, name="system", title=None, notes=""
     ))]
     fn new(
@@ -115,6 +116,7 @@ impl System {
         parameters: Option<Table<'_>>,
         definitions: Option<Table<'_>>,
         units: Option<Table<'_>>,
+        r#virtual: Option<Formulas>,
         forces: Option<Table<'_>>,
         observables: Option<Table<'_>>,
         invariants: Option<Table<'_>>,
@@ -150,6 +152,7 @@ impl System {
             ],
             lagrangian: lagrangian.0,
             constraints: constraints.map_or(Vec::new(), |constraints| constraints.0),
+            virtual_conditions: r#virtual.map_or(Vec::new(), |conditions| conditions.0),
             start_equations: start_equations.map_or(Vec::new(), |equations| equations.0),
             time,
             project,
@@ -222,6 +225,13 @@ impl System {
     fn constraints(&self) -> Vec<String> {
         let scene = self.scene();
         scene.system.constraints.iter().map(|&f| scene.system.graph.plain(f)).collect()
+    }
+
+    /// What rates of virtual displacements satisfy, as text, length h; empty where that is not prescribed.
+    #[getter]
+    fn r#virtual(&self) -> Vec<String> {
+        let scene = self.scene();
+        scene.system.virtual_conditions.iter().map(|&w| scene.system.graph.plain(w)).collect()
     }
 
     /// The generalized forces other than zero, as text, by coordinate.

@@ -162,3 +162,27 @@ def test_one_exception_for_each_error(sledge, system):
     for name in ("DerivationError", "RemovalError", "StartError", "CompileError", "EvaluationError", "BoundaryError"):
         assert issubclass(getattr(deltaq, name), deltaq.SolveError)
     assert issubclass(deltaq.SolveError, deltaq.DeltaqError) and issubclass(deltaq.SceneError, deltaq.DeltaqError)
+
+
+def test_reactions_of_ones_own():
+    # a skate whose bow is kept from going sideways by a force at its stern, a distance c behind
+    c, m, inertia, speed, turn = 0.25, 80.0, 12.0, 0.8, 1.1
+    skate = deltaq.System(
+        ["x", "y", "phi"],
+        "m/2*(x'^2 + y'^2) + J/2*phi'^2",
+        ["y'*cos(phi) - x'*sin(phi)"],
+        virtual=["y'*cos(phi) - x'*sin(phi) - c*phi'"],
+        parameters={"m": m, "J": inertia, "c": c},
+        start={"x": 0, "y": 0, "phi": 0},
+        velocities={"x'": speed, "phi'": turn},
+    )
+    assert len(skate.virtual) == 1 and deltaq.parse(skate.to_toml()).virtual == skate.virtual
+    times = np.linspace(0, 1, 5)
+    decay = c * m * speed / inertia
+    found = skate.solve("prescribed", times=times).velocities[:, 2]
+    np.testing.assert_allclose(found, turn * np.exp(-decay * times), rtol=1e-11)
+    np.testing.assert_allclose(skate.solve("chetaev", times=times).velocities[:, 2], turn, rtol=1e-12)
+    with pytest.raises(deltaq.SceneError, match="2 conditions in `virtual` for 1 constraints"):
+        deltaq.System(
+            ["x", "y"], "x'^2 + y'^2", ["y' - x"], virtual=["x'", "y'"], start={"x": 0, "y": 0}, velocities={"x'": 1}
+        )

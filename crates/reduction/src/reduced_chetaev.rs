@@ -32,7 +32,8 @@ use crate::chain::Chain;
 use crate::expressions::{SHORT, Sparse, products, sparse_rows};
 use crate::{Frame, QuasiVelocities, cheapest, matrix_moves};
 use equations::{
-    Block, Definitions, Derivation, DerivationError, Equations, Formulation, Named, Role, StateVariable, Statement,
+    Block, Definitions, Derivation, DerivationError, Equations, Formulation, Named, Needs, Role, StateVariable,
+    Statement,
 };
 use mechanics::{System, fresh_symbol};
 use symbolic::{Expr, Symbol};
@@ -41,9 +42,8 @@ use symbolic::{Expr, Symbol};
 pub const REDUCED_CHETAEV: Formulation = Formulation {
     name: "chetaev-reduced",
     title: "Chetaev, quasi-velocities",
-    needs_removal: false,
+    needs: Needs::Nothing,
     starts_multipliers: false,
-    parameter: None,
     derive: derive_chetaev,
 };
 

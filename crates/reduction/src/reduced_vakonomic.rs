@@ -37,7 +37,8 @@ use crate::chain::Chain;
 use crate::expressions::{SHORT, Sparse, sparse_rows};
 use crate::{Frame, QuasiVelocities, cheapest, matrix_moves};
 use equations::{
-    Block, Definitions, Derivation, DerivationError, Equations, Formulation, Named, Role, StateVariable, Statement,
+    Block, Definitions, Derivation, DerivationError, Equations, Formulation, Named, Needs, Role, StateVariable,
+    Statement,
 };
 use mechanics::{System, fresh_symbol};
 use symbolic::{Expr, Graph, Symbol};
@@ -47,9 +48,8 @@ use vakonomic::Augmented;
 pub const REDUCED_VAKONOMIC: Formulation = Formulation {
     name: "vakonomic-reduced",
     title: "vakonomic, quasi-velocities",
-    needs_removal: false,
+    needs: Needs::Nothing,
     starts_multipliers: true,
-    parameter: None,
     derive: derive_vakonomic,
 };
 

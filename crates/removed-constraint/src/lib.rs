@@ -69,7 +69,7 @@ mod work;
 
 use costates::Costates;
 use equations::{
-    Block, Chart, Derivation, DerivationError, Equations, Formulation, FreeConstant, Named, Role, StateVariable,
+    Block, Chart, Derivation, DerivationError, Equations, Formulation, FreeConstant, Named, Needs, Role, StateVariable,
     Statement,
 };
 use mechanics::{DisplacementParameter, Removal, Surroundings, System, fresh_symbol, generic_rank};
@@ -80,9 +80,8 @@ use work::Work;
 pub const FORMULATION: Formulation = Formulation {
     name: "removed-constraint",
     title: "removed constraint",
-    needs_removal: true,
+    needs: Needs::Removal,
     starts_multipliers: false,
-    parameter: None,
     derive,
 };
 

@@ -250,6 +250,20 @@ pub enum SceneErrorKind {
         /// The unit.
         unit: String,
     },
+    /// Not as many conditions on virtual displacements as constraints.
+    #[error("{found} conditions in `virtual` for {expected} constraints; one for each is needed")]
+    VirtualConditions {
+        /// Conditions found.
+        found: usize,
+        /// Number of constraints, `h`.
+        expected: usize,
+    },
+    /// A condition on virtual displacements without a rate.
+    #[error("condition {number} in `virtual` contains no velocity: write δx as x', as in \"x' - y'*tan(phi)\"")]
+    NoRate {
+        /// Its number, from 1.
+        number: usize,
+    },
     /// As many constraints as coordinates.
     #[error("{found} constraints for {dimension} coordinates leave nothing to move; at most {} are possible", .dimension.saturating_sub(1))]
     TooManyConstraints {

@@ -80,7 +80,12 @@ pub const SYSTEM: &[Key] = &[
         List(&Quantity),
         "f(q, q', t), zero along every motion; a vector is one per component; one without velocities is kept by its rate",
     ),
-    may("forces", Named(&Expression), "Q along a coordinate; for chetaev and kappa"),
+    may("forces", Named(&Expression), "Q along a coordinate; it acts by virtual work in every formulation"),
+    may(
+        "virtual",
+        List(&Quantity),
+        "what rates of virtual displacements satisfy where reactions are not those of Chetaev, one per constraint; for prescribed",
+    ),
 ];
 
 /// The words for what a body looks like.

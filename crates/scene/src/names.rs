@@ -33,8 +33,11 @@ impl Role {
     }
 }
 
-/// The parameter that can be set in a scene that does not name it.
-pub(super) const KAPPA: &str = "kappa";
+/// The parameter of the family between, a name that scenes leave to it.
+const KAPPA: &str = "kappa";
+
+/// Parameters of laws, which can be set in a scene that does not name them.
+pub(super) const OF_LAWS: [&str; 3] = [KAPPA, "epsilon", "slip"];
 
 /// The names that expressions can use.
 #[derive(Clone, Default)]

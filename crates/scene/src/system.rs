@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use symbolic::{Expr, Graph, Symbol};
 
 use super::context::{Context, unrounded};
-use super::names::{KAPPA, Names, Role};
+use super::names::{Names, OF_LAWS, Role};
 use super::order::in_order;
 use super::overrides::Overrides;
 use super::section::{Entry, Section, Source, Value};
@@ -56,15 +56,17 @@ pub(super) fn build<'a>(
         places: Vec::new(),
         on_positions: Vec::new(),
     };
-    if let Some(value) = context.overrides.get(KAPPA) {
-        // a number of the family between, which is no part of the system: any scene takes it
-        let symbol = context.system.graph.symbol(KAPPA);
-        context.system.parameters.push(Parameter { symbol, value });
+    context.system.parameters = parameters;
+    for name in OF_LAWS.into_iter().filter(|name| context.names.role(name).is_none()) {
+        // a number of a law, which is no part of the system: any scene takes it
+        if let Some(value) = context.overrides.get(name) {
+            let symbol = context.system.graph.symbol(name);
+            context.system.parameters.push(Parameter { symbol, value });
+        }
     }
-    context.system.parameters.splice(0..0, parameters);
     source.note(definitions(&mut context));
     source.note(read_system(&mut context));
-    context.system.domains = lost_domains(&context.system);
+    context.system.domains = context.system.graph.lost_domains(&context.system.written());
     for (section, constant) in [("invariants", true), ("observables", false)] {
         source.note(watched(&mut context, section, constant));
     }
@@ -167,12 +169,6 @@ fn definitions(context: &mut Context) -> Result<(), SceneError> {
     Ok(())
 }
 
-/// Of the definitions and the system as they are written.
-fn lost_domains(system: &System) -> Vec<Expr> {
-    let given = [&[system.lagrangian], &system.constraints[..], &system.forces].concat();
-    system.graph.lost_domains(&given)
-}
-
 fn read_system(context: &mut Context) -> Result<(), SceneError> {
     let source = context.source;
     let section = context.root.require("system", "a table with the Lagrangian and the constraints")?.section()?;
@@ -184,6 +180,9 @@ fn read_system(context: &mut Context) -> Result<(), SceneError> {
     }
     if let Some(entry) = section.get("constraints") {
         source.note(constraints(context, &entry));
+    }
+    if let Some(entry) = section.get("virtual") {
+        source.note(virtual_conditions(context, &entry));
     }
     let Some(forces) = section.section("forces")? else { return Ok(()) };
     let known: Vec<String> = context.system.coordinates.iter().map(|c| c.name.clone()).collect();
@@ -256,6 +255,29 @@ fn constraints(context: &mut Context, entry: &Entry) -> Result<(), SceneError> {
         return Err(entry.error_at_key(SceneErrorKind::TooManyConstraints { found, dimension }));
     }
     context.system.constraints = constraints;
+    Ok(())
+}
+
+/// What virtual displacements satisfy, as many conditions as constraints; each element one, or a vector of them.
+fn virtual_conditions(context: &mut Context, entry: &Entry) -> Result<(), SceneError> {
+    let source = context.source;
+    let mut conditions = Vec::new();
+    for (index, element) in entry.elements("an array of expressions")?.iter().enumerate() {
+        let read = element.text("an expression in quotes");
+        let read = read.and_then(|text| context.names.parse_value(source, &context.system.graph, &text));
+        for &w in source.note(read).iter().flat_map(|value| value.entries()) {
+            let (g, velocities) = (&context.system.graph, context.system.velocities());
+            if !velocities.into_iter().any(|s| g.depends_on(w, s)) {
+                source.note::<()>(Err(element.error(SceneErrorKind::NoRate { number: index + 1 })));
+            }
+            conditions.push(w);
+        }
+    }
+    let (found, expected) = (conditions.len(), context.system.constraints.len());
+    if found != expected {
+        return Err(entry.error_at_key(SceneErrorKind::VirtualConditions { found, expected }));
+    }
+    context.system.virtual_conditions = conditions;
     Ok(())
 }
 

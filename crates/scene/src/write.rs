@@ -78,10 +78,11 @@ fn write_system(text: &mut Table, system: &System) {
     let g = &system.graph;
     text.header("system");
     text.line("lagrangian", &quoted(&g.plain(system.lagrangian)));
-    let constraints: Vec<String> =
-        system.constraints.iter().map(|&f| format!("  {},\n", quoted(&g.plain(f)))).collect();
-    if !constraints.is_empty() {
-        text.line("constraints", &format!("[\n{}]", constraints.concat()));
+    for (key, expressions) in [("constraints", &system.constraints), ("virtual", &system.virtual_conditions)] {
+        let lines: Vec<String> = expressions.iter().map(|&f| format!("  {},\n", quoted(&g.plain(f)))).collect();
+        if !lines.is_empty() {
+            text.line(key, &format!("[\n{}]", lines.concat()));
+        }
     }
     if system.has_forces() {
         text.header("system.forces");

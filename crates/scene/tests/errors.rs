@@ -86,7 +86,7 @@ fn the_sledge_is_fine() {
 fn message_line_and_carets() {
     let shown = error("lagrangian ", "lagrangain ").to_string();
     let expected = "\
-sledge:18:1: unknown key `lagrangain` in [system], did you mean `lagrangian`?; known here: lagrangian, constraints, forces
+sledge:18:1: unknown key `lagrangain` in [system], did you mean `lagrangian`?; known here: lagrangian, constraints, forces, virtual
 18 | lagrangain  = \"(x'^2 + y'^2)/2 + k^2*phi'^2/2 + weight*x\"
    | ^^^^^^^^^^";
     assert_eq!(shown, expected);
@@ -248,6 +248,16 @@ fn wrong_constraints() {
         Kind::OffPosition { number: 1, residual: 1.0, .. },
         "\"x^2 + y - 1\""
     );
+}
+
+#[test]
+fn wrong_conditions_on_virtual_displacements() {
+    let constraints = "constraints = [\"y'*cos(phi) - x'*sin(phi)\"]";
+    let with = |conditions: &str| format!("{constraints}\nvirtual = {conditions}");
+    fault!(constraints, &with("[\"x'\", \"y'\"]"), Kind::VirtualConditions { found: 2, expected: 1 }, "virtual");
+    fault!(constraints, &with("[]"), Kind::VirtualConditions { found: 0, expected: 1 }, "virtual");
+    fault!(constraints, &with("[\"x\"]"), Kind::NoRate { number: 1 }, "\"x\"");
+    fault!(constraints, &with("[\"z'\"]"), Kind::Expression(_), "z'");
 }
 
 #[test]

@@ -10,7 +10,7 @@
 //! (`w` in neither `L` nor `B`), and wrong nearly everywhere else. A harness that does not notice is broken.
 
 use deltaq::{Choice, Run, Settings, setting, solve};
-use equations::{Block, Derivation, DerivationError, Equations, Formulation, Role, StateVariable, Statement};
+use equations::{Block, Derivation, DerivationError, Equations, Formulation, Needs, Role, StateVariable, Statement};
 use mechanics::{ConstantsRule, Removal, System};
 use scene::Scene;
 use symbolic::Expr;
@@ -19,9 +19,8 @@ use symbolic::Expr;
 pub static SUBSTITUTION: Formulation = Formulation {
     name: "substitution",
     title: "substitution (wrong on purpose)",
-    needs_removal: true,
+    needs: Needs::Removal,
     starts_multipliers: false,
-    parameter: None,
     derive: derive_for,
 };
 

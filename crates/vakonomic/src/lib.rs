@@ -54,29 +54,21 @@
 //! Classical and Celestial Mechanics*, chapter 1.
 
 use equations::{
-    Block, ConstraintProjection, Derivation, DerivationError, Equations, Formulation, FreeConstant, Named, Role,
-    StateVariable, Statement,
+    Block, Derivation, DerivationError, Equations, Formulation, FreeConstant, Named, Needs, Role, StateVariable,
 };
 use mechanics::{System, fresh_symbol};
 use symbolic::{Expr, Graph, Symbol};
 
 /// Entry of the table of formulations: the multiplier form.
-pub const FORMULATION: Formulation = Formulation {
-    name: "vakonomic",
-    title: "vakonomic",
-    needs_removal: false,
-    starts_multipliers: true,
-    parameter: None,
-    derive,
-};
+pub const FORMULATION: Formulation =
+    Formulation { name: "vakonomic", title: "vakonomic", needs: Needs::Nothing, starts_multipliers: true, derive };
 
 /// The same motion in costate (Hamiltonian) form.
 pub const COSTATE_FORM: Formulation = Formulation {
     name: "vakonomic-costate",
     title: "vakonomic, costate form",
-    needs_removal: false,
+    needs: Needs::Nothing,
     starts_multipliers: true,
-    parameter: None,
     derive: derive_costate_form,
 };
 
@@ -146,7 +138,7 @@ pub fn derive(system: &System, _: &Derivation) -> Result<Equations, DerivationEr
     // d/dt ∂𝓛/∂v − ∂𝓛/∂q − Q = 0
     let mut residuals: Vec<Expr> =
         (0..q.len()).map(|i| g.sub(g.total_derivative(augmented.momenta[i], &flow), augmented.applied[i])).collect();
-    equations.statements = statements(&system, &residuals);
+    equations.state_balances(&system, &residuals);
     // d/dt f = 0
     residuals.extend(system.constraints.iter().map(|&f| g.total_derivative(f, &flow)));
 
@@ -161,12 +153,7 @@ pub fn derive(system: &System, _: &Derivation) -> Result<Equations, DerivationEr
         regular: "constraint Jacobian of full row rank, ∂²𝓛/∂v² regular on its kernel",
     }];
     equations.velocities = g.variables(&v);
-    equations.projection = (!system.constraints.is_empty()).then(|| ConstraintProjection {
-        velocities: v.clone(),
-        constraints: system.constraints.clone(),
-        jacobian: system.constraint_jacobian(),
-        metric: system.velocity_hessian(),
-    });
+    equations.return_onto_constraints(&system);
     // where f = h/D, the multiplier goes through zero with D, and its rate is 0/0
     equations.guard(g, &system.constraints);
     finish(&mut equations, system, augmented);
@@ -206,7 +193,7 @@ pub fn derive_costate_form(system: &System, _: &Derivation) -> Result<Equations,
     // p − ∂𝓛/∂v = 0,  f = 0
     let mut residuals: Vec<Expr> = (0..q.len()).map(|i| g.sub(g.variable(costates[i]), augmented.momenta[i])).collect();
     residuals.extend(&system.constraints);
-    equations.statements = statements(&system, &residuals[..q.len()]);
+    equations.state_balances(&system, &residuals[..q.len()]);
 
     for i in 0..q.len() {
         equations.states.push(state(g, q[i], Role::Position, g.variable(v[i]), q[i]));
@@ -253,18 +240,6 @@ fn state(g: &Graph, symbol: Symbol, role: Role, rate: Expr, start: Symbol) -> St
     StateVariable { symbol, role, rate, start: g.variable(start) }
 }
 
-fn statements(system: &System, balances: &[Expr]) -> Vec<Statement> {
-    let balances = balances.iter().zip(&system.coordinates);
-    balances
-        .map(|(&e, c)| Statement { meaning: format!("balance for {}", c.name), left: e, right: system.graph.zero() })
-        .chain(system.constraints.iter().map(|&f| Statement {
-            meaning: "constraint".into(),
-            left: f,
-            right: system.graph.zero(),
-        }))
-        .collect()
-}
-
 /// What both forms share: outputs, free constants and the quantities that stay constant.
 fn finish(equations: &mut Equations, system: System, augmented: Augmented) {
     let g = &system.graph;
@@ -272,15 +247,8 @@ fn finish(equations: &mut Equations, system: System, augmented: Augmented) {
     equations.multipliers =
         augmented.multipliers.iter().map(|&mu| Named { name: g.name(mu), expression: g.variable(mu) }).collect();
     equations.free_constants = augmented.free_constants();
-    if system.is_autonomous() && !system.has_forces() {
-        let action = g.dot(&g.variables(&system.velocities()), &augmented.momenta);
-        equations.invariants.push(Named { name: "energy".into(), expression: g.sub(action, augmented.lagrangian) });
-    }
-    for (i, c) in system.coordinates.iter().enumerate() {
-        if g.is_zero(augmented.applied[i]) {
-            let name = format!("momentum {}", c.name);
-            equations.invariants.push(Named { name, expression: augmented.momenta[i] });
-        }
-    }
+    let action = g.dot(&g.variables(&system.velocities()), &augmented.momenta);
+    let energy = g.sub(action, augmented.lagrangian);
+    equations.add_invariants(&system, Some(energy), &augmented.momenta, &[&augmented.applied]);
     equations.graph = system.graph;
 }

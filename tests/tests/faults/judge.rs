@@ -1,6 +1,6 @@
 //! Judges: what is wrong with equations, from the values of `L`, `f` and `Q` alone.
 
-use deltaq::{CHETAEV, REDUCED_CHETAEV};
+use deltaq::{CHETAEV, FIRST_ORDER, PRESCRIBED, REDUCED_CHETAEV};
 use equations::Formulation;
 use nalgebra::DVector;
 use symbolic::Symbol;
@@ -65,6 +65,12 @@ pub enum Principle {
     Vakonomic {
         kappa: f64,
     },
+    /// `d/dt L_v − L_q = Q + (Aᵀ − ε C) λ`.
+    FirstOrder {
+        epsilon: f64,
+    },
+    /// `d/dt L_v − L_q = Q + Wᵀ λ`.
+    Prescribed,
 }
 
 impl Principle {
@@ -72,6 +78,8 @@ impl Principle {
     pub fn of(formulation: &Formulation) -> Principle {
         match formulation {
             own if [CHETAEV, REDUCED_CHETAEV].contains(&own) => Principle::Chetaev,
+            own if own == FIRST_ORDER => Principle::FirstOrder { epsilon: KAPPA },
+            own if own == PRESCRIBED => Principle::Prescribed,
             own if own == deltaq::KAPPA => Principle::Vakonomic { kappa: KAPPA },
             _ => Principle::Vakonomic { kappa: 0.0 },
         }
@@ -103,16 +111,21 @@ pub fn judge(truth: &Truth, principle: Principle, samples: &[Sample], reading: &
         let turned = slope(|s| truth.momenta(&curve(s)));
         let mut applied = truth.gradient(&at);
         applied.iter_mut().zip(truth.forces(&at)).for_each(|(x, force)| *x += force);
-        let (reactions, forces) = (truth.reactions(&at), truth.forces(&at));
+        let (mut reactions, forces) = (truth.reactions(&at), truth.forces(&at));
+        match principle {
+            Principle::FirstOrder { epsilon } => reactions -= truth.curvature(&at, a) * epsilon,
+            Principle::Prescribed => reactions = truth.prescribed(&at),
+            Principle::Chetaev | Principle::Vakonomic { .. } => {}
+        }
         if let Principle::Vakonomic { kappa } = principle {
             let drag = &reactions * DVector::from_row_slice(&at.mu) * kappa;
             applied.iter_mut().zip(drag.iter()).for_each(|(x, drag)| *x -= drag);
         }
         let mut rest: Vec<f64> = turned.iter().zip(&applied).map(|(turned, applied)| turned - applied).collect();
         let size = length(&turned) + length(&applied);
-        if principle == Principle::Chetaev {
+        if !matches!(principle, Principle::Vakonomic { .. }) {
             rest = match &instant.now.multipliers[..] {
-                [] => truth.without_reactions(&at, &rest),
+                [] if principle == Principle::Chetaev => truth.without_reactions(&at, &rest),
                 given if given.len() == truth.h => {
                     let reaction = &reactions * DVector::from_row_slice(given);
                     rest.iter().zip(reaction.iter()).map(|(rest, reaction)| rest - reaction).collect()

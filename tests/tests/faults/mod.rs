@@ -95,7 +95,7 @@ fn ways(scene: &Scene, guards: Guards) -> Vec<Way<'_>> {
     // L does not contain a rate of its parameters: there are no equations to be read off
     removals.retain(|removal| removal.name != "by-heading");
     let of = |formulation: &'static Formulation| {
-        let needed = formulation.needs_removal;
+        let needed = formulation.needs_removal();
         let removals = if needed { removals.iter().cloned().map(Some).collect() } else { vec![None] };
         let stages = move |removal: Option<Removal>| {
             let stages = Stage::ALL.into_iter().skip(usize::from(!needed));
@@ -128,13 +128,21 @@ struct Fault {
     outcome: Outcome,
 }
 
-/// The scene with all parameters that formulations need besides its own.
-fn with_parameters(scene: Scene) -> Scene {
+/// The scene with all that formulations need besides its own: parameters, and conditions on virtual
+/// displacements that are not the constraints.
+fn with_needs(scene: Scene) -> Scene {
     let mut system = scene.system.clone();
-    for name in FORMULATIONS.iter().chain(FORMS).filter_map(|formulation| formulation.parameter) {
-        let symbol = system.graph.symbol(name);
-        system.parameters.push(Parameter { symbol, value: judge::KAPPA });
-    }
+    let g = &system.graph;
+    // λ of slip would be zero in all states on the constraint: see the tests of its crate
+    let names = FORMULATIONS.iter().flat_map(|formulation| formulation.needs.parameters()).filter(|n| **n != "slip");
+    let parameters = names.map(|name| Parameter { symbol: g.symbol(name), value: judge::KAPPA });
+    system.parameters.extend(parameters.collect::<Vec<_>>());
+    let condition = |(i, &f): (usize, &symbolic::Expr)| {
+        let c = &system.coordinates[i];
+        let [q, v] = [c.position, c.velocity].map(|symbol| g.variable(symbol));
+        g.add(f, g.mul(g.mul(g.number(0.3), g.call(symbolic::Function::Cos, q)), v))
+    };
+    system.virtual_conditions = system.constraints.iter().enumerate().map(condition).collect();
     Scene { system, ..scene }
 }
 
@@ -172,11 +180,11 @@ fn faults_are_noticed() {
     let of_scene = |i: usize| match SCENES.get(i) {
         Some((name, numbers, guards)) => {
             let numbers: Vec<_> = numbers.iter().map(|&(name, x)| (name.into(), x.into())).collect();
-            faults(&with_parameters(catalogue::find(name, &numbers).expect("a scene")), *guards, a_place)
+            faults(&with_needs(catalogue::find(name, &numbers).expect("a scene")), *guards, a_place)
         }
         None => {
             let (name, text) = OWN[i - SCENES.len()];
-            faults(&with_parameters(Scene::parse(name, text).expect("a scene")), Guards::Some, a_place)
+            faults(&with_needs(Scene::parse(name, text).expect("a scene")), Guards::Some, a_place)
         }
     };
     let faults: Vec<Fault> = over_threads(0, SCENES.len() + OWN.len(), of_scene).into_iter().flatten().collect();

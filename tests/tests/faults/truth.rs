@@ -61,7 +61,7 @@ pub struct Truth {
     /// Whether the constraints are linear in the velocities.
     pub linear: bool,
     names: Vec<String>,
-    /// `L, f, Q` from `t, q, v`
+    /// `L, f, Q, w` from `t, q, v`
     function: RefCell<Evaluator<f64>>,
 }
 
@@ -69,8 +69,7 @@ impl Truth {
     pub fn new(system: &System) -> Truth {
         let system = system.clone();
         let inputs = [&[system.time][..], &system.positions(), &system.velocities()].concat();
-        let outputs = [&[system.lagrangian][..], &system.constraints, &system.forces].concat();
-        let function = system.evaluator(&inputs, &outputs).expect("compiles");
+        let function = system.evaluator(&inputs, &system.written()).expect("compiles");
         Truth {
             n: system.dimension(),
             h: system.constraints.len(),
@@ -100,7 +99,7 @@ impl Truth {
     }
 
     pub fn forces(&self, at: &Point) -> Vec<f64> {
-        self.values(at.t, &at.q, &at.v)[1 + self.h..].to_vec()
+        self.values(at.t, &at.q, &at.v)[1 + self.h..][..self.n].to_vec()
     }
 
     /// `𝓛 = L + μ·f`
@@ -133,6 +132,20 @@ impl Truth {
     pub fn reactions(&self, at: &Point) -> DMatrix<f64> {
         let rows = slopes(&at.v, |v| self.constraints(&Point { v: v.to_vec(), ..at.clone() }));
         DMatrix::from_fn(self.n, self.h, |i, j| rows[i][j])
+    }
+
+    /// `Wᵀ = (∂w/∂v)ᵀ`, n×h
+    pub fn prescribed(&self, at: &Point) -> DMatrix<f64> {
+        let rows = slopes(&at.v, |v| self.values(at.t, &at.q, v)[1 + self.h + self.n..].to_vec());
+        DMatrix::from_fn(self.n, self.h, |i, j| rows[i][j])
+    }
+
+    /// `C = (∂f/∂q)ᵀ − Ȧᵀ` along the curve with acceleration `a`, n×h
+    pub fn curvature(&self, at: &Point, a: &[f64]) -> DMatrix<f64> {
+        let by_place = slopes(&at.q, |q| self.constraints(&Point { q: q.to_vec(), ..at.clone() }));
+        let still = vec![0.0; at.mu.len()];
+        let turning = slope(|s| self.reactions(&at.moved(a, &still, s)).as_slice().to_vec());
+        DMatrix::from_fn(self.n, self.h, |i, j| by_place[i][j] - turning[j * self.n + i])
     }
 
     /// `M = ∂²L/∂v²` times a vector

@@ -53,6 +53,7 @@ impl Scaling {
         let forces = system.forces.iter().zip(&self.lengths).map(work).collect();
         (scaled.lagrangian, scaled.constraints, scaled.forces) = (lagrangian, constraints, forces);
         scaled.domains = g.substitute_all(&system.domains, &map);
+        scaled.virtual_conditions = g.substitute_all(&system.virtual_conditions, &map);
         scaled.breakpoints.iter_mut().for_each(|t| *t /= self.time);
         for watched in &mut scaled.watched {
             watched.expression = g.substitute(watched.expression, &map);

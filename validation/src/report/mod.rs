@@ -5,6 +5,7 @@ mod bicycle_page;
 mod control;
 mod differences;
 mod equivalence;
+mod law_rows;
 mod literature;
 mod overview;
 mod random_page;

@@ -10,6 +10,7 @@ use mechanics::ConstantsRule;
 use scene::Scene;
 use serde_json::{Map, Value, json};
 
+use super::law_rows;
 use deltaq::words::short;
 use pages::{Table, fill};
 use picture::{Axis, Curve, Picture, Style};
@@ -82,6 +83,7 @@ impl Approach {
 pub struct RealizationReport {
     scenes: Vec<(String, Vec<Approach>)>,
     random: Vec<Vec<Approach>>,
+    law: Vec<law_rows::Row>,
 }
 
 const FRICTION: &str = "friction, to Chetaev";
@@ -103,7 +105,7 @@ impl RealizationReport {
         let system = |index: &u64| format!("realizations of random system {index}");
         let random =
             parallel::try_map(&indices, quiet, system, |index| of_random(*index).with_context(|| system(index)))?;
-        Ok(RealizationReport { scenes, random })
+        Ok(RealizationReport { scenes, random, law: law_rows::rows(quiet)? })
     }
 
     /// Rates of one realization on the random systems, sorted; how many are too close to tell, and how many
@@ -186,6 +188,7 @@ impl RealizationReport {
                 ("count", &COUNT),
                 ("seed", &SEED),
                 ("random", &random),
+                ("law", &law_rows::table(&self.law)),
             ],
         )
     }
@@ -295,7 +298,7 @@ mod tests {
             vec![approach(FRICTION, [1e-3, 2e-4]), approach(ADDED_MASS, [1e-3, f64::NAN])],
             vec![approach(ADDED_MASS, [f64::NAN, 1e-4]), approach(FRICTION, [1e-3, f64::NAN])],
         ];
-        let report = RealizationReport { scenes, random };
+        let report = RealizationReport { scenes, random, law: Vec::new() };
         let headline = report.headline();
         assert!(
             headline.ends_with(": in 2 of 4 cases the distance falls as 1/N (measured exponents 0.699 to 2)."),

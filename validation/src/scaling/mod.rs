@@ -177,7 +177,7 @@ struct Derived {
 fn derivation(entry: &Formulation, scene: &Scene) -> Result<Derived> {
     // on a graph of its own: what was derived before is in that of the scene
     let system = scene.system.clone();
-    let removal = if entry.needs_removal { Some(Removal::by_quasi_velocities(&system, &scene.start)?) } else { None };
+    let removal = if entry.needs_removal() { Some(Removal::by_quasi_velocities(&system, &scene.start)?) } else { None };
     let constants = match &removal {
         Some(removal) => removal.constants.clone(),
         None => default_constants(entry, scene),

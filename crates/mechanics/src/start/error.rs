@@ -123,6 +123,16 @@ pub enum StartError {
         /// Smallest ratio that is accepted.
         limit: f64,
     },
+    /// Reactions along prescribed rows `W` cannot keep the constraints.
+    #[error("reactions as `virtual` prescribes them cannot keep the constraints at the start: W M⁻¹ Aᵀ is singular, W the derivatives of `virtual` by the velocities: ratio of singular values {ratio:.1e}, limit {limit:.0e} (singular values {})", values(.singular_values))]
+    SingularReactions {
+        /// Singular values of scaled `W`, where they tell, or of scaled `(N_W)ᵀ M N_A`, falling.
+        singular_values: Vec<f64>,
+        /// Smallest over largest.
+        ratio: f64,
+        /// Smallest ratio that is accepted.
+        limit: f64,
+    },
     /// Something is not finite at the start.
     #[error("{quantity} is not finite at the start: {value}")]
     NotFinite {

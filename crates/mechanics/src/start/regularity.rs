@@ -31,6 +31,29 @@ pub fn check_regularity(system: &System, state: &State) -> Result<(), StartError
     Regularity::new(system, &[]).check(state, &[])
 }
 
+/// Checks at `state` that reactions along the rows of `W`, of [`System::virtual_conditions`], can keep the
+/// constraints: that `W` has full row rank, and `(N_W)ᵀ M N_A` is regular, whose columns are bases of ker `W`
+/// and ker `A`. For regular `M` that is to say that `W M⁻¹ Aᵀ` is.
+///
+/// # Errors
+/// [`StartError::SingularReactions`]; as [`check_regularity`].
+pub fn check_reactions(system: &System, state: &State) -> Result<(), StartError> {
+    check_lengths(system, state)?;
+    let scaled = |system: &System| Regularity::new(system, &[]).scaled(state, &[]);
+    let own = System { constraints: system.virtual_conditions.clone(), ..system.clone() };
+    let (own, kept) = (scaled(&own)?, scaled(system)?);
+    let singular =
+        |singular_values, ratio| StartError::SingularReactions { singular_values, ratio, limit: SINGULAR_LIMIT };
+    if let Err(StartError::DependentConstraints { singular_values, ratio, .. }) = own.check_constraints() {
+        return Err(singular(singular_values, ratio));
+    }
+    let between = own.kernel()?.tr_mul(&(&kept.mass * kept.kernel()?));
+    match ratio(&decompose(&between)?.values) {
+        (ratio, _) if ratio > SINGULAR_LIMIT => Ok(()),
+        (ratio, singular_values) => Err(singular(singular_values, ratio)),
+    }
+}
+
 /// `A` in units that make its entries of order 1, the factors of its rows, the ratio of its singular values.
 pub(super) fn scaled_constraint_jacobian(
     system: &System,
@@ -160,16 +183,21 @@ impl ScaledMatrices {
         least > SINGULAR_LIMIT * largest
     }
 
-    fn check_mass(&self) -> Result<(), StartError> {
-        if self.is_dominant() {
-            return Ok(());
-        }
+    /// A basis of ker `A`, in columns.
+    fn kernel(&self) -> Result<DMatrix<f64>, StartError> {
         let (h, n) = self.constraint_jacobian.shape();
         let padded = self.constraint_jacobian.clone().resize(n, n, 0.0);
         let svd = decompose(&padded)?;
         let mut order: Vec<usize> = (0..n).collect();
         order.sort_by(|&a, &b| svd.values[b].total_cmp(&svd.values[a]));
-        let kernel = svd.right.select_rows(&order[h..]).transpose();
+        Ok(svd.right.select_rows(&order[h..]).transpose())
+    }
+
+    fn check_mass(&self) -> Result<(), StartError> {
+        if self.is_dominant() {
+            return Ok(());
+        }
+        let kernel = self.kernel()?;
         let (ratio, singular_values) = ratio(&decompose(&kernel.tr_mul(&(&self.mass * &kernel)))?.values);
         if ratio > SINGULAR_LIMIT {
             return Ok(());

@@ -89,7 +89,8 @@ class System:
 
     coordinates: names of the n coordinates. lagrangian: L(q, v, t). constraints: f(q, v, t), h of them, each
     to be zero. parameters: name to number. definitions: name to expression, usable in all others. units:
-    coordinate to text. forces: coordinate to expression, generalized forces Q. observables: name to
+    coordinate to text. forces: coordinate to expression, generalized forces Q. virtual: what rates of virtual
+    displacements satisfy, h of them, for the formulation prescribed. observables: name to
     expression, what motions list besides; invariants: likewise, what should stay constant. view: name of a
     body to {"shape": ..., "size": [...], "at": ..., "rotation": ...}, as in [view.NAME]. start: every
     coordinate to its start. velocities: some ("x'") to their start; constraints supply the others, and
@@ -122,6 +123,7 @@ class System:
         parameters: Mapping[Any, _Expression] | None = None,
         definitions: Mapping[Any, _Expression] | None = None,
         units: Mapping[Any, str] | None = None,
+        virtual: Iterable[_Formula] | None = None,
         forces: Mapping[Any, _Expression] | None = None,
         observables: Mapping[str, _Expression] | None = None,
         invariants: Mapping[str, _Expression] | None = None,
@@ -159,6 +161,8 @@ class System:
     """The Lagrangian, as text."""
     constraints: Final[list[str]]
     """The constraints, as text, length h."""
+    virtual: Final[list[str]]
+    """What rates of virtual displacements satisfy, as text, length h; empty where that is not prescribed."""
     forces: Final[dict[str, str]]
     """The generalized forces other than zero, as text, by coordinate."""
     start: Final[State]
