@@ -3,8 +3,8 @@
 use std::collections::BTreeMap;
 
 use deltaq::{
-    CHETAEV, Comparison, Ending, Finding, Fit, Fits, FittedMotion, Form, Membership, Metric, Settings, VAKONOMIC,
-    Verdict, choices, compare_unfitted, solve_choice,
+    CHETAEV, Comparison, Ending, Finding, Fit, Fits, FittedMotion, Form, Membership, Metric, Settings, SolveError,
+    VAKONOMIC, Verdict, choices, compare_unfitted, solve_choice,
 };
 use integrate::{Method, Projection};
 use pages::{membership::value as membership_value, scene_page, summary, verdicts};
@@ -235,6 +235,45 @@ fn the_overview_counts_its_own_table() {
     for finding in findings.lines().filter(|line| !line.is_empty()) {
         assert!(finding.split_whitespace().count() <= 41, "more than a number and 40 words: {finding}");
     }
+}
+
+/// Removals that lack the vakonomic motion are named; here one whose membership is made unknown.
+#[test]
+fn the_overview_names_the_removals_that_lack_the_vakonomic_motion() {
+    let mut scenes = vec![compared("sledge", 0.5, &Settings::default()), compared("disc", 0.5, &Settings::default())];
+    let told = |scenes: &[Comparison]| -> (Vec<String>, String) {
+        let page = overview(scenes, &[]);
+        let asked = |c: &Comparison| -> Vec<(String, bool)> {
+            let run = |i: usize| &c.runs[i].choice;
+            let of = |i: usize| Some((c.scene.name.clone(), run(i).removal.as_ref()?.name.clone()));
+            let asked = c.decided.iter().filter(|d| run(d.curve).formulation == VAKONOMIC);
+            let asked = asked.filter_map(|d| of(d.family).map(|of| (of, &d.outcome)));
+            asked.map(|((scene, name), found)| (format!("`{scene}` ({name})"), dimension(found).is_some())).collect()
+        };
+        let all: Vec<(String, bool)> = scenes.iter().flat_map(asked).collect();
+        let lacks: Vec<String> = all.iter().filter(|(_, has)| !has).map(|(name, _)| name.clone()).collect();
+        let (has, count) = (all.len() - lacks.len(), all.len());
+        let not =
+            if lacks.is_empty() { String::new() } else { format!(" (not on {})", deltaq::words::enumerate(&lacks)) };
+        let said = format!("all costates, {has} of {count} removals have the vakonomic motion{not}. ");
+        assert!(page.contains(&said), "{said}\n{page}");
+        (lacks, said)
+    };
+    let (before, _) = told(&scenes);
+    let c = &mut scenes[1];
+    let removed = |i: usize| c.runs[i].choice.removal.is_some();
+    let found = c.decided.iter_mut().filter(|d| removed(d.family) && c.runs[d.curve].choice.formulation == VAKONOMIC);
+    let mut found = found.filter(|d| dimension(&d.outcome).is_some());
+    found.next().expect("one has").outcome = Err(SolveError::Member { reason: "unknown".into() });
+    drop(found);
+    let (after, _) = told(&scenes);
+    assert_eq!(after.len(), before.len() + 1);
+    assert!(after.iter().any(|name| name.starts_with("`disc` (")), "{after:?}");
+}
+
+/// How many constants of a family give a motion freely; `None` where none does, or it is not known.
+fn dimension(found: &Result<Membership, SolveError>) -> Option<i64> {
+    membership_value(Some(found))["dimension"].as_i64()
 }
 
 #[test]

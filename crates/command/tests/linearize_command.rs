@@ -94,3 +94,24 @@ fn what_first_order_leaves_open_is_said() {
     // λ² = −2.2 ± √D: bounded, and growing
     assert!(scene("1e-6").contains("| 0 | 0 |") && scene("(-1e-6)").contains("| 0 | 2 |"));
 }
+
+/// `λ² = −2.2 ± √D`: with `D = 10⁻¹⁴` two eigenvalues are apart from `√2.2 i` by `½ √D/√2.2`, either way.
+#[test]
+fn a_chain_is_as_wide_in_json_as_on_the_page() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("nearly.toml");
+    let text = "title = \"nearly\"\n[coordinates]\nx = { start = 0 }\ny = { start = 0 }\n[system]\n\
+                lagrangian = \"(x'^2 + y'^2)/2 - 1.1*(x^2 + y^2)\"\nforces = { x = \"1e-14*y\", y = \"x\" }\n\
+                [start.velocities]\n\"x'\" = 0\n\"y'\" = 0\n[run]\nduration = 1\n";
+    std::fs::write(&path, text).expect("written");
+    let asked = ["linearize", path.to_str().expect("text")];
+    let value: Value = serde_json::from_str(&answer(&[&asked[..], &["--format", "json"]].concat(), 0).0).expect("JSON");
+    let chain = &value["points"][0]["chains"][0];
+    let number = |name: &str| chain[name].as_f64().expect("a number");
+    let apart = 0.5 * 1e-7 / 2.2_f64.sqrt();
+    assert!((number("imaginary") - 2.2_f64.sqrt()).abs() < 1e-7 && number("size") == 2.0, "{chain}");
+    assert!((0.99 * apart..4.0 * apart).contains(&number("radius")), "{chain}, {apart:e}");
+    let page = answer(&asked, 0).0;
+    let said = format!("2 eigenvalues within {} of ±1.48", deltaq::words::short(number("radius")));
+    assert!(page.contains(&said), "{said}\n{page}");
+}

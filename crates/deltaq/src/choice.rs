@@ -5,8 +5,9 @@ use std::collections::{HashMap, HashSet};
 use equations::{Derivation, Equations, Formulation, Named, Needs};
 use mechanics::{ConstantsRule, Recombination, Removal, RemovalError, State, System, check_reactions};
 use scene::Scene;
-use symbolic::{Expr, Range, Symbol};
+use symbolic::{Expr, Symbol};
 
+use crate::silent::silent;
 use crate::{FORMS, FORMULATIONS, SolveError};
 
 /// One formulation of the scene, with all choices made.
@@ -139,25 +140,6 @@ fn domains_at(system: &System, start: &State, equations: &Equations) -> Result<V
         return Err(SolveError::OutsideDomain { expression: g.plain(*e), value });
     }
     Ok(in_variables_of(equations, system, &system.domains))
-}
-
-/// Where a constraint says nothing: factors, free of velocities, of all entries of its `∂f/∂v`.
-///
-/// With a multiplier the motion would go on by continuity, though `f = 0` holds there whatever the velocities
-/// do. A factor that never vanishes is none.
-fn silent(system: &System) -> Vec<Expr> {
-    let (g, v, jacobian) = (&system.graph, system.velocities(), system.constraint_jacobian());
-    let ranges = system.parameter_values().into_iter().map(|(s, x)| (s, Range::point(x))).collect();
-    let may_vanish = |e: &Expr| {
-        let (symbols, range) = (g.symbols_of(*e), g.range(*e, &ranges));
-        let moves = symbols.iter().any(|s| !ranges.contains_key(s)) && !symbols.iter().any(|s| v.contains(s));
-        moves && range.low <= 0.0 && range.high >= 0.0
-    };
-    let factors = (0..jacobian.rows()).flat_map(|i| g.common_factors(jacobian.row(i)));
-    let mut found: Vec<Expr> = factors.filter(may_vanish).collect();
-    found.sort_unstable();
-    found.dedup();
-    found
 }
 
 /// Expressions in a system's coordinates, velocities and time in the variables of its equations, as far as

@@ -51,7 +51,10 @@ impl Ending {
                 let cause = if equations.domains.contains(&e) {
                     format!("{guard} vanishes: a root or logarithm of it, as written, has no value beyond")
                 } else if equations.silent.contains(&e) {
-                    format!("{guard} vanishes, a factor of a constraint, which then says nothing of the velocities")
+                    format!(
+                        "{guard} vanishes, a factor of a constraint or of a combination of constraints, which then says nothing \
+                         of the velocities"
+                    )
                 } else {
                     format!("{guard} vanishes, by which the equations divide")
                 };

@@ -93,6 +93,7 @@ mod round_off;
 mod runs;
 mod screening;
 mod settings;
+mod silent;
 mod single_run;
 mod sizes;
 mod start_values;

@@ -12,6 +12,7 @@ mod examples;
 mod fits;
 mod gaps;
 mod known_members;
+mod known_round_off;
 mod known_values;
 mod long;
 mod round_off;

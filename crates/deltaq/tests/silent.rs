@@ -1,7 +1,8 @@
 //! Constraints with a factor: where it vanishes they say nothing, and no motion goes through. And roots that
 //! end a motion are named.
 
-use deltaq::{Ending, Settings, choices, solve_choice};
+use deltaq::{Ending, Form, Settings, choices, solve_choice};
+use integrate::Method;
 use scene::Scene;
 
 fn scene(lagrangian: &str, constraint: &str, masses: f64) -> Scene {
@@ -13,6 +14,9 @@ fn scene(lagrangian: &str, constraint: &str, masses: f64) -> Scene {
     );
     Scene::parse("factor", &text).unwrap_or_else(|e| panic!("{text}: {e}"))
 }
+
+const SILENT: &str =
+    "a factor of a constraint or of a combination of constraints, which then says nothing of the velocities";
 
 const FREE: &str = "m*(x'^2 + y'^2)/2 - m*y/3";
 
@@ -31,9 +35,52 @@ fn no_motion_goes_where_a_constraint_says_nothing() {
                     panic!("{constraint}, {}, m = {masses:e}: goes through", choice.label)
                 };
                 assert!((t - t0).abs() < 1e-6, "{constraint}, {}: {t}, not {t0}: {cause}", choice.label);
-                let said = cause.contains("a factor of a constraint, which then says nothing of the velocities");
+                let said = cause.contains(SILENT);
                 assert!(said && cause.contains("x"), "{constraint}, {}: {cause}", choice.label);
             }
+        }
+    }
+}
+
+/// A particle in four dimensions with these two constraints, from x = -1 at speed 1.
+fn two(first: &str, second: &str) -> Scene {
+    let text = format!(
+        "title = \"two\"\n[parameters]\nkappa = 0.5\n[coordinates]\nx = {{ start = -1 }}\ny = {{ start = 0.5 }}\n\
+         z = {{ start = 0 }}\nw = {{ start = 0 }}\n[system]\n\
+         lagrangian = \"(x'^2 + y'^2 + z'^2 + w'^2)/2 - z/3 - w/5\"\nconstraints = [\"{first}\", \"{second}\"]\n\
+         [start.velocities]\n\"x'\" = 1\n\"y'\" = 0\n[run]\nduration = 2\n"
+    );
+    Scene::parse("two", &text).unwrap_or_else(|e| panic!("{text}: {e}"))
+}
+
+#[test]
+fn no_motion_goes_where_constraints_become_dependent_by_a_factor() {
+    // at x = 0 the second says of w' nothing that the first does not say
+    for (first, second) in
+        [("z'", "z' + x*w'"), ("z' - y*w'", "z' - y*w' + x*(w' + z')"), ("z' + w'", "(1 + x)*z' + (1 - x)*w'")]
+    {
+        let scene = two(first, second);
+        for choice in choices(&scene) {
+            for method in [None, Some(Method::Dop853), Some(Method::Radau5)] {
+                for form in [Form::Suited, Form::Named] {
+                    let settings = Settings { method, form, ..Settings::default() };
+                    let motion = solve_choice(&scene, &choice, &settings).expect("a motion");
+                    let of = format!("{second}, {}, {method:?}, {form:?}", choice.label);
+                    let Ending::Stopped { t, cause } = &motion.ending else { panic!("{of}: goes through") };
+                    // equations that divide by it may come to that first
+                    let said = cause.contains(SILENT) || cause.contains("by which the equations divide");
+                    assert!((t - 1.0).abs() < 1e-3 && said, "{of}: {t}, {cause}");
+                }
+            }
+        }
+    }
+    // and of what never vanishes none is stopped
+    for (first, second) in [("z'", "z' + (x^2 + 1e-3)*w'"), ("z' + w'", "z' + (3 + x)*w'"), ("z' - y*w'", "x*z' + w'")]
+    {
+        let scene = two(first, second);
+        for choice in choices(&scene) {
+            let motion = solve_choice(&scene, &choice, &Settings::default()).expect("a motion");
+            assert_eq!(motion.ending, Ending::Completed, "{second}, {}", choice.label);
         }
     }
 }

@@ -12,6 +12,8 @@ use random::{Batch, CHECKS, Case, Fault, Finding, Findings, Kind, Word, draw_rec
 use random::{NullTest, Summary};
 use scene::Scene;
 
+mod forces;
+
 /// The seed of the systems.
 const SEED: u64 = 38;
 
@@ -160,20 +162,10 @@ fn massless(scene: &mut Scene) {
     }
 }
 
-const FORCELESS: &str = "the forces forgotten";
-
-fn forceless(case: &mut Case) -> Result<(), SolveError> {
-    if let Some((_, motion)) = &mut case.forced {
-        *motion = case.chetaev.clone();
-    }
-    Ok(())
-}
-
 const FALSE: &[False] = &[
     in_case(0, "Chetaev: multipliers and Maggi's equations", Kind::Linear, EXCHANGED, exchanged),
     in_case(0, "vakonomic: multiplier form and costate form", Kind::Linear, EXCHANGED, exchanged),
     in_case(0, "the constraint is kept", Kind::Linear, FORGOTTEN, forgotten),
-    in_case(0, "Chetaev with forces: multipliers and Maggi's equations", Kind::Linear, FORCELESS, forceless),
     in_case(0, "natural costates vanish at the horizon", Kind::Linear, "constants of another motion", |case| {
         case.natural = case.removed.first().map(|removed| removed.motion.clone());
         Ok(())
@@ -199,8 +191,6 @@ const FALSE: &[False] = &[
     in_case(4, "vakonomic: constraints recombined", Kind::Linear, OTHER_MULTIPLIERS, other_multipliers),
     in_case(4, "Chetaev: other coordinates", Kind::Nonlinear, RUBBED, rubbed),
     in_case(4, "vakonomic: other coordinates", Kind::TimeDependent, EXCHANGED, exchanged),
-    in_case(4, "Chetaev with forces: constraints recombined", Kind::Affine, FORCELESS, forceless),
-    in_case(4, "Chetaev with forces: other coordinates", Kind::Nonlinear, FORCELESS, forceless),
     in_case(5, "exponent of the leading divergence", Kind::Linear, OTHER_MULTIPLIERS, no_multipliers),
     in_case(5, "coefficient of the leading divergence", Kind::Affine, OTHER_MULTIPLIERS, other_multipliers),
     in_case(6, "Chetaev: energy", Kind::Affine, "called homogeneous", |case| called(case, Kind::Linear)),
@@ -211,8 +201,6 @@ const FALSE: &[False] = &[
     in_case(8, "added mass tends to vakonomic at rate 1/N", Kind::Linear, EXCHANGED, exchanged),
     in_case(8, "the family between begins at vakonomic", Kind::Linear, EXCHANGED, exchanged),
     in_case(8, "the family between tends to Chetaev at rate 1/kappa", Kind::Linear, EXCHANGED, exchanged),
-    in_case(8, "friction tends to Chetaev with forces at rate 1/N", Kind::Linear, FORCELESS, forceless),
-    in_case(8, "the family between tends to Chetaev with forces at rate 1/kappa", Kind::Linear, FORCELESS, forceless),
     in_case(9, "decision and proof agree", Kind::Linear, "the proof of another motion", proved_elsewhere),
     in_case(9, "the set has the dimension that ranks ask for", Kind::Integrable, "a direction lost", |case| {
         found(case, |found| drop(found.decision.set.directions.pop()))
@@ -232,8 +220,6 @@ const FALSE: &[False] = &[
     in_case(10, "Chetaev in other units", Kind::Nonlinear, RUBBED, rubbed),
     in_case(10, "vakonomic in other units", Kind::Linear, OTHER_MULTIPLIERS, other_multipliers),
     in_case(10, "removed constraint in other units", Kind::Affine, WITHOUT_COSTATES, without_costates),
-    in_case(10, "Chetaev with forces runs back the way it came", Kind::Linear, FORCELESS, forceless),
-    in_case(10, "Chetaev with forces in other units", Kind::Affine, FORCELESS, forceless),
     in_case(
         11,
         "Frobenius' test finds what the construction put in",
@@ -297,9 +283,10 @@ fn noticed(claimed: &False) -> Option<(u64, Finding)> {
 
 #[test]
 fn every_claim_fails_where_it_is_false() {
-    let found = map(FALSE, noticed);
+    let all: Vec<&False> = FALSE.iter().chain(forces::FALSE).collect();
+    let found = map(&all, |claimed| noticed(claimed));
     let mut survived = Vec::new();
-    for (claimed, found) in FALSE.iter().zip(found) {
+    for (claimed, found) in all.into_iter().zip(found) {
         let False { theorem, claim, kind, wrong, .. } = claimed;
         let Some((index, Finding { figure, limit, note, .. })) = found else {
             survived.push((theorem, claim, wrong));

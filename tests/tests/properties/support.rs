@@ -69,6 +69,9 @@ pub fn holds(theorem: u8, kinds: &[Kind], cases: u32) -> Findings {
     });
     let (applied, undecided, found) = all.into_inner();
     println!("T{theorem}: holds on {applied} systems, undecided on {undecided}");
+    for f in found.findings.iter().filter(|f| f.word == Word::Undecided) {
+        println!("   undecided: {}: {}", f.claim, f.note);
+    }
     assert!(f64::from(undecided) <= UNDECIDED * f64::from(applied + undecided) + 1.0, "undecided on {undecided}");
     assert!(3 * applied >= cases, "T{theorem} applied to {applied} of {cases} systems only");
     found

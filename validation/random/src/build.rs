@@ -358,6 +358,7 @@ impl<'a> Builder<'a> {
     fn scene(mut self, name: &str) -> Scene {
         self.system.lagrangian = self.lagrangian();
         self.system.constraints = self.constraints();
+        self.system.forces = self.recipe.drawn.forces(&self.system);
         // one outside of the run does not count
         self.system.breakpoints =
             self.recipe.drawn.sudden.iter().flat_map(|sudden| [self.after(sudden.at), self.after(-1)]).collect();

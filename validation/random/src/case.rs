@@ -57,10 +57,8 @@ pub struct Case {
     pub vakonomic: Motion,
     /// The removal of the scene, then the automatic ones.
     pub removed: Vec<Removed>,
-    /// Lindelöf's mistake, on the removal by coordinates where there is one.
+    /// Lindelöf's mistake, on the removal by coordinates where there is one; it has no meaning with forces.
     pub control: Option<(Removal, Motion)>,
-    /// The system with its forces, where it has any, and Chetaev's motion.
-    pub forced: Option<(System, Motion)>,
     /// Why the run was shortened, if it was.
     pub shortened: Option<String>,
     /// Gaps by round-off of data: `10² ε κ`, `κ` the condition of the saddle-point matrix at the start.
@@ -112,20 +110,12 @@ impl Case {
             removed.push(Removed { removal, costates, motion });
         }
         let by_coordinates = removed.iter().find(|r| r.removal.name == "coordinates").or(removed.first());
-        let control = match by_coordinates {
+        let control = match by_coordinates.filter(|_| !system.has_forces()) {
             Some(Removed { removal, .. }) => Some((removal.clone(), run(substitution::derive(system, removal), &[])?)),
-            None => None,
-        };
-        let forced = match recipe.drawn.forced(system) {
-            Some(forced) => {
-                let motion = run(equations(&forced, CHETAEV, None)?, &[])?;
-                Some((forced, motion))
-            }
             None => None,
         };
         Ok(Case {
             recipe: recipe.clone(),
-            forced,
             metric: Metric::new(system)?,
             scene: scene.clone(),
             chetaev,
@@ -177,7 +167,6 @@ impl Case {
             .into_iter()
             .chain(removed)
             .chain(control)
-            .chain(self.forced.iter().map(|(_, motion)| ("Chetaev with forces".to_string(), motion)))
             .filter_map(|(label, motion)| stop(&label, motion))
             .min_by(|a, b| a.0.total_cmp(&b.0))
     }
@@ -267,14 +256,13 @@ impl Case {
     /// One of the case's own motions.
     ///
     /// # Panics
-    /// For a removal, a control or forces that the case does not have.
+    /// For a removal or a control that the case does not have.
     pub fn motion(&mut self, which: Which) -> &mut Motion {
         match which {
             Which::Chetaev => &mut self.chetaev,
             Which::Vakonomic => &mut self.vakonomic,
             Which::Removed(i) => &mut self.removed[i].motion,
             Which::Control => &mut self.control.as_mut().expect("asked for only where there is one").1,
-            Which::Forced => &mut self.forced.as_mut().expect("asked for only where there is one").1,
         }
     }
 }
@@ -290,8 +278,6 @@ pub enum Which {
     Removed(usize),
     /// The control.
     Control,
-    /// Chetaev with forces.
-    Forced,
 }
 
 /// Costates of the recipe, zero where the variable has none.

@@ -21,7 +21,7 @@ pub struct Classes {
     pub quartic: Option<(i64, usize)>,
     /// What a nonlinear constraint is.
     pub surface: Surface,
-    /// Forces, for those formulations that have a meaning with them: one for each coordinate.
+    /// Forces, one for each coordinate, which act in every formulation.
     pub forces: Option<Vec<Force>>,
     /// The units in which motions are compared with those in the scene's.
     pub units: Option<Units>,
@@ -151,17 +151,18 @@ impl Classes {
         }
     }
 
-    /// The system with the forces, if there are any.
-    pub(crate) fn forced(&self, system: &System) -> Option<System> {
-        let mut forced = system.clone();
-        let (g, q, v) = (&forced.graph, forced.positions(), forced.velocities());
+    /// The forces on a system, zero where there are none.
+    pub(crate) fn forces(&self, system: &System) -> Vec<Expr> {
+        let (g, q, v) = (&system.graph, system.positions(), system.velocities());
         let force = |(i, force): (usize, &Force)| {
             let function = if force.sine { Function::Sin } else { Function::Cos };
             let pull = g.call(function, g.variable(q[force.place % q.len()]));
             g.sub(g.mul(g.ratio(force.strength, 16), pull), g.mul(g.ratio(force.drag, 16), g.variable(v[i])))
         };
-        forced.forces = self.forces.as_ref()?[..q.len()].iter().enumerate().map(force).collect();
-        Some(forced)
+        match &self.forces {
+            Some(forces) => forces[..q.len()].iter().enumerate().map(force).collect(),
+            None => vec![g.zero(); q.len()],
+        }
     }
 
     /// In words, for reports.

@@ -202,7 +202,7 @@ impl Rewritten {
     }
 }
 
-/// The augmented system of a removal (T2): coordinates `(q, u)`, `L(q, q̇, t)`, `q̇ = Φ(u̇, q, t)`.
+/// The augmented system of a removal (T2): coordinates `(q, u)`, `L(q, q̇, t)`, `Q` on `q`, `q̇ = Φ(u̇, q, t)`.
 ///
 /// A parameter that is a coordinate is that coordinate. The removal's `q` must be parameters or memory, and
 /// `L` of first order in `u`. The vakonomic multiplier of `ẇ_k − B_k` is `μ_k = −P_k − ∂L/∂ẇ_k`.
@@ -215,6 +215,7 @@ pub fn augmented(system: &System, removal: &Removal) -> System {
     other.parameters = system.parameters.clone();
     other.breakpoints = system.breakpoints.clone();
     other.lagrangian = system.lagrangian;
+    other.forces.iter_mut().zip(&system.forces).for_each(|(other, force)| *other = *force);
     let rate = |w: &mechanics::MemoryVariable| other.graph.symbol(&format!("{}'", other.graph.name(w.symbol)));
     let constraints = removal.memory.iter().map(|w| other.graph.sub(other.graph.variable(rate(w)), w.rate)).collect();
     other.constraints = constraints;

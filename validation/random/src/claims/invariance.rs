@@ -31,10 +31,6 @@ pub(super) fn writing(case: &mut Case) -> Result<(), CheckError> {
         let mut vakonomic = case.run(equations(&other, VAKONOMIC, None)?, mu.as_slice())?;
         case.same(4, "vakonomic: constraints recombined", Which::Vakonomic, &mut vakonomic);
     }
-    if let Some((forced, _)) = case.forced.clone().filter(|_| h > 0) {
-        let other = equations(&recombined(&forced, &self::mixing(&forced)), CHETAEV, None)?;
-        case.same(4, "Chetaev with forces: constraints recombined", Which::Forced, &mut case.run(other, &[])?);
-    }
     let n = system.dimension();
     let rewritten = Rewritten::new(&system, &shift(&system));
     let mut start = case.scene.start.clone();
@@ -50,12 +46,6 @@ pub(super) fn writing(case: &mut Case) -> Result<(), CheckError> {
         let mut motion = case.solve(&rewritten.system, &start, case.end(), equations, &constants)?;
         let claim = if which == Which::Chetaev { "Chetaev: other coordinates" } else { "vakonomic: other coordinates" };
         case.same(4, claim, which, &mut motion);
-    }
-    if let Some((forced, _)) = case.forced.clone() {
-        let rewritten = Rewritten::new(&forced, &shift(&forced));
-        let equations = rewritten.outputs(equations(&rewritten.system, CHETAEV, None)?);
-        let mut motion = case.solve(&rewritten.system, &start, case.end(), equations, &[])?;
-        case.same(4, "Chetaev with forces: other coordinates", Which::Forced, &mut motion);
     }
     // the removed-constraint motion does depend on the parameters: measured, not required
     for i in 1..case.removed.len() {
@@ -102,19 +92,17 @@ pub(super) fn reversal_and_units(case: &mut Case) -> Result<(), CheckError> {
 /// The reversed system, from the end of a motion with its multipliers and costates there, runs back.
 fn backwards(case: &mut Case, reversal: &Scaling) -> Result<(), CheckError> {
     let t1 = case.end();
-    let forced = case.forced.as_ref().map(|(system, _)| reversal.system(system));
     let other = reversal.system(&case.scene.system);
     let clock = Sampling { rate: -1.0, offset: 0.0, ..Sampling::default() };
     let removed = (0..case.removed.len()).map(Which::Removed);
     let all = [Which::Chetaev, Which::Vakonomic].into_iter().chain(removed);
-    for which in all.chain(forced.is_some().then_some(Which::Forced)).collect::<Vec<_>>() {
-        let other = forced.as_ref().filter(|_| which == Which::Forced).unwrap_or(&other);
+    for which in all.collect::<Vec<_>>() {
         let (end, less) = case.motion(which).at_in_both_runs(t1)?;
-        let mut back = run_back(case, which, reversal, other, &end)?;
+        let mut back = run_back(case, which, reversal, &other, &end)?;
         let (gap, mut floor) = (case.gap_by(which, &mut back, &clock)?, case.floor);
         if case.is_apart(&gap) {
             // what the end is off by grows on the way back, too
-            let mut second = run_back(case, which, reversal, other, &less)?;
+            let mut second = run_back(case, which, reversal, &other, &less)?;
             let between = compare_motions(&mut back, &mut second, &mut case.metric.clone())?;
             floor = floor.max(CERTAINTY * between.largest);
         }
@@ -126,7 +114,6 @@ fn backwards(case: &mut Case, reversal: &Scaling) -> Result<(), CheckError> {
 fn claim(which: Which) -> &'static str {
     match which {
         Which::Chetaev => "Chetaev runs back the way it came",
-        Which::Forced => "Chetaev with forces runs back the way it came",
         Which::Removed(_) => "removed constraint runs back the way it came",
         _ => "vakonomic runs back the way it came",
     }
@@ -143,7 +130,7 @@ fn run_back(
     let state = State { t: case.end(), q: end.coordinates.clone(), v: end.velocities.clone() };
     let names: Vec<String> = case.motion(which).equations.multipliers.iter().map(|m| m.name.clone()).collect();
     let (equations, constants) = match which {
-        Which::Chetaev | Which::Forced => (equations(other, CHETAEV, None)?, Vec::new()),
+        Which::Chetaev => (equations(other, CHETAEV, None)?, Vec::new()),
         Which::Removed(i) => {
             let removal = &case.removed[i].removal;
             let graph = &case.scene.system.graph;
@@ -184,10 +171,6 @@ fn units(case: &mut Case, scaling: &Scaling) -> Result<(), CheckError> {
         let equations = equations(&other, REMOVED_CONSTRAINT, Some(&removal))?;
         let constants = free_constants(&equations, &scaling.costates(&removal, &removed.costates));
         runs.push((Which::Removed(i), "removed constraint in other units", equations, constants));
-    }
-    if let Some((forced, _)) = &case.forced {
-        let equations = equations(&scaling.system(forced), CHETAEV, None)?;
-        runs.push((Which::Forced, "Chetaev with forces in other units", equations, Vec::new()));
     }
     for (which, claim, equations, constants) in runs {
         let mut motion = case.solve(&other, &start, end, scaling.outputs(equations), &constants)?;

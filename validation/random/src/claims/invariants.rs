@@ -58,12 +58,12 @@ fn drift(
     Ok(Drift { change, limit: CERTAINTY * (error + ROUND_OFF * size) + floor * size })
 }
 
-/// T6: `v·L_v − L` for Chetaev where nothing depends on time and `f` is homogeneous; with `𝓛 = L + μ·f`, and
-/// with `G`, for the others wherever nothing depends on time.
+/// T6: `v·L_v − L` for Chetaev where nothing depends on time, no force acts, and `f` is homogeneous; with
+/// `𝓛 = L + μ·f`, and with `G`, for the others wherever nothing depends on time and no force acts.
 pub(super) fn energy(case: &mut Case) -> Result<(), CheckError> {
     let system = case.scene.system.clone();
     let g = &system.graph;
-    if !system.is_autonomous() {
+    if !system.is_autonomous() || system.has_forces() {
         return Ok(());
     }
     let (v, floor) = (system.velocities(), case.floor);
@@ -100,16 +100,16 @@ pub(super) fn energy(case: &mut Case) -> Result<(), CheckError> {
     Ok(())
 }
 
-/// T7: `∂𝓛/∂v_i` of every coordinate in neither `L` nor `f`.
+/// T7: `∂𝓛/∂v_i` of every coordinate in neither `L` nor `f` on which no force acts.
 pub(super) fn momentum(case: &mut Case) -> Result<(), CheckError> {
     let system = case.scene.system.clone();
     let g = &system.graph;
     let floor = case.floor;
     let mu: Vec<Symbol> = (0..system.constraints.len()).map(|i| g.symbol(&format!("multiplier {i}"))).collect();
     let augmented = g.add(system.lagrangian, g.dot(&g.variables(&mu), &system.constraints));
-    for c in &system.coordinates {
+    for (c, &force) in system.coordinates.iter().zip(&system.forces) {
         let occurs = |e: &Expr| g.depends_on(*e, c.position);
-        if occurs(&system.lagrangian) || system.constraints.iter().any(occurs) {
+        if occurs(&system.lagrangian) || system.constraints.iter().any(occurs) || !g.is_zero(force) {
             continue;
         }
         let momentum = g.derivative(augmented, c.velocity);

@@ -52,7 +52,6 @@ pub struct Check {
 /// Every check that is made on a random system. T13 has systems of its own: [`null_test`].
 pub const CHECKS: &[Check] = &[
     check(0, "two derivations of each formulation give one motion, which keeps the constraint", within::check),
-    check(0, "two derivations of each formulation give one motion, which keeps the constraint", within::forced),
     check(0, "two derivations of each formulation give one motion, which keeps the constraint", natural::check),
     check(1, "integrable constraints: Chetaev, vakonomic and coordinate removal agree", agreement::integrable),
     check(2, "removed constraint is vakonomic motion of the augmented system", agreement::bridge),

@@ -61,29 +61,7 @@ pub(super) fn check(case: &mut Case) -> Result<(), CheckError> {
             apart(case, if kind == Realization::Friction { Which::Chetaev } else { Which::Vakonomic }, &mut motion)
         })?;
     }
-    between(case)?;
-    let Some((forced, _)) = case.forced.clone() else { return Ok(()) };
-    if slows {
-        judge(
-            case,
-            "friction tends to Chetaev with forces at rate 1/N",
-            "friction with forces: distance at N = 1000 over that at 10000",
-            |case, power| {
-                let setting = Setting { system: &forced, start: &start, end: case.end() };
-                let mut motion = realize(Realization::Friction, STRENGTH * power, setting, &multipliers)?;
-                apart(case, Which::Forced, &mut motion)
-            },
-        )?;
-    }
-    judge(
-        case,
-        "the family between tends to Chetaev with forces at rate 1/kappa",
-        "kappa with forces: distance at 100 over that at 1000",
-        |case, power| {
-            let family = equations(&with_kappa(&forced, KAPPA * power), deltaq::KAPPA, None)?;
-            apart(case, Which::Forced, &mut case.run(family, &multipliers)?)
-        },
-    )
+    between(case)
 }
 
 /// The distance of a motion from one of the case's own, and its own error.
@@ -168,7 +146,46 @@ fn judge(
         false if !RATE.contains(&rate) && range[0] <= *RATE.end() && range[1] >= *RATE.start() => {
             case.found.undecided(8, claim, format!("distances {note}, own error {error:.1e}"));
         }
-        false => case.found.require(8, claim, RATE.contains(&rate), format!("distances {note}")),
+        false => {
+            let holds = RATE.contains(&rate) || shows_two_terms(&distances);
+            case.found.require(8, claim, holds, format!("distances {note}"));
+        }
     }
     Ok(())
+}
+
+/// What two terms tell of the distance before those they are taken from; of `1/N²` they would tell 1.2 of it.
+const TOLD: std::ops::RangeInclusive<f64> = 0.85..=1.15;
+
+/// Whether the last of [`MORE`] distances are `|a/N + b/N²|`, and `a/N` the larger term at last. Where the two
+/// nearly cancel, as after a switch that is faster than `1/N`, a quotient is not ten yet.
+fn shows_two_terms(distances: &[f64]) -> bool {
+    let [.., first, before, last] = distances[..] else { return false };
+    // a + b at last, 10 a + 100 b before
+    let with_sign = |sign: f64| {
+        let b = (sign * before - 10.0 * last) / 90.0;
+        let a = last - b;
+        let part = (100.0 * a + 1e4 * b).abs() / first;
+        a.abs() > b.abs() && TOLD.contains(&part)
+    };
+    distances.len() == MORE as usize && [1.0, -1.0].into_iter().any(with_sign)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_a_distance_that_falls_like_1_over_n_shows_two_terms() {
+        let of = |distance: &dyn Fn(f64) -> f64| -> Vec<f64> {
+            (1..=MORE).map(|power| distance(10_f64.powi(power)).abs()).collect()
+        };
+        // measured: random system 304 of seed 2223
+        assert!(shows_two_terms(&[7.39e-4, 6.73e-6, 1.190e-7, 1.923e-8]));
+        assert!(shows_two_terms(&of(&|n| 2e-4 / n - 8e-2 / (n * n))));
+        for distance in [|_| 1.0, |n: f64| n.powf(-0.5), |n| n.powi(-2), |n| 1.0 + 1.0 / n, |n| n.powf(-1.4)] {
+            assert!(!shows_two_terms(&of(&distance)), "{:?}", of(&distance));
+        }
+        assert!(!shows_two_terms(&of(&|n| 1.0 / n)[1..]));
+    }
 }

@@ -1,14 +1,14 @@
 //! What must hold within each formulation.
 
-use deltaq::{Setting, VAKONOMIC_COSTATE};
+use deltaq::VAKONOMIC_COSTATE;
 use mechanics::{SingularValues, State, System};
 use referees::maggi;
 
 use super::CheckError;
+use crate::Case;
 use crate::case::Which;
 use crate::derived::equations;
 use crate::realization::constraint_jacobian;
-use crate::{Case, referee};
 
 /// Instants at which the constraint is looked at.
 const INSTANTS: usize = 12;
@@ -34,14 +34,6 @@ pub(super) fn check(case: &mut Case) -> Result<(), CheckError> {
 fn maggi(case: &mut Case) -> Result<(), CheckError> {
     let [looser, kept] = &mut case.referee()?.clone();
     compared(case, Which::Chetaev, "Chetaev: multipliers and Maggi's equations", looser, kept)
-}
-
-/// The same with forces.
-pub(super) fn forced(case: &mut Case) -> Result<(), CheckError> {
-    let Some((system, _)) = &case.forced else { return Ok(()) };
-    let setting = Setting { system, start: &case.scene.start, end: case.end() };
-    let [looser, kept] = &mut referee(setting)?;
-    compared(case, Which::Forced, "Chetaev with forces: multipliers and Maggi's equations", looser, kept)
 }
 
 /// Each with its own error estimate.
