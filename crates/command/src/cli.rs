@@ -96,6 +96,10 @@ pub struct SolveArguments {
     /// Order of `--method leapfrog`: 2, 4, 6 or 8; 2 if left out.
     #[arg(long, value_parser = ["2", "4", "6", "8"])]
     pub order: Option<String>,
+    /// Add the derivatives of all columns by these numbers, with their error estimates: parameters, start
+    /// values (the constraints supply the velocities that they supply in the scene), `mu0_1`, … and `P0_w`, …
+    #[arg(long, value_name = "NAME,…", value_delimiter = ',')]
+    pub sensitivities: Vec<String>,
 }
 
 /// `deltaq compare`.

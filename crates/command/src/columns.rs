@@ -1,6 +1,6 @@
 //! What is printed of a motion at some times: one column a coordinate, a velocity and a multiplier.
 
-use deltaq::ErrorEstimate;
+use deltaq::{ErrorEstimate, Sensitivities};
 use equations::{Equations, Outputs};
 use scene::Scene;
 use serde_json::{Map, Value, json};
@@ -46,6 +46,37 @@ impl Columns {
             "multipliers": named_columns(&self.multipliers, rows, |r| &r.multipliers),
         })
     }
+}
+
+impl Columns {
+    /// Those of [`derivative_row`]: `dx/dm`, `error dx/dm`.
+    pub fn derivative_names(&self, derived: &Sensitivities) -> Vec<String> {
+        let own = &self.names()[1..];
+        let by = |name: &String| {
+            let derivatives = own.iter().map(move |own| format!("d{own}/d{name}"));
+            derivatives.clone().chain(derivatives.map(|name| format!("error {name}"))).collect::<Vec<_>>()
+        };
+        derived.names.iter().flat_map(by).collect()
+    }
+
+    /// The derivatives by each number and their error estimates, as an object by its name.
+    pub fn derivatives(&self, derived: &Sensitivities) -> Value {
+        let of = |k: usize| {
+            let (mut value, mut errors) = (json!({}), json!({}));
+            self.write(&mut value, &derived.derivatives.iter().map(|row| row[k].clone()).collect::<Vec<_>>());
+            self.write(&mut errors, &derived.errors.iter().map(|row| row[k].clone()).collect::<Vec<_>>());
+            value["error_estimates"] = errors;
+            value
+        };
+        derived.names.iter().enumerate().map(|(k, name)| (name.clone(), of(k))).collect::<Map<_, _>>().into()
+    }
+}
+
+/// The derivatives at one time by each number, and their error estimates, each after a comma.
+pub fn derivative_row(derived: &Sensitivities, i: usize) -> String {
+    let all = |outputs: &Outputs| [&outputs.coordinates[..], &outputs.velocities, &outputs.multipliers].concat();
+    let pairs = derived.derivatives[i].iter().zip(&derived.errors[i]);
+    pairs.map(|(derivatives, errors)| format!(",{},{}", print(&all(derivatives)), print(&all(errors)))).collect()
 }
 
 /// One list of numbers a name.

@@ -6,8 +6,9 @@ use std::time::Duration;
 
 use anyhow::{Context, Result, bail};
 use deltaq::{
-    Choice, ErrorEstimate, Form, Motion, STEP_LIMIT, Setting, Settings, Steps, default_constants, error_estimates,
-    formulation_in, removal, removal_names, removals, setting, solve_by_steps, solve_choice,
+    Choice, Ending, ErrorEstimate, Form, Motion, STEP_LIMIT, Setting, Settings, Steps, default_constants,
+    error_estimates, formulation_in, removal, removal_names, removals, sensitivities, setting, solve_by_steps,
+    solve_choice,
 };
 use discrete::Composition;
 use equations::{Formulation, Outputs};
@@ -18,7 +19,7 @@ use scene::Scene;
 use serde_json::{Map, Value, json};
 
 use crate::cli::{Format, FreeArguments, Limits, MotionArguments, SolveArguments};
-use crate::columns::{Columns, error_row, header, named_columns, row};
+use crate::columns::{Columns, derivative_row, error_row, header, named_columns, row};
 use deltaq::Stepping;
 use program::parallel;
 use program::{Answer, pretty};
@@ -53,12 +54,25 @@ pub(crate) fn run(arguments: &SolveArguments, quiet: bool) -> Result<Answer> {
     reached.retain(|&t| t <= motion.end());
     let (mut so_far, estimate) = error_estimates(&mut motion, setting(&scene), &reached)?;
     // it may end earlier by now
-    let is_reached = |t: f64| t <= motion.end();
+    let derived = match &arguments.sensitivities[..] {
+        [] => None,
+        names => {
+            let names: Vec<&str> = names.iter().map(String::as_str).collect();
+            Some(sensitivities(&scene, &choice, &names, &reached, &settings)?)
+        }
+    };
+    // derivatives may be known up to an earlier time
+    let known =
+        derived.as_ref().map_or(f64::INFINITY, |derived| derived.times.last().copied().unwrap_or(scene.start.t));
+    let is_reached = |t: f64| t <= motion.end() && t <= known;
     grid.retain(|&t| is_reached(t));
     (reached, so_far) = reached.into_iter().zip(so_far).filter(|(t, _)| is_reached(*t)).unzip();
     let (status, mut complaint) = estimate.status(&motion);
     if let (true, Some(words)) = (motion.is_complete() && motion.doubt.is_none(), &mut complaint) {
         *words += if steps.is_some() { "; ask for a smaller --step" } else { "; ask for a smaller --tolerance" };
+    }
+    if let Some(Ending::Stopped { t, cause }) = derived.as_ref().map(|derived| &derived.ending) {
+        complaint.get_or_insert(format!("derivatives are known up to t = {t:?}: {cause}"));
     }
     let rows = reached.iter().map(|&t| motion.at(t)).collect::<Result<Vec<_>, _>>()?;
     let columns = Columns::of(&scene, &motion.equations);
@@ -67,12 +81,15 @@ pub(crate) fn run(arguments: &SolveArguments, quiet: bool) -> Result<Answer> {
         reached.iter().zip(&rows).map(|(&t, now)| program.at(t, &now.coordinates, &now.velocities).to_vec()).collect();
     let text = match arguments.motion.format {
         Format::Csv => {
-            let rows = rows.iter().zip(&so_far).zip(reached.iter().zip(&observed));
-            let line = |((now, errors), (&t, observed)): ((&Outputs, &ErrorEstimate), (&f64, &Vec<f64>))| {
+            let rows = rows.iter().zip(&so_far).zip(reached.iter().zip(&observed)).enumerate();
+            type Row<'a> = ((&'a Outputs, &'a ErrorEstimate), (&'a f64, &'a Vec<f64>));
+            let line = |(i, ((now, errors), (&t, observed))): (usize, Row)| {
                 let observed: String = observed.iter().map(|x| format!(",{x:?}")).collect();
-                row(t, now) + "," + &error_row(errors) + &observed + "\n"
+                let derivatives = derived.as_ref().map_or(String::new(), |derived| derivative_row(derived, i));
+                row(t, now) + "," + &error_row(errors) + &observed + &derivatives + "\n"
             };
-            let names = [columns.names(), columns.error_names(), program.names().to_vec()].concat();
+            let derivatives = derived.as_ref().map_or(Vec::new(), |derived| columns.derivative_names(derived));
+            let names = [columns.names(), columns.error_names(), program.names().to_vec(), derivatives].concat();
             header(&names) + &rows.map(line).collect::<String>()
         }
         Format::Json => {
@@ -80,6 +97,7 @@ pub(crate) fn run(arguments: &SolveArguments, quiet: bool) -> Result<Answer> {
             (value["status"], value["cause"], value["times"]) = (json!(status), json!(complaint), json!(reached));
             (value["error_estimate"], value["error_estimates"]) = (json!(estimate.absolute), columns.errors(&so_far));
             columns.write(&mut value, &rows);
+            derived.iter().for_each(|derived| value["sensitivities"] = columns.derivatives(derived));
             value["observables"] = named_columns(program.names(), &observed, |row| row);
             pretty("solve", &value)
         }
@@ -126,6 +144,9 @@ fn steps(arguments: &SolveArguments) -> Result<Option<Steps>> {
     }
     if arguments.motion.no_projection {
         bail!("--no-projection is for the other methods: every step of leapfrog ends on the constraint");
+    }
+    if !arguments.sensitivities.is_empty() {
+        bail!("--sensitivities are for the other methods: leapfrog carries no derivatives");
     }
     if arguments.motion.limits.max_step.is_some() {
         bail!("--max-step is for the other methods: all steps of leapfrog are as long as --step says");

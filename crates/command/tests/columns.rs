@@ -108,6 +108,34 @@ fn with_disc(test: impl FnOnce(&str)) {
 }
 
 #[test]
+fn derivatives_have_in_their_columns_what_the_json_has_under_their_names() {
+    with_disc(|disc| {
+        let call = ["solve", disc, "-f", "vakonomic", "--times", "0,1", "--sensitivities", "a,mu0_1,yaw'"];
+        let (found, json) = both(&call, 0);
+        let mut expected = motion(&json);
+        for group in ["coordinates", "multipliers"] {
+            add(&mut expected, &json["error_estimates"][group], |name| format!("error {name}"));
+        }
+        add(&mut expected, &json["observables"], |name| name.into());
+        for by in ["a", "mu0_1", "yaw'"] {
+            let derivatives = &json["sensitivities"][by];
+            for (of, kind) in [(derivatives, ""), (&derivatives["error_estimates"], "error ")] {
+                add(&mut expected, &of["coordinates"], |name| format!("{kind}d{name}/d{by}"));
+                add(&mut expected, &of["velocities"], |name| format!("{kind}d{name}'/d{by}"));
+                add(&mut expected, &of["multipliers"], |name| format!("{kind}d{name}/d{by}"));
+            }
+        }
+        are_the_same(&found, &expected);
+        // the start of the multiplier is one number of its own, the constraints supply y' = a roll' sin(yaw)
+        let x = |name: &str| found[0][name].parse::<f64>().expect("a number");
+        assert!((x("dmu_1/dmu0_1") - 1.0).abs() < 1e-13 && x("dmu_2/dmu0_1").abs() < 1e-13);
+        assert!((x("dy'/da") - 1.3 * 0.4_f64.sin()).abs() < 1e-12, "{}", x("dy'/da"));
+        let refused = answer(&["solve", disc, "-f", "chetaev", "--sensitivities", "mass"], 2).1;
+        assert!(refused.contains("`mass` is no parameter"), "{refused}");
+    });
+}
+
+#[test]
 fn motions_have_in_their_columns_what_the_json_has_under_their_names() {
     with_disc(|disc| {
         for formulation in ["chetaev", "vakonomic", "removed-constraint"] {

@@ -47,17 +47,7 @@ impl Ending {
         let cause = match cause {
             StopCause::Event { index } if *index == equations.guards.len() => return Ending::Completed,
             StopCause::Event { index } => {
-                let (guard, e) = (guard_words(equations, *index), equations.guards[*index]);
-                let cause = if equations.domains.contains(&e) {
-                    format!("{guard} vanishes: a root or logarithm of it, as written, has no value beyond")
-                } else if equations.silent.contains(&e) {
-                    format!(
-                        "{guard} vanishes, a factor of a constraint or of a combination of constraints, which then says nothing \
-                         of the velocities"
-                    )
-                } else {
-                    format!("{guard} vanishes, by which the equations divide")
-                };
+                let cause = vanishing_guard(equations, *index);
                 return Ending::Stopped { t: *t, cause };
             }
             StopCause::NotFinite { component } => {
@@ -102,6 +92,21 @@ impl Ending {
     /// Where only the tighter run goes on, there is no error estimate, and so no motion.
     pub(crate) fn unconfirmed(t: f64, cause: &str) -> Ending {
         Ending::Stopped { t, cause: format!("the run that estimates the error stops here: {cause}") }
+    }
+}
+
+/// That a motion ends at this guard, and why.
+pub(crate) fn vanishing_guard(equations: &Equations, index: usize) -> String {
+    let (guard, e) = (guard_words(equations, index), equations.guards[index]);
+    if equations.domains.contains(&e) {
+        format!("{guard} vanishes: a root or logarithm of it, as written, has no value beyond")
+    } else if equations.silent.contains(&e) {
+        format!(
+            "{guard} vanishes, a factor of a constraint or of a combination of constraints, which then says nothing of the \
+             velocities"
+        )
+    } else {
+        format!("{guard} vanishes, by which the equations divide")
     }
 }
 

@@ -1,6 +1,5 @@
 //! Ensembles: many starts and parameters of one system at once, over vector lanes and processor cores.
 
-mod costates;
 mod motions;
 mod reading;
 mod run;
@@ -15,11 +14,10 @@ use std::sync::{Arc, Mutex, PoisonError};
 use equations::{Compiled, Equations, LaneEquations};
 use integrate::{Interrupt, Method};
 use mechanics::{ConstantsRule, State, System};
-use scene::{Scene, Start, Starts};
+use scene::Scene;
 
-use crate::{Choice, Metric, Prepared, Settings, SolveError, Varying, setting};
-pub(crate) use costates::Costates;
-pub use costates::{costate_names, given_costates, is_costate};
+use crate::by_name::{Beginning, ByName};
+use crate::{Choice, Metric, Prepared, Settings, SolveError, setting};
 pub use motions::MemberMotion;
 pub use run::{EnsembleOptions, MemberRun};
 pub use threads::{number_of_threads, over_threads};
@@ -49,12 +47,9 @@ pub use threads::{number_of_threads, over_threads};
 /// ```
 #[derive(Clone)]
 pub struct Ensemble {
-    varying: Varying,
+    by_name: ByName,
     lanes: Result<LaneEquations, String>,
-    choice: Choice,
     system: System,
-    starts: Starts,
-    costates: Costates,
     end: f64,
     settings: Settings,
     metric: Metric,
@@ -119,21 +114,9 @@ impl Ensemble {
     /// [`SolveError::Member`] where a name comes twice, where multipliers or costates are to vary that the
     /// formulation does not start from.
     pub fn new(scene: &Scene, choice: &Choice, names: &[&str], settings: &Settings) -> Result<Self, SolveError> {
-        let refused = |reason: String| Err(SolveError::Member { reason });
-        if let Some(i) = (1..names.len()).find(|&i| names[..i].contains(&names[i])) {
-            return refused(format!("`{}` is named twice", names[i]));
-        }
-        let (costates, names) =
-            Costates::among(names, scene, choice).map_err(|reason| SolveError::Member { reason })?;
-        let choice = &costates.choice(choice);
-        let starts = scene.starts(&names).map_err(|error| SolveError::Scene(Box::new(error)))?;
-        if starts.vary_multipliers() && !choice.formulation.starts_multipliers {
-            return refused(format!("multipliers vary, and {} does not start from them", choice.formulation.name));
-        }
-        let varied = starts.parameters();
         let settings = Settings { method: Some(Method::Taylor), ..settings.clone() };
-        let varying = Varying::new(scene, choice, &varied, &settings)?;
-        let Prepared { equations, form, constants, start, .. } = varying.prepared();
+        let by_name = ByName::new(scene, choice, names, &settings)?;
+        let Prepared { equations, form, constants, start, .. } = by_name.varying().prepared();
         let start = integrate::Start { t: scene.start.t, y: start.clone() };
         integrate::check_start(&start, setting(scene).end, &settings.options(settings.tolerance))?;
         let point = [&[start.t], &start.y[..], constants].concat();
@@ -142,22 +125,10 @@ impl Ensemble {
             true => LaneEquations::new(equations, form, &point)?,
             false => Err("the system has breakpoints, at which a motion begins anew".into()),
         };
-        let metric = Metric::varying(&system, &varied)?;
+        let metric = Metric::varying(&system, &by_name.parameters())?;
         let words = Arc::new(Mutex::new(equations.clone()));
-        let (choice, end) = (choice.clone(), setting(scene).end);
-        Ok(Ensemble {
-            varying,
-            lanes,
-            choice,
-            system,
-            starts,
-            costates,
-            end,
-            settings,
-            metric,
-            words,
-            only_complete: false,
-        })
+        let end = setting(scene).end;
+        Ok(Ensemble { by_name, lanes, system, end, settings, metric, words, only_complete: false })
     }
 
     /// Members end at `end`, and not where the scene does.
@@ -185,12 +156,12 @@ impl Ensemble {
 
     /// The equations of all members; parameters that vary are free constants in them, behind the others.
     pub fn equations(&self) -> &Equations {
-        &self.varying.prepared().equations
+        &self.by_name.varying().prepared().equations
     }
 
     /// The equations compiled.
     pub fn compiled(&self) -> &Compiled {
-        &self.varying.prepared().compiled
+        &self.by_name.varying().prepared().compiled
     }
 
     /// The member that starts there.
@@ -199,9 +170,9 @@ impl Ensemble {
     /// [`SolveError`] without a start; [`SolveError::Member`] for parameters not finite or wrong in number.
     pub fn member_at(&mut self, start: &EnsembleStart) -> Result<EnsembleMember, SolveError> {
         let EnsembleStart { state, end, parameters, constants } = start;
-        self.varying.set(state, parameters, constants, false)?;
+        self.by_name.varying_mut().set(state, parameters, constants, false)?;
         let rule = constants.clone();
-        let Prepared { start, constants, guess, .. } = self.varying.prepared();
+        let Prepared { start, constants, guess, .. } = self.by_name.varying().prepared();
         let (y, constants, guess) = (start.clone(), constants.clone(), guess.clone());
         let given = EnsembleStart { state: state.clone(), end: *end, parameters: parameters.clone(), constants: rule };
         Ok(EnsembleMember { t: state.t, end: *end, y, constants, guess, given })
@@ -214,13 +185,8 @@ impl Ensemble {
     pub fn member(&mut self, row: &[f64]) -> Result<EnsembleMember, String> {
         let cause = self.settings.interrupt.as_ref().and_then(Interrupt::cause);
         cause.map_or(Ok(()), |cause| Err(cause.to_string()))?;
-        let (given, row) = self.costates.split(row);
-        let Start { state, parameters, multipliers } = self.starts.at(&row).map_err(|fault| fault.to_string())?;
-        let constants = match (given, self.starts.vary_multipliers()) {
-            (Some(costates), _) => ConstantsRule::Given(costates),
-            (None, true) => ConstantsRule::Given(multipliers),
-            (None, false) => self.choice.constants.clone(),
-        };
+        let Beginning { state, parameters, constants } =
+            self.by_name.beginning(row).map_err(|fault| fault.to_string())?;
         let start = EnsembleStart { state, end: self.end, parameters, constants };
         self.member_at(&start).map_err(|error| error.to_string())
     }

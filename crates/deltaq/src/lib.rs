@@ -57,6 +57,7 @@
 //! is an [`Ending`]; what was reached stays valid. An error estimate that is not to be trusted says so
 //! ([`Doubt`]).
 
+mod by_name;
 mod charts;
 mod choice;
 mod clock;
@@ -64,6 +65,7 @@ mod code;
 mod comparison;
 mod constants;
 mod contradiction;
+mod costates;
 mod discrete_run;
 mod disturbed;
 mod doubt;
@@ -92,6 +94,8 @@ mod prepared;
 mod round_off;
 mod runs;
 mod screening;
+mod sensitivities;
+mod sensitivity_start;
 mod settings;
 mod silent;
 mod single_run;
@@ -111,6 +115,7 @@ pub mod words;
 pub use decision::{Finding, PlainScene, Section};
 pub use symbolic::Language;
 
+pub use by_name::ByName;
 pub use charts::ChartChange;
 pub use choice::{
     Choice, choices, choices_among, constants_of, default_constants, derive, derive_at, forms, removal, removal_names,
@@ -120,11 +125,11 @@ pub use code::code;
 pub use comparison::{Comparison, Extent, compare, compare_unfitted};
 pub use constants::{constant_names, prepare};
 pub use contradiction::{Contradicted, Contradiction, holds_beside_numbers};
+pub use costates::{costate_names, given_costates, is_costate};
 pub use doubt::Doubt;
 pub use ending::Ending;
 pub use ensemble::{
-    Ensemble, EnsembleMember, EnsembleOptions, EnsembleStart, MemberMotion, MemberRun, costate_names, given_costates,
-    is_costate, number_of_threads, over_threads,
+    Ensemble, EnsembleMember, EnsembleOptions, EnsembleStart, MemberMotion, MemberRun, number_of_threads, over_threads,
 };
 pub use equations_text::{EquationStyle, equations_text, shared_text, system_text};
 pub use error::SolveError;
@@ -142,6 +147,7 @@ pub use metric::Metric;
 pub use motion::{FormReport, Motion, Seconds, solve, solve_choice, solve_from};
 pub use prepared::Prepared;
 pub use runs::{Decided, Pair, Run};
+pub use sensitivities::{Sensitivities, sensitivities};
 pub use settings::{CERTAINTY, Setting, Settings, TIGHTER, setting};
 pub use single_run::SingleRun;
 pub use steps::{STEP_LIMIT, Stepping, Steps, discrete_of, solve_by_steps};

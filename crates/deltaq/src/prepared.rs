@@ -1,6 +1,6 @@
 //! Equations compiled and started, for runs of the time loop and for other integrators than ours.
 
-use equations::{Compiled, Equations, Plan, Role};
+use equations::{Compiled, Equations, Plan, Role, Tangents};
 use integrate::{Method, Options, Start};
 use symbolic::Symbol;
 
@@ -188,7 +188,28 @@ impl Prepared {
         self.set_compiled();
         let mut options = options.clone();
         options.breakpoints.extend(&self.breakpoints);
-        SingleRun::new(&mut self.compiled, &mut self.metric, &Start { t: self.t, y }, end, options, largest)
+        SingleRun::new(&mut self.compiled, &mut self.metric, &Start { t: self.t, y }, end, options, (largest, None))
+    }
+
+    /// [`Prepared::integrate`] of the motion and of its `tangents`, which start there, for equations that are
+    /// complete; with the last digits of the start `moved`, as the run that estimates the error has them.
+    pub(crate) fn integrate_with(
+        &mut self,
+        tangents: &mut Tangents,
+        starts: &[Vec<f64>],
+        end: f64,
+        options: &Options,
+        moved: bool,
+    ) -> Result<SingleRun, SolveError> {
+        self.set_compiled();
+        let mut options = options.clone();
+        options.breakpoints.extend(&self.breakpoints);
+        let mut y = [std::slice::from_ref(&self.start), starts].concat().concat();
+        if moved {
+            move_digits(&mut y, |_| UNITS);
+        }
+        let start = Start { t: self.t, y };
+        SingleRun::new(&mut self.compiled, &mut self.metric, &start, end, options, (None, Some(tangents)))
     }
 
     /// The run that estimates the error of `kept`, no farther than that one came. Its start has its last

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use equations::{Compiled, EvaluationFailure, Outputs};
+use equations::{Compiled, EvaluationFailure, Outputs, Tangents};
 use integrate::{Gauge, Options, Problem, Solution, Start, Status, StopCause};
 
 use crate::sizes::sizes;
@@ -25,27 +25,31 @@ pub struct SingleRun {
 
 impl SingleRun {
     /// Runs from `start`, with its own sizes unless `options` have some; `compiled` has constants and guess.
-    /// Ends where the size of the chart comes to `largest`, if one is given.
+    /// Ends where the size of the chart comes to `largest`, if one is given. With `tangents` the states are
+    /// `(y, dy, …)`; along each direction `dy` has the sizes of `y`.
     pub(crate) fn new(
         compiled: &mut Compiled,
         metric: &mut Metric,
         start: &Start,
         end: f64,
         mut options: Options,
-        largest: Option<f64>,
+        (largest, tangents): (Option<f64>, Option<&mut Tangents>),
     ) -> Result<SingleRun, SolveError> {
+        let own = &start.y[..compiled.dimension()];
         let mut anchors = Vec::new();
-        let unknowns = compiled.settle(start.t, &start.y).map_err(SolveError::AtStart)?.to_vec();
+        let unknowns = compiled.settle(start.t, own).map_err(SolveError::AtStart)?.to_vec();
         if compiled.needs_guess() {
             anchors.push((start.t, unknowns));
         }
-        let mut rates = vec![0.0; start.y.len()];
-        compiled.rates(start.t, &start.y, &mut rates).map_err(SolveError::AtStart)?;
+        let mut rates = vec![0.0; own.len()];
+        compiled.rates(start.t, own, &mut rates).map_err(SolveError::AtStart)?;
         if options.sizes.is_empty() {
-            options.sizes = sizes(compiled, metric, start.t, &start.y, end - start.t);
+            let parts = start.y.len() / own.len();
+            options.sizes = sizes(compiled, metric, start.t, own, end - start.t).repeat(parts);
         }
         let before = compiled.fallbacks();
-        let mut runner = Runner { compiled, anchors, judged: 1, wanted: options.wanted.clone(), largest };
+        let wanted = options.wanted.clone();
+        let mut runner = Runner { compiled, tangents, anchors, judged: 1, wanted, largest };
         let solution = integrate::integrate(&mut runner, start, end, &options)?;
         let anchors = runner.anchors;
         let at_guard = |status: &Status| match status {
@@ -112,6 +116,8 @@ pub(crate) fn outputs(compiled: &mut Compiled, t: f64, states: &[f64]) -> Result
 /// Compiled equations as the time integrator sees them.
 struct Runner<'a> {
     compiled: &'a mut Compiled,
+    /// Of what is carried with the motion.
+    tangents: Option<&'a mut Tangents>,
     anchors: Vec<(f64, Vec<f64>)>,
     /// So many anchors, or one less, are kept because they are beside something that is wanted.
     judged: usize,
@@ -150,10 +156,13 @@ fn refused(failure: EvaluationFailure) -> integrate::EvaluationError {
 
 impl Problem for Runner<'_> {
     fn dimension(&self) -> usize {
-        self.compiled.dimension()
+        self.compiled.dimension() * (1 + self.tangents.as_ref().map_or(0, |tangents| tangents.directions()))
     }
     fn rates(&mut self, t: f64, y: &[f64], rates: &mut [f64]) -> Result<(), integrate::EvaluationError> {
-        self.compiled.rates(t, y, rates).map_err(refused)
+        match &mut self.tangents {
+            Some(tangents) => tangents.rates(self.compiled, t, y, rates).map_err(refused),
+            None => self.compiled.rates(t, y, rates).map_err(refused),
+        }
     }
     fn jacobian(&mut self, t: f64, y: &[f64], jacobian: &mut [f64]) -> Result<(), integrate::EvaluationError> {
         self.compiled.jacobian(t, y, jacobian).map_err(refused)
@@ -168,14 +177,20 @@ impl Problem for Runner<'_> {
         unit: f64,
         coefficients: &mut [f64],
     ) -> Result<(), integrate::EvaluationError> {
-        self.compiled.taylor(t, y, unit, coefficients).map_err(refused)
+        match &mut self.tangents {
+            Some(tangents) => tangents.taylor(self.compiled, t, y, unit, coefficients).map_err(refused),
+            None => self.compiled.taylor(t, y, unit, coefficients).map_err(refused),
+        }
     }
     fn project(&mut self, t: f64, y: &mut [f64]) -> Result<f64, integrate::EvaluationError> {
-        self.compiled.project(t, y).map_err(refused)
+        match &mut self.tangents {
+            Some(tangents) => tangents.project(self.compiled, t, y).map_err(refused),
+            None => self.compiled.project(t, y).map_err(refused),
+        }
     }
     fn accepted(&mut self, t: f64, y: &[f64]) -> Result<(), integrate::EvaluationError> {
         if self.compiled.needs_guess() {
-            let unknowns = self.compiled.settle(t, y).map_err(refused)?.to_vec();
+            let unknowns = self.compiled.settle(t, &y[..self.compiled.dimension()]).map_err(refused)?.to_vec();
             self.anchors.push((t, unknowns));
             self.thin();
         }
@@ -188,29 +203,31 @@ impl Problem for Runner<'_> {
         self.compiled.highest_power()
     }
     fn gauged(&mut self, t: f64, y: &[f64], arguments: &mut [f64]) -> Result<(), integrate::EvaluationError> {
-        self.compiled.gauged(t, y, arguments);
+        self.compiled.gauged(t, &y[..self.compiled.dimension()], arguments);
         Ok(())
     }
     fn terms_of_gauged(&mut self, t: f64, y: &[f64], terms: &mut [f64]) -> Result<(), integrate::EvaluationError> {
-        self.compiled.terms_of_gauged(t, y, terms);
+        self.compiled.terms_of_gauged(t, &y[..self.compiled.dimension()], terms);
         Ok(())
     }
     fn divisors(&self) -> usize {
         self.compiled.divisors()
     }
     fn divided(&mut self, t: f64, y: &[f64], values: &mut [f64]) -> Result<(), integrate::EvaluationError> {
-        self.compiled.divided(t, y, values);
+        self.compiled.divided(t, &y[..self.compiled.dimension()], values);
         Ok(())
     }
     fn terms_of_rates(&mut self, t: f64, y: &[f64], terms: &mut [f64]) -> Result<(), integrate::EvaluationError> {
-        terms.copy_from_slice(&self.compiled.terms_of_rates(t, y).map_err(refused)?);
+        let own = self.compiled.dimension();
+        terms.fill(0.0);
+        terms[..own].copy_from_slice(&self.compiled.terms_of_rates(t, &y[..own]).map_err(refused)?);
         Ok(())
     }
     fn events(&self) -> usize {
         self.compiled.guards() + usize::from(self.largest.is_some())
     }
     fn event_values(&mut self, t: f64, y: &[f64], values: &mut [f64]) -> Result<(), integrate::EvaluationError> {
-        self.compiled.guard_values(t, y, values);
+        self.compiled.guard_values(t, &y[..self.compiled.dimension()], values);
         if let (Some(largest), Some(size)) = (self.largest, values.last_mut()) {
             *size = largest - *size;
         }

@@ -47,6 +47,11 @@ impl StartValues {
         self.symbols.iter().position(|&s| s == symbol)
     }
 
+    /// The number that a symbol has at the start.
+    pub(crate) fn value(&self, symbol: Symbol) -> Option<f64> {
+        self.place(symbol).map(|place| self.inputs[place])
+    }
+
     /// The place of the first free constant in `inputs`, for this number of them.
     pub(crate) fn first_constant(&self, constants: usize) -> usize {
         self.inputs.len() - constants

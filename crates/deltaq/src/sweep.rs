@@ -5,7 +5,7 @@ use scene::{Number, Scene};
 
 use mechanics::ConstantsRule;
 
-use crate::ensemble::{Costates, is_costate};
+use crate::costates::{Costates, is_costate};
 use crate::{
     Answer, CHETAEV, Choice, Comparison, Extent, FORMULATIONS, Membership, REMOVED_CONSTRAINT, Settings, SolveError,
     THRESHOLDS, VAKONOMIC, Verdict, choices, choices_among,

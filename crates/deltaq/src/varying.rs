@@ -3,7 +3,7 @@
 use equations::{Equations, FreeConstant};
 use mechanics::{ConstantsRule, Parameter, RemovalProgram, State, System};
 use scene::Scene;
-use symbolic::Symbol;
+use symbolic::{Evaluator, Symbol};
 
 use crate::constants::resolve;
 use crate::{Choice, Form, Prepared, Settings, SolveError, derive_in_form, setting};
@@ -32,6 +32,10 @@ pub struct Varying {
     prepared: Prepared,
     /// Of equations in the variables of a removal: their start.
     removal: Option<RemovalProgram>,
+    /// What has to stay positive for the system as it was written, in `q, v, t` and the parameters, and how
+    /// that is called.
+    domains: Evaluator<f64>,
+    domain_names: Vec<String>,
     settings: Settings,
 }
 
@@ -63,14 +67,18 @@ impl Varying {
         let symbols: Vec<Symbol> = varied.iter().map(|p| p.symbol).collect();
         let removal = prepared.equations.removal.as_ref();
         let removal = removal.map(|removal| RemovalProgram::new(system, removal, &symbols));
-        Ok(Varying { prepared, removal, settings: settings.clone() })
+        let inputs = [&system.positions()[..], &system.velocities(), &[system.time], &symbols].concat();
+        let domains = system.evaluator(&inputs, &system.domains)?;
+        let domain_names = system.domains.iter().map(|e| system.graph.plain(*e)).collect();
+        Ok(Varying { prepared, removal, domains, domain_names, settings: settings.clone() })
     }
 
     /// Sets `(t₀, q₀, v₀)`, the parameters that vary and the other free constants. What is natural at a
     /// horizon is looked for from zero on, or, if `near`, from the constants of the motion before.
     ///
     /// # Errors
-    /// [`SolveError`] without a start; [`SolveError::Member`] for parameters not finite or wrong in number.
+    /// [`SolveError`] without a start, or where a formula as written has no value there;
+    /// [`SolveError::Member`] for parameters not finite or wrong in number.
     pub fn set(
         &mut self,
         state: &State,
@@ -83,6 +91,11 @@ impl Varying {
             let reason = format!("{varied} finite values are needed for the parameters that vary");
             return Err(SolveError::Member { reason });
         }
+        let at = [&state.q[..], &state.v, &[state.t], parameters].concat();
+        let outside = self.domains.evaluate(&at).iter().zip(&self.domain_names).find(|(value, _)| **value < 0.0);
+        if let Some((&value, expression)) = outside {
+            return Err(SolveError::OutsideDomain { expression: expression.clone(), value });
+        }
         let removal = self.removal.as_mut().map(|removal| removal.start(state, parameters)).transpose()?;
         let prepared = &mut self.prepared;
         prepared.values.set_state(state);
@@ -93,6 +106,19 @@ impl Varying {
         prepared.set_parameters(parameters);
         let near = near.then(|| prepared.own_constants().to_vec());
         resolve(prepared, constants, &self.settings, None, near.as_deref())
+    }
+
+    /// Sets the parameters that vary and the other free constants, for states of the caller's own: what a motion
+    /// starts from stays as it was.
+    ///
+    /// # Panics
+    /// If there are not as many.
+    pub fn set_numbers(&mut self, parameters: &[f64], constants: &[f64]) {
+        let prepared = &mut self.prepared;
+        assert_eq!(parameters.len() + constants.len(), prepared.constants.len(), "numbers");
+        prepared.set_parameters(parameters);
+        prepared.constants[..constants.len()].copy_from_slice(constants);
+        prepared.compiled.set_constants(&prepared.constants);
     }
 
     /// The equations, compiled and started.

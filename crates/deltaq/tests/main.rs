@@ -16,6 +16,7 @@ mod known_round_off;
 mod known_values;
 mod long;
 mod round_off;
+mod sensitivities;
 mod sentences;
 mod silent;
 mod steep;

@@ -22,9 +22,9 @@ pub struct Compiled {
     pub(crate) outputs: Evaluator<f64>,
     /// The chosen plan, where there is another than the plain one, and how often it was not to be trusted.
     pub(crate) planned: Option<Planned>,
-    left: Vec<usize>,
+    pub(crate) left: Vec<usize>,
     fallbacks: usize,
-    guards: Evaluator<f64>,
+    pub(crate) guards: Evaluator<f64>,
     pub(crate) angles: Evaluator<f64>,
     pub(crate) steep: Evaluator<f64>,
     pub(crate) gauges: Vec<fn(f64) -> f64>,
@@ -32,11 +32,11 @@ pub struct Compiled {
     pub(crate) divisors: Evaluator<f64>,
     /// Programs in terms, once these are asked for.
     pub(crate) terms: Option<Box<Terms>>,
-    projector: Option<Projector>,
+    pub(crate) projector: Option<Projector>,
     pub(crate) jacobian: Option<Jacobian>,
     /// Taylor coefficients in the chosen plan, and in the plain one where that may be needed.
-    series: Option<Series>,
-    plain_series: Option<Series>,
+    pub(crate) series: Option<Series>,
+    pub(crate) plain_series: Option<Series>,
     pub(crate) sizes: Sizes,
     /// `t, y, constants, z` in this order.
     pub(crate) inputs: Vec<f64>,
@@ -325,22 +325,25 @@ impl Compiled {
     /// # Panics
     /// If [`Compiled::with_series`] was not called, or there is room for less than two orders.
     pub fn taylor(&mut self, t: f64, y: &[f64], unit: f64, coefficients: &mut [f64]) -> Result<(), EvaluationFailure> {
+        let series = if self.solve_trusted(t, y)? { &mut self.series } else { &mut self.plain_series };
+        let order = coefficients.len() / y.len() - 1;
+        let series = series.as_mut().expect("compiled with_series");
+        let blocks = (&mut self.equations_of_instant[..], 1);
+        series.expand(&self.inputs, unit, order, blocks, |block, residual| block.factors.solve(residual));
+        series.write(y, coefficients);
+        Ok(())
+    }
+
+    /// Solves the blocks that the chosen plan leaves, or all where it is not to be trusted, and says which.
+    pub(crate) fn solve_trusted(&mut self, t: f64, y: &[f64]) -> Result<bool, EvaluationFailure> {
         self.load(t, y);
         self.solve_blocks(Blocks::Left)?;
         let trusted = self.planned.as_mut().is_none_or(|s| s.is_trusted(&self.inputs));
-        let series = if trusted {
-            &mut self.series
-        } else {
+        if !trusted {
             self.fallbacks += 1;
             self.solve_instant(t, y)?;
-            &mut self.plain_series
-        };
-        let order = coefficients.len() / y.len() - 1;
-        let series = series.as_mut().expect("compiled with_series");
-        let blocks = &mut self.equations_of_instant;
-        series.expand(&self.inputs, unit, order, blocks);
-        series.write(y, coefficients);
-        Ok(())
+        }
+        Ok(trusted)
     }
 
     pub(crate) fn load(&mut self, t: f64, y: &[f64]) {

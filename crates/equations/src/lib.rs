@@ -76,6 +76,7 @@ mod recombination;
 mod round_off;
 mod series;
 mod steep;
+mod tangents;
 mod terms;
 
 pub use blocks::EvaluationFailure;
@@ -88,3 +89,4 @@ pub use formulation::{Derivation, DerivationError, Formulation, Needs, parameter
 pub use lanes::LaneEquations;
 pub use outputs::{Cost, Outputs};
 pub use plan::{Collected, Plan};
+pub use tangents::Tangents;

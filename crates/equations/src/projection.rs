@@ -23,10 +23,10 @@ pub(crate) const LEFT: f64 = 1e-9;
 #[derive(Clone)]
 pub(crate) struct Projector {
     /// Outputs: the matrix row-major, then `f`.
-    program: Evaluator<f64>,
+    pub(crate) program: Evaluator<f64>,
     /// Where the velocities stand in `y`.
-    places: Vec<usize>,
-    constraints: usize,
+    pub(crate) places: Vec<usize>,
+    pub(crate) constraints: usize,
     factors: Factors,
     right: Vec<f64>,
 }

@@ -1,25 +1,25 @@
 //! Taylor coefficients of a motion, from its equations.
 
-use symbolic::{CompileError, Expr, SeriesInput, SeriesTape, SeriesWorkspace, Symbol};
+use symbolic::{CompileError, Expr, SeriesInput, SeriesScalar, SeriesTape, SeriesWorkspace, Symbol};
 
 use crate::blocks::CompiledBlock;
 use crate::equations::Equations;
 use crate::plan::Plan;
 
 /// `y(t + τ) = Σ_k c_k (τ/unit)^k` from the equations of motion in some plan and the blocks left in it.
-pub(crate) struct Series {
+pub(crate) struct Series<T = f64> {
     tape: SeriesTape,
     /// From the first expansion on; nothing is kept in it from one to the next, and its room is large.
-    workspace: Option<SeriesWorkspace<f64>>,
+    workspace: Option<SeriesWorkspace<T>>,
     /// Blocks that are solved numerically.
     left: Vec<usize>,
     /// Places in `(t, y, constants, z)` of what the tape takes.
     places: Vec<usize>,
-    inputs: Vec<f64>,
+    inputs: Vec<T>,
 }
 
 /// Without the room to work in: most copies are only read.
-impl Clone for Series {
+impl<T: SeriesScalar> Clone for Series<T> {
     fn clone(&self) -> Self {
         let Series { tape, workspace: _, left, places, inputs } = self;
         let (tape, left, places, inputs) = (tape.clone(), left.clone(), places.clone(), inputs.clone());
@@ -52,29 +52,52 @@ impl Series {
         equations.graph.compile_series(&inputs, &definitions, &rates, &residuals, &equations.parameters)
     }
 
-    /// Expands to `order`, from `(t, y, constants, z)`; `z` solves the blocks left, with factors at hand.
-    pub(crate) fn expand(&mut self, values: &[f64], unit: f64, order: usize, blocks: &mut [CompiledBlock]) {
+    /// The same in another number type.
+    pub(crate) fn again<T: SeriesScalar>(&self) -> Series<T> {
+        let (tape, left, places) = (self.tape.clone(), self.left.clone(), self.places.clone());
+        Series { tape, workspace: None, left, places, inputs: vec![T::from_f64(0.0); self.places.len()] }
+    }
+}
+
+impl<T: SeriesScalar> Series<T> {
+    /// Expands to `order`, from `(t, y, constants, z)`; `z` solves the blocks left, with factors at hand, by
+    /// which `solve` takes `(∂R/∂z)⁻¹` of what is handed to it. A block takes `sweeps` of these, and one more
+    /// where it is not linear: the factors of a Newton iteration are those of the point before the last.
+    pub(crate) fn expand(
+        &mut self,
+        values: &[T],
+        unit: f64,
+        order: usize,
+        (blocks, sweeps): (&mut [CompiledBlock], usize),
+        solve: fn(&mut CompiledBlock, &mut [T]),
+    ) {
         let workspace = self.workspace.get_or_insert_with(|| self.tape.workspace(order));
         self.tape.reorder(workspace, order);
         for (x, &place) in self.inputs.iter_mut().zip(&self.places) {
             *x = values[place];
         }
         let left = &self.left;
-        // The factors of a Newton iteration are those of the point before the last.
-        let sweeps = if left.iter().any(|&k| !blocks[k].linear) { 2 } else { 1 };
-        self.tape.expand(&self.inputs, unit, workspace, sweeps, &mut |block, residual| {
+        let sweeps = sweeps + usize::from(left.iter().any(|&k| !blocks[k].linear));
+        self.tape.expand(&self.inputs, T::from_f64(unit), workspace, sweeps, &mut |block, residual| {
             for x in residual.iter_mut() {
                 *x = -*x;
             }
-            blocks[left[block]].factors.solve(residual);
+            solve(&mut blocks[left[block]], residual);
         });
     }
 
+    /// The coefficients of a state from the last expansion; none of one that is constant in time.
+    pub(crate) fn state(&self, i: usize) -> Option<&[T]> {
+        self.workspace.as_ref().and_then(|workspace| self.tape.input(1 + i, workspace))
+    }
+}
+
+impl Series {
     /// The coefficients of the states, component after component, from the last expansion.
     pub(crate) fn write(&self, y: &[f64], coefficients: &mut [f64]) {
         let orders = coefficients.len() / y.len();
         for ((i, y), row) in y.iter().enumerate().zip(coefficients.chunks_exact_mut(orders)) {
-            match self.workspace.as_ref().and_then(|workspace| self.tape.input(1 + i, workspace)) {
+            match self.state(i) {
                 Some(series) => row.copy_from_slice(series),
                 None => {
                     row.fill(0.0);

@@ -6,11 +6,11 @@ use pyo3::types::{PyDict, PyString};
 
 use crate::comparison::{Comparison, Decided, Fit, Growth, LeadingTerm, Pair, Run};
 use crate::ensemble::Ensemble;
-use crate::equations::Trajectory;
 use crate::kept::{Kept, field};
 use crate::linearization::{Linearization, LinearizationSweep, StabilityChange};
 use crate::motion::{Motion, Outputs};
 use crate::system::State;
+use crate::trajectory::Trajectory;
 
 /// Equations are derived again.
 fn equations_again<'py>(state: &Bound<'py, PyDict>) -> PyResult<Bound<'py, PyAny>> {

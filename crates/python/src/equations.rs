@@ -1,25 +1,26 @@
 //! Equations of motion as functions of arrays.
 
 use std::sync::{Mutex, MutexGuard, PoisonError};
-use std::time::Instant;
 
 use deltaq::{
-    EquationStyle, Language, Prepared, SolveError, code, constant_names, derive_at, equations_text, prepare, setting,
+    Choice, EquationStyle, Language, Prepared, SolveError, code, constant_names, derive_at, equations_text, prepare,
+    setting,
 };
 use equations::{Compiled, EvaluationFailure, Formulation, Role};
-use integrate::{Dense, Method, Options, Status};
+use integrate::Method;
 use mechanics::{ConstantsRule, Observables};
-use numpy::PyArrayDyn;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use scene::Scene;
 
-use crate::arrays::{Array, Floats, States, array, fixed, list, within};
-use crate::kept::{Reduced, kept};
-use crate::motion::{Names, Outputs, observed, work};
+use crate::arguments::Numbers;
+use crate::arrays::{Array, Floats, States, array, list};
+use crate::at_run_time::AtRunTime;
+use crate::kept::Reduced;
+use crate::motion::{Names, Outputs, observed};
 use crate::system::System;
-use crate::{arguments, background, ensemble, errors};
+use crate::{arguments, background, errors};
 
 /// The equations of motion y' = F(t, y) of a system under one formulation.
 ///
@@ -30,10 +31,11 @@ pub(crate) struct Equations {
     ready: Mutex<Prepared>,
     /// Those that no thread works with: each call takes one, and brings it back.
     spare: Mutex<Vec<Prepared>>,
-    scene: Mutex<Scene>,
+    scene: Mutex<(Scene, Choice)>,
+    /// Equations for other numbers, by the parameters that are inputs of them.
+    at_run_time: Mutex<AtRunTime>,
     dimension: usize,
     system: Py<System>,
-    given: ConstantsRule,
     /// Name of the formulation.
     #[pyo3(get)]
     formulation: &'static str,
@@ -46,34 +48,6 @@ pub(crate) struct Equations {
     /// Names of the free constants.
     #[pyo3(get)]
     constants: Vec<String>,
-}
-
-/// One run of the time loop, without a second one: only its tolerance tells anything of its error.
-#[pyclass(frozen, get_all, module = "deltaq")]
-pub(crate) struct Trajectory {
-    /// The times asked for, shape (k,).
-    times: Py<PyArrayDyn<f64>>,
-    /// States y at `times`, shape (k, m); `Equations.outputs` reads coordinates and all else off them.
-    states: Py<PyArrayDyn<f64>>,
-    /// How many of the times it reached: from there on the states are NaN.
-    reached: usize,
-    /// "completed" or "stopped".
-    status: String,
-    /// Why the run stopped, None where it is complete.
-    cause: Option<String>,
-    /// What the run cost, as in `Motion.work`.
-    work: Py<PyDict>,
-    /// Wall-clock seconds of the run and of reading the states off.
-    seconds: f64,
-}
-
-kept!(Trajectory: times states reached status cause work seconds);
-
-#[pymethods]
-impl Trajectory {
-    fn __repr__(&self) -> String {
-        format!("<deltaq.Trajectory {}, {} s>", self.status, self.seconds)
-    }
 }
 
 impl Equations {
@@ -90,21 +64,20 @@ impl Equations {
         if !is_given && matches!(choice.constants, ConstantsRule::Natural { .. }) {
             choice.constants = ConstantsRule::Zero;
         }
-        let given = choice.constants.clone();
         let work = move || {
             let equations = derive_at(&scene.system, &scene.start, &choice)?;
             let made = prepare(setting(&scene), equations, &choice.constants, &settings)?;
-            Ok((made, scene))
+            Ok((made, scene, choice))
         };
         let made = background::run(py, &interrupt, work)?;
-        let (made, scene) = made.map_err(|error: SolveError| errors::solve(error))?;
+        let (made, scene, choice) = made.map_err(|error: SolveError| errors::solve(error))?;
         let equations = &made.equations;
         Ok(Equations {
             system: system.clone().unbind(),
-            given,
             spare: Mutex::default(),
+            at_run_time: Mutex::default(),
             dimension: scene.system.dimension(),
-            scene: Mutex::new(scene),
+            scene: Mutex::new((scene, choice)),
             formulation: equations.formulation,
             removal: equations.removal.as_ref().map(|r| r.name.clone()),
             states: equations.states.iter().map(|y| equations.graph.name(y.symbol)).collect(),
@@ -113,16 +86,28 @@ impl Equations {
         })
     }
 
+    pub(crate) fn states(&self) -> &Vec<String> {
+        &self.states
+    }
+
     fn ready(&self) -> MutexGuard<'_, Prepared> {
         self.ready.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     fn scene(&self) -> Scene {
-        self.scene.lock().unwrap_or_else(PoisonError::into_inner).clone()
+        self.scene_and_choice().0.clone()
+    }
+
+    pub(crate) fn scene_and_choice(&self) -> MutexGuard<'_, (Scene, Choice)> {
+        self.scene.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    pub(crate) fn at_run_time(&self) -> MutexGuard<'_, AtRunTime> {
+        self.at_run_time.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     /// Calls `body` with equations that no other thread has, from the same guess in each call.
-    fn with<T>(&self, body: impl FnOnce(&mut Prepared) -> T) -> T {
+    pub(crate) fn with<T>(&self, body: impl FnOnce(&mut Prepared) -> T) -> T {
         let spare = || self.spare.lock().unwrap_or_else(PoisonError::into_inner);
         let kept = spare().pop();
         let mut ready = kept.unwrap_or_else(|| self.ready().clone());
@@ -139,7 +124,7 @@ impl Equations {
     fn rows(
         &self,
         py: Python<'_>,
-        at: &States,
+        (at, parameters): (&States, Option<Numbers>),
         (width, method): (usize, Method),
         mut read: impl FnMut(&mut Compiled, f64, &[f64], &mut [f64]) -> Result<(), EvaluationFailure> + Send,
     ) -> PyResult<Vec<f64>> {
@@ -150,7 +135,10 @@ impl Equations {
             at.each(|t, y| rows.next().map_or(Ok(()), |row| read(&mut ready.compiled, t, y, row)))?;
             Ok(values)
         };
-        py.detach(|| self.with(work))
+        py.detach(|| match parameters {
+            None => self.with(work),
+            Some(Numbers(numbers)) => self.with_numbers(numbers, work)?,
+        })
     }
 
     fn at(&self, t: &Floats<'_>, y: &Floats<'_>) -> PyResult<States> {
@@ -253,17 +241,23 @@ impl Equations {
     }
 
     /// Rates y' = F(t, y), of the shape of y.
-    #[pyo3(signature = (t, y))]
-    fn rates<'py>(&self, py: Python<'py>, t: Floats<'_>, y: Floats<'_>) -> Array<'py> {
+    ///
+    /// parameters: name to number, for this call. Its first use compiles equations that have parameters of
+    /// these names as inputs; from then on a call costs the evaluation.
+    #[pyo3(signature = (t, y, parameters=None))]
+    fn rates<'py>(&self, py: Python<'py>, t: Floats<'_>, y: Floats<'_>, parameters: Option<Numbers>) -> Array<'py> {
         let (width, at) = (self.states.len(), self.at(&t, &y)?);
-        array(py, self.rows(py, &at, (width, Method::Dop853), Compiled::rates)?, at.count, &[width])
+        let rows = self.rows(py, (&at, parameters), (width, Method::Dop853), Compiled::rates)?;
+        array(py, rows, at.count, &[width])
     }
 
     /// The exact Jacobian dF/dy, shape (m, m) or (k, m, m): [i, j] is the derivative of rate i by state j.
-    #[pyo3(signature = (t, y))]
-    fn jacobian<'py>(&self, py: Python<'py>, t: Floats<'_>, y: Floats<'_>) -> Array<'py> {
+    /// parameters: as in `rates`.
+    #[pyo3(signature = (t, y, parameters=None))]
+    fn jacobian<'py>(&self, py: Python<'py>, t: Floats<'_>, y: Floats<'_>, parameters: Option<Numbers>) -> Array<'py> {
         let (width, at) = (self.states.len(), self.at(&t, &y)?);
-        array(py, self.rows(py, &at, (width * width, Method::Radau5), Compiled::jacobian)?, at.count, &[width, width])
+        let rows = self.rows(py, (&at, parameters), (width * width, Method::Radau5), Compiled::jacobian)?;
+        array(py, rows, at.count, &[width, width])
     }
 
     /// Coordinates, velocities, multipliers and invariants at (t, y).
@@ -310,78 +304,14 @@ impl Equations {
         array(py, places.into_iter().map(|i| rates[i]).collect(), None, &[self.dimension])
     }
 
-    /// One run of the time loop from the start of the system to the last of `times`, shape (k,), in ascending
-    /// order: half of what `System.solve` does, for those who know the error from elsewhere.
-    ///
-    /// method: one of METHODS; its first run compiles what it needs. tolerance: relative and absolute.
-    /// project, max_steps, max_step, time_limit: as in `System.solve`. For the start and the last time alone
-    /// nothing else is kept.
-    ///
-    /// Other threads go on; Ctrl-C ends it. SolveError without a run; `status` says if it stops early.
-    #[expect(clippy::too_many_arguments, reason = "named in Python, and most of them left out")]
-    #[pyo3(signature = (times, *, method="auto", tolerance=1e-11, project=true, max_steps=1_000_000, max_step=None, time_limit=None))]
-    fn integrate(
-        &self,
-        py: Python<'_>,
-        times: Floats<'_>,
-        method: &str,
-        tolerance: f64,
-        project: bool,
-        max_steps: usize,
-        max_step: Option<f64>,
-        time_limit: Option<f64>,
-    ) -> PyResult<Trajectory> {
-        let (settings, interrupt) = arguments::settings(method, tolerance, project, max_steps, max_step, time_limit)?;
-        let scene = self.scene();
-        let (times, end) = ensemble::times(&times, &scene)?;
-        let is_end = |&t: &f64| t == scene.start.t || t == end;
-        let mut options = Options {
-            projection: settings.projection,
-            max_steps,
-            max_step: settings.max_step,
-            dense: if times.iter().all(is_end) { Dense::EndOnly } else { Dense::Everywhere },
-            wanted: Some(times.clone().into()),
-            interrupt: Some(time_limit.map_or(interrupt.clone(), |seconds| interrupt.within(seconds))),
-            ..Options::with_tolerance(tolerance)
-        };
-        let run = |ready: &mut Prepared| -> Result<_, SolveError> {
-            options.method = settings.method.unwrap_or(ready.method.method);
-            ready.complete(options.method)?;
-            let clock = Instant::now();
-            let run = ready.integrate(end, &options)?;
-            let reached: Vec<f64> = times.iter().map_while(|&t| within(t, scene.start.t, run.end())).collect();
-            let width = ready.start.len();
-            let mut states = vec![f64::NAN; width * times.len()];
-            for (&t, row) in reached.iter().zip(states.chunks_exact_mut(width)) {
-                run.states_at(&mut ready.compiled, t, row)?;
-            }
-            Ok((run, reached.len(), states, clock.elapsed().as_secs_f64()))
-        };
-        let ran = background::run(py, &interrupt, || self.with(run))?;
-        let (run, reached, states, seconds) = ran.map_err(errors::solve)?;
-        let (status, cause) = match &run.solution.status {
-            Status::Completed => ("completed", None),
-            Status::Stopped { t, cause } => ("stopped", Some(format!("stopped at t = {t}: {cause}"))),
-        };
-        let count = Some(times.len());
-        Ok(Trajectory {
-            states: fixed(py, states, count, &[self.states.len()])?.unbind(),
-            times: fixed(py, times, count, &[])?.unbind(),
-            reached,
-            status: status.into(),
-            cause,
-            work: work(py, &run.solution.work)?,
-            seconds,
-        })
-    }
-
     fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Reduced<'py>> {
-        let (py, Equations { system, formulation, removal, given, .. }) = (slf.py(), slf.get());
+        let (py, Equations { system, formulation, removal, .. }) = (slf.py(), slf.get());
+        let given = slf.get().scene_and_choice().1.constants.clone();
         let state = PyDict::new(py);
         state.set_item("system", system)?;
         state.set_item("formulation", formulation)?;
         state.set_item("removal", removal)?;
-        state.set_item("constants", arguments::rule_value(py, given)?)?;
+        state.set_item("constants", arguments::rule_value(py, &given)?)?;
         Ok((py.import("deltaq")?.getattr("_again")?, ("Equations", state)))
     }
 

@@ -6,6 +6,7 @@
 mod again;
 mod arguments;
 mod arrays;
+mod at_run_time;
 mod background;
 mod comparison;
 mod ensemble;
@@ -18,7 +19,9 @@ mod proof;
 mod questions;
 mod reading;
 mod scene_text;
+mod sensitivities;
 mod system;
+mod trajectory;
 
 #[pyo3::pymodule]
 mod _native {
@@ -29,7 +32,7 @@ mod _native {
     #[pymodule_export]
     use crate::ensemble::Ensemble;
     #[pymodule_export]
-    use crate::equations::{Equations, Trajectory};
+    use crate::equations::Equations;
     #[pymodule_export]
     use crate::errors::{
         BoundaryError, CallError, CompileError, DeltaqError, DerivationError, EvaluationError, RemovalError,
@@ -43,6 +46,8 @@ mod _native {
     use crate::reading::{_read_again, built_in, load, parse};
     #[pymodule_export]
     use crate::system::{State, System};
+    #[pymodule_export]
+    use crate::trajectory::Trajectory;
 
     use integrate::Method;
     use pyo3::prelude::*;

@@ -2,7 +2,9 @@
 
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
-use deltaq::{Choice, ErrorEstimate, Seconds, Setting, Settings, SolveError, constant_names, error_estimates};
+use deltaq::{
+    Choice, ErrorEstimate, Seconds, Sensitivities, Setting, Settings, SolveError, constant_names, error_estimates,
+};
 use integrate::{Method, Projection, Work};
 use mechanics::Observables;
 use numpy::PyArrayDyn;
@@ -12,9 +14,9 @@ use pyo3::types::{IntoPyDict, PyDict};
 
 use crate::arguments::rule_value;
 use crate::arrays::{Floats, columns, fixed, times, within};
-use crate::errors;
 use crate::kept::kept;
 use crate::system::System;
+use crate::{errors, sensitivities};
 
 /// Coordinates, velocities, multipliers and invariants at one instant, or at k of them.
 #[pyclass(frozen, get_all, module = "deltaq")]
@@ -45,9 +47,9 @@ pub(crate) fn observed(observables: &mut Observables, t: f64, row: equations::Ou
 /// Names of multipliers, invariants and observables.
 #[derive(Clone)]
 pub(crate) struct Names {
-    multipliers: Vec<String>,
-    invariants: Vec<String>,
-    observables: Vec<String>,
+    pub(crate) multipliers: Vec<String>,
+    pub(crate) invariants: Vec<String>,
+    pub(crate) observables: Vec<String>,
 }
 
 impl Names {
@@ -96,6 +98,8 @@ pub(crate) struct Sampled {
     so_far: Vec<ErrorEstimate>,
     estimate: ErrorEstimate,
     dimension: usize,
+    /// Derivatives, where they were asked for.
+    pub(crate) derived: Option<Sensitivities>,
 }
 
 /// Instants at which a motion is read off unless told otherwise.
@@ -108,10 +112,9 @@ impl Sampled {
         setting: Setting,
         times: Option<Vec<f64>>,
     ) -> Result<Sampled, SolveError> {
-        let times = times.unwrap_or_else(|| {
-            let end = setting.end - setting.start.t;
-            (0..INSTANTS).map(|i| setting.start.t + end * i as f64 / (INSTANTS - 1) as f64).collect()
-        });
+        let (from, length) = (setting.start.t, setting.end - setting.start.t);
+        let instant = |i: usize| from + length * i as f64 / (INSTANTS - 1) as f64;
+        let times = times.unwrap_or_else(|| (0..INSTANTS).map(instant).collect());
         let reached = |motion: &deltaq::Motion| -> Vec<f64> {
             times.iter().map_while(|&t| within(t, motion.start(), motion.end())).collect()
         };
@@ -124,7 +127,12 @@ impl Sampled {
         let rows = reached.iter().map(row).collect::<Result<_, SolveError>>()?;
         let coordinates = setting.system.coordinates.iter().map(|c| c.name.clone()).collect();
         let dimension = setting.system.dimension();
-        Ok(Sampled { motion, times, rows, coordinates, observables, so_far, estimate, dimension })
+        Ok(Sampled { motion, times, rows, coordinates, observables, so_far, estimate, dimension, derived: None })
+    }
+
+    /// The times that were reached.
+    pub(crate) fn reached(&self) -> &[f64] {
+        &self.times[..self.rows.len()]
     }
 }
 
@@ -216,6 +224,12 @@ pub(crate) struct Motion {
     /// The same of multipliers and costates, by name, each of shape (k,).
     #[pyo3(get)]
     multiplier_error_estimates: Py<PyDict>,
+    /// Derivatives of all this by the numbers asked for, by name; NaN from where they are not known.
+    #[pyo3(get)]
+    sensitivities: Py<PyDict>,
+    /// What the derivatives of the two runs differ by at most up to each of `times`, by name.
+    #[pyo3(get)]
+    sensitivity_error_estimates: Py<PyDict>,
     /// "completed", "untrusted" (the estimate is doubted or too large, for all or for one coordinate),
     /// "stopped".
     #[pyo3(get)]
@@ -259,8 +273,8 @@ pub(crate) struct Motion {
 kept!(
     Motion: _asked system coordinate_names formulation removal times reached coordinates velocities
     multipliers invariants observables error_estimate relative_error_estimate coordinate_error_estimates
-    multiplier_error_estimates status cause doubt start end method form charts constants work projection
-    seconds, motion = OnceLock::new()
+    multiplier_error_estimates sensitivities sensitivity_error_estimates status cause doubt start end method
+    form charts constants work projection seconds, motion = OnceLock::new()
 );
 
 /// A motion, and the program of what is observed in it.
@@ -283,12 +297,13 @@ impl Motion {
     pub(crate) fn new(system: &Bound<'_, System>, sampled: Sampled, asked: &Asked<'_>) -> PyResult<Motion> {
         let py = system.py();
         let Sampled { motion, times, rows, coordinates: coordinate_names, observables: program, .. } = sampled;
-        let Sampled { so_far, estimate, dimension, .. } = sampled;
+        let Sampled { so_far, estimate, dimension, derived, .. } = sampled;
         let names = Names::of(&motion.equations, &program);
         let count = Some(times.len());
         let Outputs { coordinates, velocities, multipliers, invariants, observables } =
             Outputs::new(py, &rows, dimension, &names, count)?;
         let (status, cause) = estimate.status(&motion);
+        let [sensitivities, sensitivity_error_estimates] = sensitivities::tables(py, derived, dimension, count)?;
         let mut coordinate_errors: Vec<f64> = so_far.iter().flat_map(|e| e.coordinates.clone()).collect();
         coordinate_errors.resize(times.len() * dimension, f64::NAN);
         let multiplier_errors = so_far.iter().map(|e| &e.multipliers[..]);
@@ -316,6 +331,8 @@ impl Motion {
             relative_error_estimate: estimate.relative,
             coordinate_error_estimates: fixed(py, coordinate_errors, count, &[dimension])?.unbind(),
             multiplier_error_estimates: columns(py, &names.multipliers, multiplier_errors, count)?.unbind(),
+            sensitivities,
+            sensitivity_error_estimates,
             status: status.into(),
             cause,
             doubt: motion.doubt.as_ref().map(|doubt| doubt.because.clone()),

@@ -114,6 +114,8 @@ impl System {
     /// kept has a hundredth of it.
     /// project: move velocities onto the constraint after every step. max_steps, time_limit: limits on the
     /// steps of a run and on its seconds, after which it stops. max_step: no step is longer.
+    /// sensitivities: names of parameters, start values ("x", "x'"), multipliers ("mu0_1", ...) or costates
+    /// ("P0_w") by which all is derived: `Motion.sensitivities`.
     ///
     /// Other threads go on; Ctrl-C ends it. SolveError without a motion; `status` says if it stops early.
     ///
@@ -125,7 +127,7 @@ impl System {
     #[expect(clippy::too_many_arguments, reason = "named in Python, and most of them left out")]
     #[pyo3(signature = (
         formulation="chetaev", times=None, *, removal=None, mu0=None, constants=None, form="auto", method="auto",
-        tolerance=1e-11, project=true, max_steps=1_000_000, max_step=None, time_limit=None
+        tolerance=1e-11, project=true, max_steps=1_000_000, max_step=None, time_limit=None, sensitivities=None
     ))]
     fn solve(
         slf: &Bound<'_, Self>,
@@ -141,6 +143,7 @@ impl System {
         max_steps: usize,
         max_step: Option<f64>,
         time_limit: Option<f64>,
+        sensitivities: Option<Vec<String>>,
     ) -> PyResult<Motion> {
         let (py, given) = (slf.py(), arguments::constants(constants.as_ref(), mu0)?);
         let (settings, interrupt) = arguments::settings(method, tolerance, project, max_steps, max_step, time_limit)?;
@@ -159,7 +162,12 @@ impl System {
         let (limits, instants) = (settings.clone(), times.clone());
         let work = move || {
             let motion = solve_choice(&scene, &choice, &limits)?;
-            Ok((Sampled::new(motion, setting(&scene), instants)?, choice))
+            let mut sampled = Sampled::new(motion, setting(&scene), instants)?;
+            if let Some(names) = sensitivities.filter(|names| !names.is_empty()) {
+                let (names, reached) = (names.iter().map(String::as_str).collect::<Vec<_>>(), sampled.reached());
+                sampled.derived = Some(deltaq::sensitivities(&scene, &choice, &names, reached, &limits)?);
+            }
+            Ok((sampled, choice))
         };
         let (sampled, choice) =
             background::run(py, &interrupt, work)?.map_err(|error: SolveError| errors::solve(error))?;

@@ -98,7 +98,7 @@ pub use random::{SplitMix, Xorshift};
 pub use range::Range;
 pub use scalar::Scalar;
 pub use series::{
-    Correct, LANES, Lanes, Product, SeriesInput, SeriesScalar, SeriesTape, SeriesWorkspace, Store, Task, Weights,
+    Correct, Dual, LANES, Lanes, Product, SeriesInput, SeriesScalar, SeriesTape, SeriesWorkspace, Store, Task, Weights,
 };
 pub use steep::Steep;
 pub use suggest::nearest;

@@ -1,11 +1,13 @@
 //! Power series of expressions along a motion: Taylor coefficients order by order.
 
 pub(crate) mod build;
+mod dual;
 mod expansion;
 mod lanes;
 mod scalar;
 
 use crate::tape::{Tape, Workspace};
+pub use dual::Dual;
 use expansion::Expansion;
 pub use lanes::{LANES, Lanes};
 use scalar::Place;

@@ -48,7 +48,7 @@ impl Ensemble {
             multipliers: equations.multipliers.iter().map(|m| m.name.clone()).collect(),
             compiled: self.compiled().clone(),
             metric: self.metric.clone(),
-            watch: Watch::new(&self.system, equations, &self.starts.parameters())?,
+            watch: Watch::new(&self.system, equations, &self.by_name.parameters())?,
             invariants: &equations.invariants,
             states: lost_digits::names_of_states(equations),
             instants,

@@ -80,8 +80,8 @@ impl Ensemble {
         times: &[f64],
         threads: usize,
     ) -> Result<Vec<Outcome>, SolveError> {
-        let Prepared { t, start, constants, .. } = self.varying.prepared();
-        let parameters = constants.len() - self.varying.constants().len();
+        let Prepared { t, start, constants, .. } = self.by_name.varying().prepared();
+        let parameters = constants.len() - self.by_name.varying().constants().len();
         let equations = disturbed_by_constants(self.equations(), parameters);
         let with = |constants: &[f64], disturbance: &[f64]| {
             let (own, varied) = constants.split_at(constants.len() - parameters);
@@ -109,7 +109,7 @@ impl Ensemble {
         threads: usize,
     ) -> Vec<Outcome> {
         self.run_by(
-            (&self.varying.prepared().compiled, self.lanes.as_ref()),
+            (&self.by_name.varying().prepared().compiled, self.lanes.as_ref()),
             members,
             times,
             tolerance,
@@ -298,8 +298,14 @@ impl Task<'_> {
         let member = &self.members[index];
         member.set(compiled);
         let start = Start { t: member.t, y: self.states(index) };
-        let run =
-            SingleRun::new(compiled, &mut self.metric_of(member), &start, member.end, self.options.clone(), None)?;
+        let run = SingleRun::new(
+            compiled,
+            &mut self.metric_of(member),
+            &start,
+            member.end,
+            self.options.clone(),
+            (None, None),
+        )?;
         let solution = &run.solution;
         let (reached, direction) = (run.end(), member.end - member.t);
         let passed = self.times.iter().take_while(|&&t| (t - reached) * direction <= 0.0);

@@ -21,12 +21,12 @@ impl Ensemble {
             return None;
         }
         let EnsembleStart { state, end, parameters, constants } = &member.given;
-        let (mut system, varied) = (self.system.clone(), self.starts.parameters());
+        let (mut system, varied) = (self.system.clone(), self.by_name.parameters());
         for p in &mut system.parameters {
             p.value = varied.iter().position(|s| *s == p.symbol).map_or(p.value, |i| parameters[i]);
         }
         let setting = Setting { system: &system, start: state, end: *end };
-        let choice = Choice { constants: constants.clone(), ..self.choice.clone() };
+        let choice = Choice { constants: constants.clone(), ..self.by_name.choice().clone() };
         let settings = Settings { method: None, times: Some(times.to_vec()), ..self.settings.clone() };
         let mut motion = solve_from(setting, &choice, &settings).ok()?;
         let direction = (end - state.t).signum();

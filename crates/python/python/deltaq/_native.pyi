@@ -1,4 +1,4 @@
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from os import PathLike
 from typing import Any, Final, Literal, TypeAlias, final
 
@@ -273,6 +273,7 @@ class System:
         max_steps: int = 1_000_000,
         max_step: float | None = None,
         time_limit: float | None = None,
+        sensitivities: Sequence[str] | None = None,
     ) -> Motion:
         """Derives and integrates the motion under a formulation, one of FORMULATIONS.
 
@@ -286,6 +287,8 @@ class System:
         kept has a hundredth of it.
         project: move velocities onto the constraint after every step. max_steps, time_limit: limits on the
         steps of a run and on its seconds, after which it stops. max_step: no step is longer.
+        sensitivities: names of parameters, start values ("x", "x'"), multipliers ("mu0_1", ...) or costates
+        ("P0_w") by which all is derived: `Motion.sensitivities`.
 
         Other threads go on; Ctrl-C ends it. SolveError without a motion; `status` says if it stops early.
 
@@ -406,10 +409,17 @@ class Equations:
 
         constants: the free constants, "zero", {"horizon": T} (natural at T) or an array; default: as derived.
         """
-    def rates(self, t: _Floats, y: _Floats) -> _Array:
-        """Rates y' = F(t, y), of the shape of y."""
-    def jacobian(self, t: _Floats, y: _Floats) -> _Array:
-        """The exact Jacobian dF/dy, shape (m, m) or (k, m, m): [i, j] is the derivative of rate i by state j."""
+    def rates(self, t: _Floats, y: _Floats, parameters: Mapping[str, float] | None = None) -> _Array:
+        """Rates y' = F(t, y), of the shape of y.
+
+        parameters: name to number, for this call. Its first use compiles equations that have parameters of
+        these names as inputs; from then on a call costs the evaluation.
+        """
+    def jacobian(self, t: _Floats, y: _Floats, parameters: Mapping[str, float] | None = None) -> _Array:
+        """The exact Jacobian dF/dy, shape (m, m) or (k, m, m): [i, j] is the derivative of rate i by state j.
+
+        parameters: as in `rates`.
+        """
     def outputs(self, t: _Floats, y: _Floats) -> Outputs:
         """Coordinates, velocities, multipliers and invariants at (t, y)."""
     def acceleration(self, t: float, q: _Floats, v: _Floats, mu: _Floats | None = None) -> _Array:
@@ -421,6 +431,10 @@ class Equations:
         self,
         times: _Floats,
         *,
+        y0: _Floats | None = None,
+        parameters: Mapping[str, float] | None = None,
+        constants: _Constants | None = None,
+        mu0: _Floats | None = None,
         method: str = "auto",
         tolerance: float = 1e-11,
         project: bool = True,
@@ -431,6 +445,9 @@ class Equations:
         """One run of the time loop from the start of the system to the last of `times`, shape (k,), in ascending
         order: half of what `System.solve` does, for those who know the error from elsewhere.
 
+        y0: the state to start from, shape (m,). parameters: name to number, for this run; without y0 the start
+        follows, as of `System.replace`. constants, mu0: the free constants of this run, as in `solve`. The first
+        use of parameters of some names compiles equations that have them as inputs; then a call costs the run.
         method: one of METHODS; its first run compiles what it needs. tolerance: relative and absolute.
         project, max_steps, max_step, time_limit: as in `System.solve`. For the start and the last time alone
         nothing else is kept.
@@ -566,6 +583,10 @@ class Motion:
     """
     multiplier_error_estimates: Final[dict[str, _Array]]
     """The same of multipliers and costates, by name, each of shape (k,)."""
+    sensitivities: Final[dict[str, Outputs]]
+    """Derivatives of all this by the numbers asked for, by name; NaN from where they are not known."""
+    sensitivity_error_estimates: Final[dict[str, Outputs]]
+    """What the derivatives of the two runs differ by at most up to each of `times`, by name."""
     status: Final[Literal["completed", "untrusted", "stopped"]]
     """"completed", "untrusted" (the estimate is doubted or too large, for all or for one coordinate),
     "stopped".

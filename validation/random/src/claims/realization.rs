@@ -183,7 +183,9 @@ mod tests {
         // measured: random system 304 of seed 2223
         assert!(shows_two_terms(&[7.39e-4, 6.73e-6, 1.190e-7, 1.923e-8]));
         assert!(shows_two_terms(&of(&|n| 2e-4 / n - 8e-2 / (n * n))));
-        for distance in [|_| 1.0, |n: f64| n.powf(-0.5), |n| n.powi(-2), |n| 1.0 + 1.0 / n, |n| n.powf(-1.4)] {
+        for distance in
+            [|_: f64| 1.0, |n: f64| n.powf(-0.5), |n: f64| n.powi(-2), |n: f64| 1.0 + 1.0 / n, |n: f64| n.powf(-1.4)]
+        {
             assert!(!shows_two_terms(&of(&distance)), "{:?}", of(&distance));
         }
         assert!(!shows_two_terms(&of(&|n| 1.0 / n)[1..]));

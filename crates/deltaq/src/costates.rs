@@ -68,7 +68,7 @@ impl Costates {
     }
 
     /// The choice whose equations have all costates that vary, for whatever value.
-    pub(super) fn choice(&self, choice: &Choice) -> Choice {
+    pub(crate) fn choice(&self, choice: &Choice) -> Choice {
         let mut choice = choice.clone();
         if !self.varied.is_empty() {
             let mut values = self.base.clone();
