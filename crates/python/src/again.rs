@@ -8,7 +8,8 @@ use crate::comparison::{Comparison, Decided, Fit, Growth, LeadingTerm, Pair, Run
 use crate::ensemble::Ensemble;
 use crate::kept::{Kept, field};
 use crate::linearization::{Linearization, LinearizationSweep, StabilityChange};
-use crate::motion::{Motion, Outputs};
+use crate::motion::Motion;
+use crate::outputs::Outputs;
 use crate::system::State;
 use crate::trajectory::Trajectory;
 

@@ -1,30 +1,49 @@
 //! Equations whose parameters and free constants are numbers of a call.
 
 use std::collections::HashMap;
+use std::sync::{Mutex, MutexGuard, PoisonError};
 
-use deltaq::{ByName, Form, Prepared, Settings, SolveError};
+use deltaq::{ByName, Choice, Form, Prepared, Settings, SolveError};
 use mechanics::ConstantsRule;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
+use scene::Scene;
 
-use crate::equations::Equations;
 use crate::errors;
 
-/// Those that no call works with, by the names of the parameters that are inputs.
-pub(crate) type AtRunTime = HashMap<Vec<String>, Vec<Ready>>;
+/// A scene and a choice, and its equations with other parameters as inputs.
+pub(crate) struct AtRunTime {
+    scene: Mutex<(Scene, Choice)>,
+    /// Names of the states with all parameters folded in.
+    states: Vec<String>,
+    /// Those that no call works with, by the names of the parameters that are inputs.
+    kept: Mutex<HashMap<Vec<String>, Vec<Ready>>>,
+}
 
 /// Equations for other numbers, and the free constants that they had first.
 #[derive(Clone)]
-pub(crate) struct Ready {
+struct Ready {
     by_name: ByName,
     constants: Vec<f64>,
 }
 
-impl Equations {
+impl AtRunTime {
+    pub(crate) fn new(scene: Scene, choice: Choice, states: Vec<String>) -> AtRunTime {
+        AtRunTime { scene: Mutex::new((scene, choice)), states, kept: Mutex::default() }
+    }
+
+    pub(crate) fn scene_and_choice(&self) -> MutexGuard<'_, (Scene, Choice)> {
+        self.scene.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn kept(&self) -> MutexGuard<'_, HashMap<Vec<String>, Vec<Ready>>> {
+        self.kept.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
     /// Equations with parameters of these names as inputs: kept ones, or those that are derived and compiled
     /// now.
     fn ready_for(&self, names: &[String]) -> PyResult<Ready> {
-        if let Some(ready) = self.at_run_time().get_mut(names).and_then(Vec::pop) {
+        if let Some(ready) = self.kept().get_mut(names).and_then(Vec::pop) {
             return Ok(ready);
         }
         let (scene, choice) = self.scene_and_choice().clone();
@@ -39,13 +58,13 @@ impl Equations {
         let by_name = ByName::new(&scene, &choice, &names, &settings).map_err(errors::solve)?;
         let Prepared { equations, .. } = by_name.varying().prepared();
         let states: Vec<String> = equations.states.iter().map(|y| equations.graph.name(y.symbol)).collect();
-        if &states != self.states() {
+        if states != self.states {
             return Err(PyValueError::new_err(format!(
                 "with {} as inputs the states are {}, and not {}: some value of theirs simplifies the equations; use \
                  System.replace",
                 names.join(", "),
                 states.join(", "),
-                self.states().join(", ")
+                self.states.join(", ")
             )));
         }
         let constants = by_name.varying().constants().to_vec();
@@ -53,7 +72,7 @@ impl Equations {
     }
 
     fn keep(&self, names: Vec<String>, ready: Ready) {
-        self.at_run_time().entry(names).or_default().push(ready);
+        self.kept().entry(names).or_default().push(ready);
     }
 
     /// Calls `body` with the equations for these parameters, for states of the caller's own.

@@ -18,7 +18,7 @@ use crate::arguments::Numbers;
 use crate::arrays::{Array, Floats, States, array, list};
 use crate::at_run_time::AtRunTime;
 use crate::kept::Reduced;
-use crate::motion::{Names, Outputs, observed};
+use crate::outputs::{Names, Outputs, observed};
 use crate::system::System;
 use crate::{arguments, background, errors};
 
@@ -31,9 +31,8 @@ pub(crate) struct Equations {
     ready: Mutex<Prepared>,
     /// Those that no thread works with: each call takes one, and brings it back.
     spare: Mutex<Vec<Prepared>>,
-    scene: Mutex<(Scene, Choice)>,
-    /// Equations for other numbers, by the parameters that are inputs of them.
-    at_run_time: Mutex<AtRunTime>,
+    /// Scene and choice; equations for other numbers.
+    pub(crate) at_run_time: AtRunTime,
     dimension: usize,
     system: Py<System>,
     /// Name of the formulation.
@@ -44,7 +43,7 @@ pub(crate) struct Equations {
     removal: Option<String>,
     /// Names of the states y, length m.
     #[pyo3(get)]
-    states: Vec<String>,
+    pub(crate) states: Vec<String>,
     /// Names of the free constants.
     #[pyo3(get)]
     constants: Vec<String>,
@@ -72,22 +71,18 @@ impl Equations {
         let made = background::run(py, &interrupt, work)?;
         let (made, scene, choice) = made.map_err(|error: SolveError| errors::solve(error))?;
         let equations = &made.equations;
+        let states: Vec<String> = equations.states.iter().map(|y| equations.graph.name(y.symbol)).collect();
         Ok(Equations {
             system: system.clone().unbind(),
             spare: Mutex::default(),
-            at_run_time: Mutex::default(),
             dimension: scene.system.dimension(),
-            scene: Mutex::new((scene, choice)),
+            at_run_time: AtRunTime::new(scene, choice, states.clone()),
             formulation: equations.formulation,
             removal: equations.removal.as_ref().map(|r| r.name.clone()),
-            states: equations.states.iter().map(|y| equations.graph.name(y.symbol)).collect(),
+            states,
             constants: constant_names(equations),
             ready: Mutex::new(made),
         })
-    }
-
-    pub(crate) fn states(&self) -> &Vec<String> {
-        &self.states
     }
 
     fn ready(&self) -> MutexGuard<'_, Prepared> {
@@ -99,11 +94,7 @@ impl Equations {
     }
 
     pub(crate) fn scene_and_choice(&self) -> MutexGuard<'_, (Scene, Choice)> {
-        self.scene.lock().unwrap_or_else(PoisonError::into_inner)
-    }
-
-    pub(crate) fn at_run_time(&self) -> MutexGuard<'_, AtRunTime> {
-        self.at_run_time.lock().unwrap_or_else(PoisonError::into_inner)
+        self.at_run_time.scene_and_choice()
     }
 
     /// Calls `body` with equations that no other thread has, from the same guess in each call.
@@ -137,7 +128,7 @@ impl Equations {
         };
         py.detach(|| match parameters {
             None => self.with(work),
-            Some(Numbers(numbers)) => self.with_numbers(numbers, work)?,
+            Some(Numbers(numbers)) => self.at_run_time.with_numbers(numbers, work)?,
         })
     }
 

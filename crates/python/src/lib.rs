@@ -15,6 +15,7 @@ mod errors;
 mod kept;
 mod linearization;
 mod motion;
+mod outputs;
 mod proof;
 mod questions;
 mod reading;
@@ -41,7 +42,9 @@ mod _native {
     #[pymodule_export]
     use crate::linearization::{Linearization, LinearizationSweep, StabilityChange};
     #[pymodule_export]
-    use crate::motion::{Motion, Outputs};
+    use crate::motion::Motion;
+    #[pymodule_export]
+    use crate::outputs::Outputs;
     #[pymodule_export]
     use crate::reading::{_read_again, built_in, load, parse};
     #[pymodule_export]

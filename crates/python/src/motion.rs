@@ -15,77 +15,9 @@ use pyo3::types::{IntoPyDict, PyDict};
 use crate::arguments::rule_value;
 use crate::arrays::{Floats, columns, fixed, times, within};
 use crate::kept::kept;
+use crate::outputs::{Names, Outputs, Row, observed};
 use crate::system::System;
 use crate::{errors, sensitivities};
-
-/// Coordinates, velocities, multipliers and invariants at one instant, or at k of them.
-#[pyclass(frozen, get_all, module = "deltaq")]
-pub(crate) struct Outputs {
-    /// Coordinates q, shape (n,) or (k, n), in the units of the system.
-    coordinates: Py<PyArrayDyn<f64>>,
-    /// Velocities q', shape (n,) or (k, n), in units of the coordinates per unit of time.
-    velocities: Py<PyArrayDyn<f64>>,
-    /// Multipliers and costates by name, each a float or of shape (k,).
-    multipliers: Py<PyDict>,
-    /// Quantities that should stay constant by name, each a float or of shape (k,).
-    invariants: Py<PyDict>,
-    /// Observables of the system by name, each a float or of shape (k,).
-    observables: Py<PyDict>,
-}
-
-kept!(Outputs: coordinates velocities multipliers invariants observables);
-
-/// A row of outputs, and the observables there.
-pub(crate) type Row = (equations::Outputs, Vec<f64>);
-
-/// `row` with the observables at that time.
-pub(crate) fn observed(observables: &mut Observables, t: f64, row: equations::Outputs) -> Row {
-    let values = observables.at(t, &row.coordinates, &row.velocities).to_vec();
-    (row, values)
-}
-
-/// Names of multipliers, invariants and observables.
-#[derive(Clone)]
-pub(crate) struct Names {
-    pub(crate) multipliers: Vec<String>,
-    pub(crate) invariants: Vec<String>,
-    pub(crate) observables: Vec<String>,
-}
-
-impl Names {
-    pub(crate) fn of(equations: &equations::Equations, observables: &Observables) -> Names {
-        let observables = observables.names().to_vec();
-        let names = |list: &[equations::Named]| list.iter().map(|n| n.name.clone()).collect();
-        Names { multipliers: names(&equations.multipliers), invariants: names(&equations.invariants), observables }
-    }
-}
-
-impl Outputs {
-    /// From `rows`, one an instant, of `count`: those that are missing become NaN. `count` is `None` where
-    /// there is one instant, given as a number.
-    pub(crate) fn new(
-        py: Python<'_>,
-        rows: &[Row],
-        dimension: usize,
-        names: &Names,
-        count: Option<usize>,
-    ) -> PyResult<Outputs> {
-        let flat = |pick: fn(&equations::Outputs) -> &[f64]| rows.iter().flat_map(|(r, _)| pick(r).to_vec()).collect();
-        let missing = count.unwrap_or(rows.len()) - rows.len();
-        let matrix = |pick| {
-            let mut values: Vec<f64> = flat(pick);
-            values.resize(values.len() + missing * dimension, f64::NAN);
-            fixed(py, values, count, &[dimension]).map(Bound::unbind)
-        };
-        Ok(Outputs {
-            coordinates: matrix(|r| &r.coordinates)?,
-            velocities: matrix(|r| &r.velocities)?,
-            multipliers: columns(py, &names.multipliers, rows.iter().map(|(r, _)| &r.multipliers[..]), count)?.unbind(),
-            invariants: columns(py, &names.invariants, rows.iter().map(|(r, _)| &r.invariants[..]), count)?.unbind(),
-            observables: columns(py, &names.observables, rows.iter().map(|(_, o)| &o[..]), count)?.unbind(),
-        })
-    }
-}
 
 /// A motion with everything that is computed without Python's lock.
 pub(crate) struct Sampled {

@@ -4,7 +4,7 @@ use deltaq::Sensitivities;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-use crate::motion::{Names, Outputs};
+use crate::outputs::{Names, Outputs};
 
 /// Derivatives and their error estimates, each by the name of the number; empty without any.
 pub(crate) fn tables(

@@ -77,7 +77,7 @@ impl Equations {
         let (settings, interrupt) = arguments::settings(method, tolerance, project, max_steps, max_step, time_limit)?;
         let rule = arguments::constants(constants.as_ref(), mu0)?;
         let y0 = y0.map(|y0| list("y0", &y0)).transpose()?;
-        let width = self.states().len();
+        let width = self.states.len();
         if let Some(found) = y0.as_ref().map(Vec::len).filter(|found| *found != width) {
             return Err(PyValueError::new_err(format!("y0 has {found} entries; {width} are needed")));
         }
@@ -111,7 +111,7 @@ impl Equations {
         let numbers = parameters.map_or(Vec::new(), |numbers| numbers.0);
         let ran = background::run(py, &interrupt, || match as_derived {
             true => self.with(run).map_err(errors::solve),
-            false => self.started(numbers, rule, y0, run),
+            false => self.at_run_time.started(numbers, rule, y0, run),
         })?;
         let (run, reached, states, seconds) = ran?;
         let (status, cause) = match &run.solution.status {

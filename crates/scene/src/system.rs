@@ -263,9 +263,8 @@ fn virtual_conditions(context: &mut Context, entry: &Entry) -> Result<(), SceneE
     let source = context.source;
     let mut conditions = Vec::new();
     for (index, element) in entry.elements("an array of expressions")?.iter().enumerate() {
-        let read = element.text("an expression in quotes");
-        let read = read.and_then(|text| context.names.parse_value(source, &context.system.graph, &text));
-        for &w in source.note(read).iter().flat_map(|value| value.entries()) {
+        let text = element.text("an expression in quotes")?;
+        for &w in context.names.parse_value(source, &context.system.graph, &text)?.entries() {
             let (g, velocities) = (&context.system.graph, context.system.velocities());
             if !velocities.into_iter().any(|s| g.depends_on(w, s)) {
                 source.note::<()>(Err(element.error(SceneErrorKind::NoRate { number: index + 1 })));

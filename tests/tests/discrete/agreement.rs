@@ -39,6 +39,8 @@ fn agrees(what: &str, scene: &Scene, choice: &Choice, motion: &mut Motion, limit
         let steps = Steps { step: short.duration.abs() / count as f64, composition: Composition::Eighth };
         let mut discrete = match solve_by_steps(&short, choice, steps, &Settings::default()) {
             Ok(discrete) if discrete.is_complete() => discrete,
+            // forces are refused where the principle is a variational one
+            Err(SolveError::Discrete(DiscreteError::Force { .. })) => return false,
             // the step is too long
             Ok(_) => continue,
             Err(SolveError::Discrete(DiscreteError::HighRate { .. })) => return false,
