@@ -40,8 +40,8 @@
 //! itself is a virtual displacement, `A v = 0` wherever `f = 0` (constraints homogeneous in `v`; *not* affine
 //! ones). The momentum `∂L/∂vᵢ` of a coordinate not in `L` on which no reaction or force acts.
 //!
-//! **Reactions of one's own** ([`PRESCRIBED`]). Where a motor, a servo or friction keeps the constraint, what is
-//! virtual is not `A δq = 0`. Conditions `w(q, v, t) ∈ Rʰ` say what is: with `W = ∂w/∂v`
+//! **Reactions of one's own** ([`PRESCRIBED`]). Where a motor, a servo or friction keeps the constraint,
+//! what is virtual is not `A δq = 0`. Conditions `w(q, v, t) ∈ Rʰ` say what is: with `W = ∂w/∂v`
 //!
 //! ```text
 //! ( d/dt ∂L/∂v − ∂L/∂q − Q ) · δq = 0  wherever  W δq = 0 :     d/dt ∂L/∂v − ∂L/∂q = Q + Wᵀ λ ,     f = 0 .
@@ -50,8 +50,8 @@
 //! Only `A` of the first rows of the saddle-point system becomes `W`. It has one solution where `W M⁻¹ Aᵀ` is
 //! regular. Reactions do no work where `W v = 0`; else they feed the motion. `w = f` is Chetaev.
 //!
-//! Sources: N. G. Chetaev 1932; P. Appell 1911 and H. Béghin 1922 (servo constraints); C.-M. Marle 1998; Ju. I.
-//! Neimark, N. A. Fufaev, *Dynamics of Nonholonomic Systems*, 1972.
+//! Sources: N. G. Chetaev 1932; P. Appell 1911 and H. Béghin 1922 (servo constraints); C.-M. Marle 1998;
+//! Ju. I. Neimark, N. A. Fufaev, *Dynamics of Nonholonomic Systems*, 1972.
 
 use equations::{Block, Derivation, DerivationError, Equations, Formulation, Named, Needs};
 use mechanics::{System, fresh_symbol};

@@ -1,4 +1,5 @@
-//! What derivatives along eight directions cost beside the motion: both runs of each, the least of several times.
+//! What derivatives along eight directions cost beside the motion: both runs of each, the least of several
+//! times.
 
 use std::time::Instant;
 

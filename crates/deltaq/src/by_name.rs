@@ -7,8 +7,8 @@ use symbolic::Symbol;
 use crate::costates::Costates;
 use crate::{Choice, Settings, SolveError, Varying};
 
-/// [`Varying`] by the names that [`Scene::starts`] knows, and `P0_w` for the costate of the memory variable `w`
-/// of a removal.
+/// [`Varying`] by the names that [`Scene::starts`] knows, and `P0_w` for the costate of the memory variable
+/// `w` of a removal.
 #[derive(Clone)]
 pub struct ByName {
     varying: Varying,
@@ -62,8 +62,8 @@ impl ByName {
         Ok(Beginning { state, parameters, constants })
     }
 
-    /// Sets the numbers of a row, one per name; the free constants as `rule` says, or as the row and the choice
-    /// do.
+    /// Sets the numbers of a row, one per name; the free constants as `rule` says, or as the row and the
+    /// choice do.
     ///
     /// # Errors
     /// [`SolveError`] without a start.

@@ -18,8 +18,8 @@ pub struct FirstTrace {
 /// Steps of ε on both sides of zero, as parts of the run.
 const STEP: f64 = 1e-4;
 
-/// Of Chetaev's motion of a scene, at `count` instants; `None` without a constraint, or where the equations of
-/// one of these instants are singular.
+/// Of Chetaev's motion of a scene, at `count` instants; `None` without a constraint, or where the equations
+/// of one of these instants are singular.
 ///
 /// # Errors
 /// [`SolveError`] where the motion cannot be read off.

@@ -3,8 +3,9 @@
 //! Given `L(q, v, t)`, `q ∈ Rⁿ`, and constraints `f(q, v, t) = 0 ∈ Rʰ`, what are the equations of motion?
 //! Chetaev's, the vakonomic and the removed-constraint formulation answer differently where `f` cannot be
 //! integrated; `kappa` is a family between the first two, `first-order` its end at Chetaev, with slip, and
-//! `prescribed` has reactions of the user's own. Their derivations are the front pages of the crates. This crate puts them into one table, integrates them with one time loop, and says whether
-//! two motions are the same.
+//! `prescribed` has reactions of the user's own. Their derivations are the front pages of the crates. This
+//! crate puts them into one table, integrates them with one time loop, and says whether two motions are the
+//! same.
 //!
 //! - [`FORMULATIONS`]: the table: [`CHETAEV`], [`VAKONOMIC`], …; [`formulation`] reads a name.
 //! - [`derive()`], [`solve`]: one motion, with its global error estimate `e(t)`, the difference of two runs.

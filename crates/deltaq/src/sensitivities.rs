@@ -47,9 +47,9 @@ pub struct Sensitivities {
 }
 
 /// The derivatives of coordinates, velocities, multipliers and invariants at `times`, ascending, by the
-/// numbers of these names: parameters, start values (constraints supply the velocities that they supply in the
-/// scene), `mu0_1`, … and `P0_w`. Of constants that are natural at a horizon the motion has, for each value of
-/// the numbers, its own.
+/// numbers of these names: parameters, start values (constraints supply the velocities that they supply in
+/// the scene), `mu0_1`, … and `P0_w`. Of constants that are natural at a horizon the motion has, for each
+/// value of the numbers, its own.
 ///
 /// ```
 /// # let text = include_str!("../../catalogue/scenes/sledge.toml");

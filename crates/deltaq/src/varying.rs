@@ -108,8 +108,8 @@ impl Varying {
         resolve(prepared, constants, &self.settings, None, near.as_deref())
     }
 
-    /// Sets the parameters that vary and the other free constants, for states of the caller's own: what a motion
-    /// starts from stays as it was.
+    /// Sets the parameters that vary and the other free constants, for states of the caller's own: what a
+    /// motion starts from stays as it was.
     ///
     /// # Panics
     /// If there are not as many.

@@ -1,8 +1,8 @@
 //! Round-off of known size: what of it is put into an estimate, in single motions and in members, alike.
 //!
-//! The force `A − A cos(10⁻¹⁴ x)` is zero to the last digit, and `2A` is added up to the rate of the velocity.
-//! Within a time `T` that comes to `2A T ε`; where it counts, the looser run has half a last digit of it in its
-//! rate, so that the runs are apart by `A T ε` in the velocity at the end.
+//! The force `A − A cos(10⁻¹⁴ x)` is zero to the last digit, and `2A` is added up to the rate of the
+//! velocity. Within a time `T` that comes to `2A T ε`; where it counts, the looser run has half a last
+//! digit of it in its rate, so that the runs are apart by `A T ε` in the velocity at the end.
 
 use deltaq::{
     CHETAEV, Ensemble, EnsembleOptions, Form, MemberMotion, Metric, Motion, REMOVED_CONSTRAINT, Settings, VAKONOMIC,
@@ -62,8 +62,8 @@ fn round_off_counts_from_256_last_digits_on_and_half_of_it_is_put_in() {
     }
 }
 
-/// A pulse between the instants of the first look, which sees a sixth of it: `A exp(−50 (t − 3/4)²)`, with what
-/// is added up to its exponent, 28 at the start.
+/// A pulse between the instants of the first look, which sees a sixth of it: `A exp(−50 (t − 3/4)²)`, with
+/// what is added up to its exponent, 28 at the start.
 #[test]
 fn round_off_between_the_instants_of_a_first_look_counts() {
     let found = |height: f64| {
@@ -157,7 +157,8 @@ fn constraints_of_members_are_watched_with_their_own_parameters() {
     }
 }
 
-/// Two constraints that are parallel but for `a/2`: velocities are known to that part, places to the last digit.
+/// Two constraints that are parallel but for `a/2`: velocities are known to that part, places to the last
+/// digit.
 #[test]
 fn velocities_at_a_start_are_known_as_well_as_the_constraints_tell_them() {
     for a in [1e-4, 1e-6] {
@@ -225,7 +226,8 @@ fn what_is_constant_again_by_the_times_asked_for_is_doubted() {
     }
 }
 
-/// `x = sin(t − t₀)` is back at 0 at the one time that is asked for; its velocity would have brought it to 2π.
+/// `x = sin(t − t₀)` is back at 0 at the one time that is asked for; its velocity would have brought it to
+/// 2π.
 #[test]
 fn a_coordinate_is_as_large_as_its_velocity_may_have_made_it() {
     let text = "title = \"back\"\n[coordinates]\nx = { start = 0 }\ny = { start = 0 }\n[system]\n\

@@ -1,8 +1,9 @@
 //! Derivatives by parameters, start and free constants: closed forms, and differences of motions that are
 //! derived, compiled and integrated anew for each number.
 //!
-//! `SENSITIVITIES=all cargo test --release --package deltaq --test deltaq-tests sensitivities:: -- --nocapture`
-//! takes every built-in scene, formulation and number, with what was found; otherwise a part of them is taken.
+//! `SENSITIVITIES=all cargo test --release --package deltaq --test deltaq-tests sensitivities:: --
+//! --nocapture` takes every built-in scene, formulation and number, with what was found; otherwise a part
+//! of them is taken.
 
 use deltaq::{
     Choice, Ending, Sensitivities, Settings, SolveError, choices, constant_names, sensitivities, setting, solve_choice,

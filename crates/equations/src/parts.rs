@@ -26,8 +26,8 @@ impl Equations {
     }
 
     /// What stays constant where the rates of `momenta` are sums of `forces`, lists of one per coordinate:
-    /// `energy`, where there is one, nothing depends on time and no force of the user's acts; and the momentum
-    /// of each coordinate whose forces are all zero.
+    /// `energy`, where there is one, nothing depends on time and no force of the user's acts; and the
+    /// momentum of each coordinate whose forces are all zero.
     pub fn add_invariants(&mut self, system: &System, energy: Option<Expr>, momenta: &[Expr], forces: &[&[Expr]]) {
         let energy = energy.filter(|_| system.is_autonomous() && !system.has_forces());
         self.invariants.extend(energy.map(|expression| Named { name: "energy".into(), expression }));

@@ -1,8 +1,8 @@
 //! # The constraint law of first order: ε and slip
 //!
 //! Given: coordinates `q ∈ Rⁿ`, a Lagrangian `L(q, v, t)`, constraints `f(q, v, t) = 0 ∈ Rʰ`, forces `Q`, and
-//! two small numbers: `ε`, the parameter `epsilon`, a time of either sign, and `1/N`, the parameter `slip`. One
-//! that is not given is zero. `A = ∂f/∂v` (h×n), and the curvature of the constraint is
+//! two small numbers: `ε`, the parameter `epsilon`, a time of either sign, and `1/N`, the parameter `slip`.
+//! One that is not given is zero. `A = ∂f/∂v` (h×n), and the curvature of the constraint is
 //!
 //! ```text
 //! C = (∂f/∂q)ᵀ − Ȧᵀ          n×h ,    Ȧ along the motion.
@@ -17,9 +17,9 @@
 //! `ε = 0` and `1/N = 0` is Chetaev.
 //!
 //! **Where ε comes from.** With `λ := −(κ μ + μ̇)` the equations of the family `kappa` are
-//! `d/dt ∂L/∂v − ∂L/∂q = Q + Aᵀ λ + C μ`. After the time 1/κ, `μ = −λ/κ + O(1/κ²)`; `ε = 1/κ` is what is left.
-//! So `−ε C λ` is the first trace of vakonomic mechanics in a motion by Chetaev. It needs no start `μ₀`, and
-//! Chetaev, an end of the family, is an inner point here: a number that can be estimated.
+//! `d/dt ∂L/∂v − ∂L/∂q = Q + Aᵀ λ + C μ`. After the time 1/κ, `μ = −λ/κ + O(1/κ²)`; `ε = 1/κ` is what is
+//! left. So `−ε C λ` is the first trace of vakonomic mechanics in a motion by Chetaev. It needs no start
+//! `μ₀`, and Chetaev, an end of the family, is an inner point here: a number that can be estimated.
 //!
 //! **Where slip comes from.** A contact of viscosity `N` keeps the constraint by the force `−N Aᵀ f`: that is
 //! `Aᵀ λ` where `f = −λ/N`. The constraint is not kept but creeps.
@@ -35,10 +35,12 @@
 //! With slip `λ = −N f` is known before, and only `M` has to be regular. Where `A` depends on the velocities,
 //! `C` contains `a`, and the equations are not linear.
 //!
-//! **What the motion depends on.** On `(q₀, v₀)`; with slip, started at `f = 0`, it creeps after the time `m/N`.
+//! **What the motion depends on.** On `(q₀, v₀)`; with slip, started at `f = 0`, it creeps after the time
+//! `m/N`.
 //!
-//! **What stays constant.** Without slip the energy `v·L_v − L` where nothing depends on time, `Q = 0` and `f`
-//! is homogeneous in `v`: `v·C λ = (1−d) λ·ḟ = 0` for degree `d`. So no friction along the motion imitates ε.
+//! **What stays constant.** Without slip the energy `v·L_v − L` where nothing depends on time, `Q = 0` and
+//! `f` is homogeneous in `v`: `v·C λ = (1−d) λ·ḟ = 0` for degree `d`. So no friction along the motion
+//! imitates ε.
 //!
 //! Source: V. V. Kozlov 1992 for the family; the expansion is this page's.
 

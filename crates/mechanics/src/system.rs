@@ -62,8 +62,8 @@ pub struct System {
     pub constraints: Vec<Expr>,
     /// `Q(q, v, t)`, one per coordinate; the number 0 where no force was given.
     pub forces: Vec<Expr>,
-    /// `w(q, v, t)`, none, or as many as constraints: displacements with `∂w/∂v δq = 0` are virtual, where the
-    /// constraint is not kept by reactions along its own normals. No formulation but one looks at them.
+    /// `w(q, v, t)`, none, or as many as constraints: displacements with `∂w/∂v δq = 0` are virtual, where
+    /// the constraint is not kept by reactions along its own normals. No formulation but one looks at them.
     pub virtual_conditions: Vec<Expr>,
     /// What has to be no less than zero for `L`, `f` and `Q` as they were written, where their simpler
     /// forms do not say so: `√x √x` is `x`, for `x ≥ 0`.

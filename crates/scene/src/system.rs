@@ -258,7 +258,8 @@ fn constraints(context: &mut Context, entry: &Entry) -> Result<(), SceneError> {
     Ok(())
 }
 
-/// What virtual displacements satisfy, as many conditions as constraints; each element one, or a vector of them.
+/// What virtual displacements satisfy, as many conditions as constraints; each element one, or a vector of
+/// them.
 fn virtual_conditions(context: &mut Context, entry: &Entry) -> Result<(), SceneError> {
     let source = context.source;
     let mut conditions = Vec::new();

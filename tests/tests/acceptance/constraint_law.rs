@@ -1,4 +1,5 @@
-//! The constraint law of first order, `E = Q + Aᵀλ − εCλ`, `f = −λ/N`, against closed forms and its neighbours.
+//! The constraint law of first order, `E = Q + Aᵀλ − εCλ`, `f = −λ/N`, against closed forms and its
+//! neighbours.
 
 use deltaq::{CHETAEV, FIRST_ORDER, KAPPA, Motion};
 use equations::Compiled;

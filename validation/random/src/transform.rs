@@ -202,7 +202,8 @@ impl Rewritten {
     }
 }
 
-/// The augmented system of a removal (T2): coordinates `(q, u)`, `L(q, q̇, t)`, `Q` on `q`, `q̇ = Φ(u̇, q, t)`.
+/// The augmented system of a removal (T2): coordinates `(q, u)`, `L(q, q̇, t)`, `Q` on `q`, `q̇ = Φ(u̇, q,
+/// t)`.
 ///
 /// A parameter that is a coordinate is that coordinate. The removal's `q` must be parameters or memory, and
 /// `L` of first order in `u`. The vakonomic multiplier of `ẇ_k − B_k` is `μ_k = −P_k − ∂L/∂ẇ_k`.

@@ -157,8 +157,8 @@ fn judge(
 /// What two terms tell of the distance before those they are taken from; of `1/N²` they would tell 1.2 of it.
 const TOLD: std::ops::RangeInclusive<f64> = 0.85..=1.15;
 
-/// Whether the last of [`MORE`] distances are `|a/N + b/N²|`, and `a/N` the larger term at last. Where the two
-/// nearly cancel, as after a switch that is faster than `1/N`, a quotient is not ten yet.
+/// Whether the last of [`MORE`] distances are `|a/N + b/N²|`, and `a/N` the larger term at last. Where the
+/// two nearly cancel, as after a switch that is faster than `1/N`, a quotient is not ten yet.
 fn shows_two_terms(distances: &[f64]) -> bool {
     let [.., first, before, last] = distances[..] else { return false };
     // a + b at last, 10 a + 100 b before
