@@ -118,7 +118,8 @@ fn first_trace(comparison: &mut Comparison) -> Result<String> {
             short(1e-3 * slope),
             short(1e-3 * part)
         ),
-        _ => "changes no acceleration along Chetaev's motion".into(),
+        _ => "changes accelerations along Chetaev's motion by less than 1e-12 of the largest of them per ms of $\\varepsilon$"
+            .into(),
     };
     Ok(format!(
         "\nThe first trace of vakonomic mechanics, the force $-\\varepsilon C\\lambda$ of the formulation `first-order`, {size} (lengths in the kinetic metric).\n"
