@@ -31,7 +31,11 @@ def test_rates_of_the_sledge(sledge, system):
 
 
 def in_every_formulation(sledge):
-    return sledge.system(parameters={"g": sledge.g, "alpha": sledge.alpha, "k": sledge.k, "kappa": 0.5})
+    of_laws = {"kappa": 0.5, "epsilon": 0.1}
+    return sledge.system(
+        parameters={"g": sledge.g, "alpha": sledge.alpha, "k": sledge.k, **of_laws},
+        virtual=["y'*cos(phi) - x'*sin(phi) - phi'/4"],
+    )
 
 
 @pytest.mark.parametrize("formulation", deltaq.FORMULATIONS)

@@ -417,7 +417,6 @@ class Equations:
         """
     def jacobian(self, t: _Floats, y: _Floats, parameters: Mapping[str, float] | None = None) -> _Array:
         """The exact Jacobian dF/dy, shape (m, m) or (k, m, m): [i, j] is the derivative of rate i by state j.
-
         parameters: as in `rates`.
         """
     def outputs(self, t: _Floats, y: _Floats) -> Outputs:
@@ -445,12 +444,12 @@ class Equations:
         """One run of the time loop from the start of the system to the last of `times`, shape (k,), in ascending
         order: half of what `System.solve` does, for those who know the error from elsewhere.
 
-        y0: the state to start from, shape (m,). parameters: name to number, for this run; without y0 the start
-        follows, as of `System.replace`. constants, mu0: the free constants of this run, as in `solve`. The first
-        use of parameters of some names compiles equations that have them as inputs; then a call costs the run.
-        method: one of METHODS; its first run compiles what it needs. tolerance: relative and absolute.
-        project, max_steps, max_step, time_limit: as in `System.solve`. For the start and the last time alone
-        nothing else is kept.
+        y0: the state to start from, shape (m,). parameters: name to number, for this run; without y0 the
+        start follows, as of `System.replace`. constants, mu0: the free constants of this run, as in
+        `solve`. The first use of parameters of some names compiles equations that have them as inputs; then
+        a call costs the run. method: one of METHODS; its first run compiles what it needs. tolerance:
+        relative and absolute. project, max_steps, max_step, time_limit: as in `System.solve`. For the start
+        and the last time alone nothing else is kept.
 
         Other threads go on; Ctrl-C ends it. SolveError without a run; `status` says if it stops early.
         """
