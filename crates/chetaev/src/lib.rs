@@ -134,7 +134,6 @@ fn balance(formulation: &'static str, system: &System, rows: &Matrix) -> Equatio
     let lambda: Vec<Symbol> = (1..=system.constraints.len()).map(|i| fresh_symbol(g, &format!("lambda_{i}"))).collect();
 
     // d/dt ∂L/∂v − ∂L/∂q − Q − Wᵀλ = 0
-    let jacobian = system.constraint_jacobian();
     let momenta = g.gradient(system.lagrangian, &v);
     let gradient = g.gradient(system.lagrangian, &q);
     let reaction = g.transpose_vec(rows, &g.variables(&lambda));
@@ -155,11 +154,10 @@ fn balance(formulation: &'static str, system: &System, rows: &Matrix) -> Equatio
         guess: Vec::new(),
         regular: if prescribed { WITH_PRESCRIBED } else { WITH_CHETAEV },
     }];
-    let moves = |&a: &Expr| g.symbols_of(a).iter().any(|symbol| v.contains(symbol));
     if prescribed {
         equations.guard_regular(g);
-    } else if jacobian.entries().iter().any(moves) {
-        equations.guard_rank(g);
+    } else {
+        equations.guard_rank(&system);
     }
     equations.coordinates = g.variables(&q);
     equations.velocities = g.variables(&v);

@@ -46,9 +46,7 @@ impl Columns {
             "multipliers": named_columns(&self.multipliers, rows, |r| &r.multipliers),
         })
     }
-}
 
-impl Columns {
     /// Those of [`derivative_row`]: `dx/dm`, `error dx/dm`.
     pub fn derivative_names(&self, derived: &Sensitivities) -> Vec<String> {
         let own = &self.names()[1..];

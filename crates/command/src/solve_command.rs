@@ -53,7 +53,6 @@ pub(crate) fn run(arguments: &SolveArguments, quiet: bool) -> Result<Answer> {
     let (mut reached, mut grid) = (wanted, motion.grid(SAMPLES));
     reached.retain(|&t| t <= motion.end());
     let (mut so_far, estimate) = error_estimates(&mut motion, setting(&scene), &reached)?;
-    // it may end earlier by now
     let derived = match &arguments.sensitivities[..] {
         [] => None,
         names => {
@@ -61,7 +60,7 @@ pub(crate) fn run(arguments: &SolveArguments, quiet: bool) -> Result<Answer> {
             Some(sensitivities(&scene, &choice, &names, &reached, &settings)?)
         }
     };
-    // derivatives may be known up to an earlier time
+    // it may end earlier by now, and derivatives may be known up to an earlier time
     let known =
         derived.as_ref().map_or(f64::INFINITY, |derived| derived.times.last().copied().unwrap_or(scene.start.t));
     let is_reached = |t: f64| t <= motion.end() && t <= known;

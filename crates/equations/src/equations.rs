@@ -246,8 +246,12 @@ impl Equations {
     /// in the velocities loses rank.
     ///
     /// Not for a mass matrix that depends on velocities: under strong masses its determinant is round-off.
-    pub fn guard_rank(&mut self, g: &Graph) {
-        self.guard_determinants(g, |role| role == Role::Velocity);
+    pub fn guard_rank(&mut self, system: &System) {
+        let (g, v) = (&system.graph, system.velocities());
+        let moves = |&a: &Expr| g.symbols_of(a).iter().any(|symbol| v.contains(symbol));
+        if system.constraint_jacobian().entries().iter().any(moves) {
+            self.guard_determinants(g, |role| role == Role::Velocity);
+        }
     }
 
     /// Guards against singular equations of the instant where their matrix `∂R/∂z`, in the graph `g`, depends

@@ -145,10 +145,7 @@ pub fn law(system: &System, epsilon: Expr, slip: Option<Expr>) -> Equations {
         guess: Vec::new(),
         regular: "constraint Jacobian of full row rank, mass matrix regular on its kernel, and ε small",
     }];
-    let moves = |&a: &Expr| g.symbols_of(a).iter().any(|symbol| v.contains(symbol));
-    if system.constraint_jacobian().entries().iter().any(moves) {
-        equations.guard_rank(g);
-    }
+    equations.guard_rank(&system);
     equations.coordinates = g.variables(&q);
     equations.velocities = g.variables(&v);
     equations.multipliers = multipliers.iter().map(|&s| Named { name: g.name(s), expression: g.variable(s) }).collect();

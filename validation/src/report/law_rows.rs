@@ -46,7 +46,8 @@ fn row(name: &'static str, end: f64, kappa: f64) -> Result<Row> {
         if let Some(multipliers) = multipliers {
             choice.constants = ConstantsRule::Given(multipliers);
         }
-        Ok::<(Scene, Motion), anyhow::Error>((scene.clone(), solve_choice(&scene, &choice, &Settings::default())?))
+        let motion = solve_choice(&scene, &choice, &Settings::default())?;
+        Ok::<(Scene, Motion), anyhow::Error>((scene, motion))
     };
     let (scene, mut law) = motion(("epsilon", epsilon), FIRST_ORDER, None)?;
     let (_, mut chetaev) = motion(("epsilon", epsilon), CHETAEV, None)?;
