@@ -1,9 +1,5 @@
-//! Derivatives by parameters, start and free constants: closed forms, and differences of motions that are
-//! derived, compiled and integrated anew for each number.
-//!
-//! `SENSITIVITIES=all cargo test --release --package deltaq --test deltaq-tests sensitivities:: --
-//! --nocapture` takes every built-in scene, formulation and number, with what was found; otherwise a part
-//! of them is taken.
+//! Derivatives by parameters, start and free constants: closed forms, natural constants, and what is refused.
+//! Scene by scene they are judged in `tests/tests/acceptance/sensitivities.rs`.
 
 use deltaq::{
     Choice, Ending, Sensitivities, Settings, SolveError, choices, constant_names, sensitivities, setting, solve_choice,
@@ -120,111 +116,6 @@ fn difference(h: f64, mut f: impl FnMut(f64) -> Vec<f64>) -> Vec<f64> {
         sum.iter_mut().zip(after.iter().zip(&before)).for_each(|(sum, (a, b))| *sum += w * (a - b) / h);
     }
     sum
-}
-
-/// What moves by itself: parameters, coordinates, velocities that are given, free constants.
-fn numbers(scene: &Scene, choice: &Choice) -> Vec<(String, f64)> {
-    let system = &scene.system;
-    let g = &system.graph;
-    let mut numbers: Vec<(String, f64)> = system.parameters.iter().map(|p| (g.name(p.symbol), p.value)).collect();
-    numbers.extend(system.coordinates.iter().zip(&scene.start.q).map(|(c, q)| (c.name.clone(), *q)));
-    let given = &scene.completion.given;
-    let velocities = system.velocities().into_iter().zip(&scene.start.v).map(|(s, v)| (g.name(s), *v));
-    numbers.extend(velocities.filter(|(name, _)| given.contains(name)));
-    if choice.formulation.starts_multipliers {
-        numbers.extend(scene.multiplier_names().into_iter().zip(scene.multipliers.iter().copied()));
-    }
-    numbers
-}
-
-/// The largest distance of a derivative from differences, over the largest derivative; the largest error
-/// estimate likewise; `None` where the motion does not come that far.
-fn distance(name: &str, label: &str, number: &(String, f64), ours: &Sensitivities, k: usize, t: f64) -> Option<f64> {
-    let text = built_in(name);
-    let size = if number.1 == 0.0 { 1.0 } else { number.1.abs() };
-    let mut best = f64::INFINITY;
-    let expected = all(&ours.derivatives[0][k]);
-    let scale = expected
-        .iter()
-        .fold(0.0_f64, |a, x| a.max(x.abs()))
-        .max(all(&ours.outputs[0]).iter().fold(0.0_f64, |a, x| a.max(x.abs())) / size);
-    for h in [0.03, 0.01, 0.003, 0.001, 3e-4, 1e-4, 3e-5, 1e-5, 3e-6] {
-        let mut complete = true;
-        let found = difference(h * size, |step| {
-            let scene = scene(name, &text, &[(number.0.clone(), number.1 + step)]);
-            let choice = choices(&scene).into_iter().find(|c| c.label == label).unwrap();
-            let settings = Settings { tolerance: 1e-14, ..Settings::default() };
-            let outputs = solve_choice(&scene, &choice, &settings).and_then(|mut motion| motion.at(t));
-            complete &= outputs.is_ok();
-            outputs.map_or(vec![0.0; expected.len()], |outputs| all(&outputs))
-        });
-        if complete {
-            let worst = found.iter().zip(&expected).fold(0.0_f64, |worst, (a, b)| worst.max((a - b).abs()));
-            best = best.min(worst / scale);
-        }
-        if best < 1e-11 {
-            break;
-        }
-    }
-    best.is_finite().then_some(best)
-}
-
-fn against_differences(name: &str, wanted: impl Fn(&str, &str) -> bool) -> (usize, f64) {
-    let own = scene(name, &built_in(name), &[]);
-    let t = own.start.t + (0.5 * (setting(&own).end - own.start.t)).min(1.0);
-    let (mut count, mut largest) = (0, 0.0_f64);
-    for choice in choices(&own) {
-        let numbers: Vec<_> = numbers(&own, &choice).into_iter().filter(|(n, _)| wanted(&choice.label, n)).collect();
-        let names: Vec<&str> = numbers.iter().map(|(name, _)| &name[..]).collect();
-        if names.is_empty() {
-            continue;
-        }
-        let ours = match sensitivities(&own, &choice, &names, &[t], &Settings::default()) {
-            Ok(ours) if !ours.times.is_empty() => ours,
-            Ok(ours) => {
-                println!("{name}, {}: {:?}", choice.label, ours.ending);
-                continue;
-            }
-            Err(error) => {
-                println!("{name}, {}: {error}", choice.label);
-                continue;
-            }
-        };
-        for (k, number) in numbers.iter().enumerate() {
-            let found = distance(name, &choice.label, number, &ours, k, t);
-            println!("{name}, {}, {}: {:.1e}", choice.label, number.0, found.unwrap_or(f64::NAN));
-            if let Some(found) = found {
-                (count, largest) = (count + 1, largest.max(found));
-            }
-        }
-    }
-    (count, largest)
-}
-
-#[test]
-fn derivatives_are_those_of_differences() {
-    if std::env::var("SENSITIVITIES").is_ok() {
-        let mut worst = 0.0_f64;
-        for kind in ["scenes", "classics"] {
-            let folder = format!("{}/../catalogue/{kind}", env!("CARGO_MANIFEST_DIR"));
-            let mut names: Vec<String> = std::fs::read_dir(folder)
-                .unwrap()
-                .map(|file| file.unwrap().path().file_stem().unwrap().to_string_lossy().into_owned())
-                .collect();
-            names.sort();
-            for name in names {
-                let (count, largest) = against_differences(&name, |_, _| true);
-                println!("{name}: {count} derivatives, largest distance {largest:.1e}");
-                worst = worst.max(largest);
-            }
-        }
-        assert!(worst < 1e-10, "{worst:.1e}");
-        return;
-    }
-    let (count, largest) = against_differences("sledge", |_, number| ["g", "phi", "x'", "mu0_1"].contains(&number));
-    assert!(count >= 13 && largest < 1e-10, "{count} {largest:.1e}");
-    let (count, largest) = against_differences("disc", |label, number| label == "vakonomic" && number.len() < 4);
-    assert!(count >= 4 && largest < 1e-10, "{count} {largest:.1e}");
 }
 
 #[test]

@@ -18,6 +18,7 @@ mod reduced_form;
 mod reduced_vakonomic;
 mod references;
 mod second_rates;
+mod sensitivities;
 mod support;
 mod taylor;
 mod vectors;
