@@ -66,6 +66,8 @@ pub(crate) struct Taylor<'s, 'p> {
     rough: bool,
     /// The rates at the candidate, where they are looked at first.
     rates: Vec<f64>,
+    /// What the last digits of the state at `t` change rates by; empty until they are asked for.
+    digits: Vec<f64>,
     /// The polynomial inside the step, its slope there times the step, and the last place, as a part of it.
     inside: Vec<f64>,
     inside_slope: Vec<f64>,
@@ -108,6 +110,7 @@ impl<'s, 'p> Taylor<'s, 'p> {
             dropped: false,
             rough: false,
             rates: vec![0.0; n],
+            digits: Vec::with_capacity(n),
             inside: vec![0.0; n],
             inside_slope: vec![0.0; n],
             place: 0.0,
@@ -147,6 +150,7 @@ impl<'s, 'p> Taylor<'s, 'p> {
     fn adopt(&mut self) {
         self.t = self.taken_to;
         self.unit = self.next_unit;
+        self.digits.clear();
         std::mem::swap(&mut self.coefficients, &mut self.next_coefficients);
         self.step = self.choose_step();
     }
@@ -224,25 +228,32 @@ impl<'s, 'p> Taylor<'s, 'p> {
         };
         let defect = ends.defect(self.absolute_tolerances.as_chunks().0, self.relative_tolerance);
         let Some(component) = defect.component(0) else { return Ok(()) };
-        let allowed = DIGITS * self.last_digits(component)? * self.taken.abs();
+        self.find_digits()?;
+        let allowed = DIGITS * self.digits[component] * self.taken.abs();
         let rate = self.next_coefficients[component * (self.order + 1) + 1] * self.taken / self.next_unit;
         if (self.slope[component] - rate).abs() <= allowed { Ok(()) } else { Err(Failure::NotSmooth { component }) }
     }
 
-    /// How much the last digits of the state at the start of the step change a rate, added up.
-    fn last_digits(&mut self, component: usize) -> Result<f64, Failure> {
+    /// How much the last digits of the state at the start of the step change the rates, added up: once per
+    /// start, however often the step is halved.
+    fn find_digits(&mut self) -> Result<(), Failure> {
+        if !self.digits.is_empty() {
+            return Ok(());
+        }
         let starts = self.coefficients.iter().step_by(self.order + 1);
         self.inside.iter_mut().zip(starts).for_each(|(y, c)| *y = *c);
-        self.system.rates(self.t, &self.inside, &mut self.rates)?;
-        let (rate, mut sum) = (self.rates[component], 0.0);
+        self.system.rates(self.t, &self.inside, &mut self.inside_slope)?;
+        let mut sums = vec![0.0; self.inside.len()];
         for j in 0..self.inside.len() {
             let y = self.inside[j];
             self.inside[j] = y * (1.0 + f64::EPSILON.sqrt());
             self.system.rates(self.t, &self.inside, &mut self.rates)?;
-            sum += (self.rates[component] - rate).abs() * f64::EPSILON.sqrt();
+            let changes = self.rates.iter().zip(&self.inside_slope).map(|(moved, rate)| (moved - rate).abs());
+            sums.iter_mut().zip(changes).for_each(|(sum, change)| *sum += change * f64::EPSILON.sqrt());
             self.inside[j] = y;
         }
-        Ok(sum)
+        self.digits = sums;
+        Ok(())
     }
 
     /// The longest step > 0 whose last terms are below the tolerance; infinite for a constant.
