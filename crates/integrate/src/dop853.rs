@@ -17,6 +17,8 @@ const SAFETY: f64 = 0.9;
 const SLOWEST: f64 = 0.333;
 const FASTEST: f64 = 6.0;
 const ORDER: f64 = 8.0;
+/// From here on the longest first step goes with the root of the tolerance.
+const COARSE: f64 = 1e-6;
 /// Below this the error estimate measures round-off.
 const TIGHTEST: f64 = 2e-15;
 
@@ -67,7 +69,9 @@ impl<'s, 'p> Dop853<'s, 'p> {
         })
     }
 
-    /// Hairer's starting step: a hundredth of |y|/|F|, then from an estimate of the second derivative.
+    /// Hairer's starting step: a hundredth of |y|/|F|, then from an estimate of the second derivative, and at
+    /// most |y|/|F|; ours is shorter by the root of the tolerance. Two runs with other tolerances may not have
+    /// the same first step: their difference would not show its error, a motion's only one near the start.
     fn choose_first_step(&mut self) {
         let n = self.y.len();
         let longest = (self.end - self.t).abs();
@@ -96,7 +100,8 @@ impl<'s, 'p> Dop853<'s, 'p> {
         }
         let steepest = (curvature.sqrt() / first).max(rate.sqrt());
         let second = if steepest <= 1e-15 { (first * 1e-3).max(1e-6) } else { (0.01 / steepest).powf(1.0 / ORDER) };
-        self.step = sign * (100.0 * first).min(second).min(longest);
+        let share = (self.relative_tolerance / COARSE).min(1.0).powf(1.0 / ORDER);
+        self.step = sign * share * (100.0 * first).min(longest).min(second / share);
     }
 
     /// Evaluates stage `stage` at `y + h Σ_m weight[m] k[from[m]]`.

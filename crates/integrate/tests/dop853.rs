@@ -73,3 +73,21 @@ fn slopes_match_where_steps_meet() {
         }
     }
 }
+
+/// Where a motion is fast, `|y|/|F|` is the shortest bound on the first step; both runs would begin with it.
+#[test]
+fn runs_of_other_tolerances_do_not_share_the_error_of_their_first_step() {
+    let start = 0.5;
+    let mut problem = Case::new(1, |t, _| vec![&(t * 1000.0).cos() * 1000.0]);
+    let exact = |t: f64| start + (1000.0 * t).sin();
+    let [looser, kept] =
+        [1e-8, 1e-10].map(|tolerance| run(&mut problem, 0.0, &[start], 0.02, &Options::with_tolerance(tolerance)));
+    let first = looser.dense.step_times()[1];
+    assert!(kept.dense.step_times()[1] < 0.9 * first, "{first} {}", kept.dense.step_times()[1]);
+    for i in 1..20 {
+        let t = first * f64::from(i) / 20.0;
+        let [a, b] = [&looser, &kept].map(|run| state::<1>(run, t)[0]);
+        let error = (b - exact(t)).abs();
+        assert!(error <= 2.0 * (a - b).abs() + 1e-15, "{error:e} at {t}, the runs differ by {:e}", (a - b).abs());
+    }
+}
