@@ -9,6 +9,7 @@ mod derivations;
 mod ensembles;
 mod forces;
 mod frames;
+mod judge;
 mod leading_term;
 mod linearization;
 mod matching;
