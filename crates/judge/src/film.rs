@@ -94,6 +94,17 @@ impl Film {
         &self.times
     }
 
+    /// Largest distance of coordinates from another film of the same columns, over the times of both.
+    pub fn distance(&self, other: &Film) -> f64 {
+        let (first, last) = (other.times[0], other.times[other.times.len() - 1]);
+        let shared = self.times.iter().filter(|t| (first..=last).contains(t));
+        let apart = shared.map(|&t| {
+            let (own, other) = (self.at(t, STENCILS[0]), other.at(t, STENCILS[0]));
+            own.q.iter().zip(&other.q).fold(0.0_f64, |largest, (a, b)| largest.max((a - b).abs()))
+        });
+        apart.fold(0.0, f64::max)
+    }
+
     /// The first of the samples that a polynomial near `t` goes through.
     fn first(&self, t: f64, count: usize) -> usize {
         let next = self.times.partition_point(|&sample| sample < t);
@@ -132,6 +143,16 @@ impl Film {
         let weights = derivative_weights(&self.times[first..][..count], t);
         weights.iter().enumerate().map(|(i, w)| values(first + i) * w[1]).sum()
     }
+}
+
+/// Orders in the step of films, each made with half the step of the one before, from every three in a row.
+///
+/// ```text
+/// order = log₂ (|q₁ − q₂| / |q₂ − q₃|)
+/// ```
+pub fn orders(films: &[Film]) -> Vec<f64> {
+    let distances: Vec<f64> = films.windows(2).map(|pair| pair[0].distance(&pair[1])).collect();
+    distances.windows(2).map(|pair| (pair[0] / pair[1]).log2()).collect()
 }
 
 /// Weights of the values at `nodes` in value, first and second derivative at `t` of the polynomial through

@@ -337,7 +337,7 @@ impl Of {
         let [own, size] = self.residual;
         if own <= (NOISES * noise).max(ROUND_OFF * size) {
             Constraint::Kept
-        } else if self.rests[0] < EXPLAINED && self.slip.is_seen(SEEN) {
+        } else if self.rests[0] < EXPLAINED.min(self.rests[1]) && self.slip.is_seen(SEEN) {
             Constraint::Creeps
         } else if self.rests[1] < EXPLAINED && (self.moved[0].value - 1.0).abs() < LARGEST {
             Constraint::LeftOut

@@ -33,7 +33,7 @@ mod fits;
 mod frame;
 mod judgement;
 
-pub use film::Film;
+pub use film::{Film, orders};
 pub use judgement::{Constraint, Judgement, Law, Number, Rest, judge};
 
 /// Why a film is not judged.
