@@ -1,5 +1,6 @@
 //! The command line.
 
+mod connect;
 mod ensemble;
 mod linearize;
 mod range;
@@ -12,6 +13,7 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 use clap_complete::Shell;
 
 use bench::MEMBERS;
+pub use connect::ConnectArguments;
 use deltaq::{Fits, Stepping};
 pub use ensemble::{EnsembleArguments, FreeArguments, Limits, MotionArguments};
 use equations::Formulation;
@@ -45,6 +47,8 @@ pub enum Command {
     Show(ShowArguments),
     /// Integrate a scene in one formulation.
     Solve(SolveArguments),
+    /// Find the motions between two points, with their conjugate times.
+    Connect(ConnectArguments),
     /// Integrate many starts or parameters of a scene at once, by Taylor series, in one formulation.
     Ensemble(EnsembleArguments),
     /// Linearize a steady motion: eigenvalues with errors, and where stability to first order changes.

@@ -7,6 +7,7 @@ mod bench_command;
 mod cli;
 mod columns;
 mod compare_command;
+mod connect_command;
 mod ensemble_command;
 mod explore_command;
 mod judge_command;
@@ -56,6 +57,7 @@ fn run(cli: Cli) -> Result<Answer> {
         }
         Command::Man { command } => manual(command.as_deref())?,
         Command::Prove(arguments) => return prove_command::run(&arguments),
+        Command::Connect(arguments) => return connect_command::run(&arguments),
         Command::Ensemble(arguments) => return ensemble_command::run(&arguments, quiet),
         Command::Solve(arguments) => return solve_command::run(&arguments, quiet),
     };

@@ -4,6 +4,7 @@ mod bad_scenes;
 mod columns;
 mod commands;
 mod compare_command;
+mod connect_command;
 mod documents;
 mod ensemble_command;
 mod explore_command;

@@ -8,10 +8,11 @@ use crate::support::{all_may_be_left, answer, command, commands, elsewhere, none
 const BAD: &str = concat!(env!("CARGO_TARGET_TMPDIR"), "/bad.toml");
 
 /// One call of every command.
-const ANSWERS: [&[&str]; 15] = [
+const ANSWERS: [&[&str]; 16] = [
     &["new"],
     &["check", "sledge"],
     &["solve", "sledge", "-f", "chetaev", "--times", "0,1"],
+    &["connect", "disc", "-f", "chetaev", "--to", "psi=3,phi=1", "--starts", "2"],
     &["list"],
     &["show", "sledge"],
     &["compare", "bowl", "--set", "duration=1"],

@@ -115,7 +115,10 @@ impl Ensemble {
     /// formulation does not start from.
     pub fn new(scene: &Scene, choice: &Choice, names: &[&str], settings: &Settings) -> Result<Self, SolveError> {
         let settings = Settings { method: Some(Method::Taylor), ..settings.clone() };
-        let by_name = ByName::new(scene, choice, names, &settings)?;
+        let mut by_name = ByName::new(scene, choice, names, &settings)?;
+        if let ConstantsRule::Natural { horizon } = by_name.choice().constants {
+            by_name.varying_mut().search_from_here(horizon);
+        }
         let Prepared { equations, form, constants, start, .. } = by_name.varying().prepared();
         let start = integrate::Start { t: scene.start.t, y: start.clone() };
         integrate::check_start(&start, setting(scene).end, &settings.options(settings.tolerance))?;

@@ -169,6 +169,18 @@ pub enum SolveError {
         /// Why not.
         reason: String,
     },
+    /// A two-point problem makes no sense.
+    #[error("{reason}")]
+    TwoPoint {
+        /// Why not.
+        reason: String,
+    },
+    /// A search was ended from outside.
+    #[error("the search was ended: {cause}")]
+    Interrupted {
+        /// By what.
+        cause: StopCause,
+    },
     /// The time integrator was called wrongly.
     #[error(transparent)]
     Call(#[from] CallError),

@@ -3,8 +3,10 @@
 //! "Different" means different for *every* choice of free constants (T9), so a comparison searches for
 //! others.
 
+mod squares;
+
 use equations::Equations;
-use integrate::{BoundaryError, ShootOptions, Shot, fit};
+use integrate::BoundaryError;
 use mechanics::ConstantsRule;
 use nalgebra::{DMatrix, DVector};
 
@@ -14,12 +16,9 @@ use crate::{Metric, Motion, Prepared, Setting, Settings, SolveError, TIGHTER, so
 /// Instants at which the sum of squares is taken.
 const INSTANTS: usize = 40;
 
-/// Tolerance of the integrations while constants are searched, and the limits on the search.
+/// Tolerance of the integrations while constants are searched, and the limit on their steps.
 pub(crate) const SEARCH_TOLERANCE: f64 = 1e-7;
 const SEARCH_STEPS: usize = 5_000;
-const SEARCH_ITERATIONS: usize = 30;
-/// The coarse search is done where an iteration brings less than this part.
-const SEARCH_GAIN: f64 = 1e-4;
 
 /// Readings that take as long as a step.
 const READINGS: usize = 4;
@@ -207,27 +206,5 @@ impl Differences {
             squares.fold(0.0, larger).sqrt()
         };
         self.at(constants, part, stride).map_or(f64::INFINITY, lengths)
-    }
-
-    /// The constants of a minimum of the sum of squares over 40 instants near `guess`.
-    pub(crate) fn squares(&mut self, guess: &[f64], settings: &Settings) -> Option<Vec<f64>> {
-        let stride = self.goal.len() / INSTANTS;
-        let (way, n, count) = (self.way(1.0, stride), self.dimension(), self.instants(1.0, stride));
-        let coarse = self.coarse.clone();
-        let mut search = |tolerance: f64, least_gain: f64, limits: &Settings, guess: &[f64]| -> Option<Shot> {
-            let full = ShootOptions::with_tolerance(tolerance * way);
-            let least_gain = least_gain.max(full.least_gain);
-            let options = ShootOptions { max_iterations: SEARCH_ITERATIONS, least_gain, ..full };
-            let mut residuals = |constants: &[f64], residual: &mut [f64]| {
-                let differences = self.fill(constants, 1.0, stride, tolerance, limits)?;
-                residual.copy_from_slice(differences.as_slice());
-                Ok(())
-            };
-            fit(&mut residuals, count * n, guess, &options).ok()
-        };
-        let found = search(SEARCH_TOLERANCE, SEARCH_GAIN, &coarse, guess)?;
-        let close = found.residual < CLOSE * way;
-        let refined = if close { search(settings.tolerance * TIGHTER, 0.0, settings, &found.unknowns) } else { None };
-        Some(refined.unwrap_or(found).unknowns)
     }
 }

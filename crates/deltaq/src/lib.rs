@@ -12,6 +12,8 @@
 //! - [`solve_by_steps`]: one motion by a discrete principle, in equal steps that keep its structure.
 //! - [`prepare`]: the equations compiled and started, for other integrators; [`code()`]: as source text.
 //! - [`Ensemble`]: many starts and parameters of one system at once.
+//! - [`Model`]: a motion as a function of numbers, with derivatives, for fits.
+//! - [`connect()`]: the motions from one point to another, with their conjugate times.
 //! - [`compare`]: a scene in every formulation, pair by pair, with fits of the free constants.
 //! - [`membership()`]: whether the motion of one formulation is one of another for *some* free constants.
 //!
@@ -59,11 +61,13 @@
 //! ([`Doubt`]).
 
 mod by_name;
+mod carried;
 mod charts;
 mod choice;
 mod clock;
 mod code;
 mod comparison;
+mod connect;
 mod constants;
 mod contradiction;
 mod costates;
@@ -90,6 +94,7 @@ mod lost_digits;
 mod membership;
 mod method;
 mod metric;
+mod model;
 mod motion;
 mod prepared;
 mod round_off;
@@ -124,6 +129,7 @@ pub use choice::{
 };
 pub use code::code;
 pub use comparison::{Comparison, Extent, compare, compare_unfitted};
+pub use connect::{Aim, CONNECT_STARTS, ConjugateTime, Connection, Connections, connect};
 pub use constants::{constant_names, prepare};
 pub use contradiction::{Contradicted, Contradiction, holds_beside_numbers};
 pub use costates::{costate_names, given_costates, is_costate};
@@ -145,6 +151,7 @@ pub use integrability::{integrability, integrals_by_ranks};
 pub use membership::{Answer, Membership, Pairing, certificate, costates_of, membership, multipliers_of};
 pub use method::Chosen;
 pub use metric::Metric;
+pub use model::{Model, Reading};
 pub use motion::{FormReport, Motion, Seconds, solve, solve_choice, solve_from};
 pub use prepared::Prepared;
 pub use runs::{Decided, Pair, Run};

@@ -4,8 +4,10 @@ use equations::{Compiled, Equations, Plan, Role, Tangents};
 use integrate::{Method, Options, Start};
 use symbolic::Symbol;
 
+use crate::constants::Chord;
 use crate::last_digits::{UNITS, move_digits};
 use crate::method::{Chosen, suited};
+use crate::sensitivity_start::Direction;
 use crate::single_run::{SingleRun, chart_size};
 use crate::sizes::unbounded_sizes;
 use crate::start_values::StartValues;
@@ -39,6 +41,8 @@ pub struct Prepared {
     breakpoints: Vec<f64>,
     /// Where the second run starts, unless where the first does.
     pub(crate) other_start: Option<Vec<f64>>,
+    /// Where a search of natural constants starts, if anywhere.
+    pub(crate) chord: Option<Chord>,
     /// The size of the chart at which another one is looked for, where there may be others.
     largest: Option<f64>,
 }
@@ -77,7 +81,7 @@ impl Prepared {
         let (start, guess) = (Vec::new(), Vec::new());
         let varied: Vec<Symbol> = equations.free_constants.iter().map(|c| c.symbol).collect();
         let metric = Metric::varying(setting.system, &varied[varied.len() - parameters..])?;
-        let (other_start, largest, breakpoints) = (None, None, setting.system.breakpoints.clone());
+        let (other_start, chord, largest, breakpoints) = (None, None, None, setting.system.breakpoints.clone());
         let mut prepared = Prepared {
             equations,
             compiled,
@@ -92,6 +96,7 @@ impl Prepared {
             metric,
             breakpoints,
             other_start,
+            chord,
             largest,
         };
         prepared.metric.set_parameters(&prepared.constants[prepared.constants.len() - parameters..]);
@@ -210,6 +215,15 @@ impl Prepared {
         }
         let start = Start { t: self.t, y };
         SingleRun::new(&mut self.compiled, &mut self.metric, &start, end, options, (None, Some(tangents)))
+    }
+
+    /// How the motion moves with a free constant, in units of this size.
+    pub(crate) fn along_constant(&self, constant: usize, size: f64) -> Direction {
+        let place = self.values.first_constant(self.constants.len()) + constant;
+        let start = self.values.derivative(place).into_iter().map(|x| x * size).collect();
+        let mut constants = vec![0.0; self.constants.len()];
+        constants[constant] = size;
+        Direction { start, constants, scale: size }
     }
 
     /// The run that estimates the error of `kept`, no farther than that one came. Its start has its last

@@ -29,12 +29,14 @@ pub(crate) struct Direction {
 }
 
 /// Weights of the differences of order 8 and of order 6.
-const ORDER_8: [f64; 4] = [4.0 / 5.0, -1.0 / 5.0, 4.0 / 105.0, -1.0 / 280.0];
+pub(crate) const ORDER_8: [f64; 4] = [4.0 / 5.0, -1.0 / 5.0, 4.0 / 105.0, -1.0 / 280.0];
 const ORDER_6: [f64; 4] = [3.0 / 4.0, -3.0 / 20.0, 1.0 / 60.0, 0.0];
 /// Distances over the size of the number.
 const DISTANCES: [f64; 5] = [0.0625, 0.015625, 0.00390625, 0.0009765625, 0.000244140625];
 /// Error of a derivative over the largest one that is accepted.
 const LIMIT: f64 = 1e-10;
+/// With an error like this, of what is linear, no other distance is tried.
+const AT_ONCE: f64 = 1e-14;
 
 /// The numbers that a start depends on: those of names, then the free constants.
 pub(crate) struct Numbers<'a> {
@@ -148,60 +150,72 @@ impl<'a> Numbers<'a> {
         x: f64,
         set: &mut dyn FnMut(&mut Self, f64) -> Result<(), SolveError>,
     ) -> Result<Vec<f64>, SolveError> {
-        let mut at = |numbers: &mut Self, x: f64| {
-            set(numbers, x)?;
-            Ok::<_, SolveError>(numbers.varying.prepared().start.clone())
-        };
-        let size = size(x);
-        let here = at(self, x)?;
-        let (mut best, mut failure): (Option<(f64, Vec<f64>)>, _) = (None, None);
-        for distance in DISTANCES {
-            let h = size * distance;
-            let mut sums = [vec![0.0; here.len()], vec![0.0; here.len()]];
-            let mut add = |numbers: &mut Self| -> Result<(), SolveError> {
-                for j in 0..4 {
-                    let step = h * (j + 1) as f64;
-                    let (after, before) = (x + step, x - step);
-                    let pair = at(numbers, after)?.into_iter().zip(at(numbers, before)?);
-                    // what lies between two numbers, as they are
-                    let width = (after - before) / (2.0 * step) * h;
-                    for (i, (a, b)) in pair.enumerate() {
-                        sums[0][i] += ORDER_8[j] * (a - b) / width;
-                        sums[1][i] += ORDER_6[j] * (a - b) / width;
-                    }
-                }
-                Ok(())
-            };
-            match add(self) {
-                Err(error) => failure = Some(error),
-                Ok(()) => {
-                    let largest = |x: &[f64]| x.iter().fold(0.0_f64, |a, x| a.max(x.abs()));
-                    let differences: Vec<f64> = sums[0].iter().zip(&sums[1]).map(|(a, b)| a - b).collect();
-                    let error = largest(&differences) + f64::EPSILON * largest(&here) / h;
-                    let relative = error / (largest(&sums[0]) + largest(&here) / size).max(f64::MIN_POSITIVE);
-                    if best.as_ref().is_none_or(|(least, _)| relative < *least) {
-                        best = Some((relative, std::mem::take(&mut sums[0])));
-                    }
-                }
-            }
-        }
+        let found = derivative(name, x, &mut |x| {
+            set(self, x)?;
+            Ok(self.varying.prepared().start.clone())
+        });
         self.reset()?;
-        match (best, failure) {
-            (Some((relative, derivative)), _) if relative <= LIMIT => Ok(derivative),
-            (Some((found, _)), _) => {
-                let reason = format!(
-                    "the start does not move smoothly with {name}: its derivative is known to {found:.1e} of itself, the limit is {LIMIT:.0e}"
-                );
-                Err(SolveError::Member { reason })
+        found
+    }
+}
+
+/// The derivative at `x` of what is smooth in the number of this name.
+pub(crate) fn derivative(
+    name: &str,
+    x: f64,
+    at: &mut dyn FnMut(f64) -> Result<Vec<f64>, SolveError>,
+) -> Result<Vec<f64>, SolveError> {
+    let size = size(x);
+    let here = at(x)?;
+    let (mut best, mut failure): (Option<(f64, Vec<f64>)>, _) = (None, None);
+    for distance in DISTANCES {
+        let h = size * distance;
+        let mut sums = [vec![0.0; here.len()], vec![0.0; here.len()]];
+        let mut add = || -> Result<(), SolveError> {
+            for j in 0..4 {
+                let step = h * (j + 1) as f64;
+                let (after, before) = (x + step, x - step);
+                let pair = at(after)?.into_iter().zip(at(before)?);
+                // what lies between two numbers, as they are
+                let width = (after - before) / (2.0 * step) * h;
+                for (i, (a, b)) in pair.enumerate() {
+                    sums[0][i] += ORDER_8[j] * (a - b) / width;
+                    sums[1][i] += ORDER_6[j] * (a - b) / width;
+                }
             }
-            (None, Some(error)) => Err(error),
-            (None, None) => unreachable!("there are distances"),
+            Ok(())
+        };
+        match add() {
+            Err(error) => failure = Some(error),
+            Ok(()) => {
+                let largest = |x: &[f64]| x.iter().fold(0.0_f64, |a, x| a.max(x.abs()));
+                let differences: Vec<f64> = sums[0].iter().zip(&sums[1]).map(|(a, b)| a - b).collect();
+                let error = largest(&differences) + f64::EPSILON * largest(&here) / h;
+                let relative = error / (largest(&sums[0]) + largest(&here) / size).max(f64::MIN_POSITIVE);
+                if best.as_ref().is_none_or(|(least, _)| relative < *least) {
+                    best = Some((relative, std::mem::take(&mut sums[0])));
+                }
+                if relative <= AT_ONCE {
+                    break;
+                }
+            }
         }
+    }
+    match (best, failure) {
+        (Some((relative, derivative)), _) if relative <= LIMIT => Ok(derivative),
+        (Some((found, _)), _) => {
+            let reason = format!(
+                "the start does not move smoothly with {name}: its derivative is known to {found:.1e} of itself, the limit is {LIMIT:.0e}"
+            );
+            Err(SolveError::Member { reason })
+        }
+        (None, Some(error)) => Err(error),
+        (None, None) => unreachable!("there are distances"),
     }
 }
 
 /// The size of a number by which derivatives are taken.
-fn size(x: f64) -> f64 {
+pub(crate) fn size(x: f64) -> f64 {
     if x == 0.0 { 1.0 } else { x.abs() }
 }
 

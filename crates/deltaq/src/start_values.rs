@@ -4,7 +4,7 @@ use std::collections::HashMap;
 
 use equations::Equations;
 use mechanics::{State, complete_removal_start};
-use symbolic::{Bounded, Evaluator, Expr, Scalar, Symbol};
+use symbolic::{Bounded, Dual, Evaluator, Expr, Scalar, Symbol};
 
 use crate::{Setting, SolveError};
 
@@ -80,6 +80,14 @@ impl StartValues {
         let inputs: Vec<Bounded> = self.inputs.iter().map(|&x| Bounded::from_f64(x)).collect();
         let mut program = Evaluator::new(self.program.tape().clone());
         program.evaluate(&inputs)[..self.states].iter().map(|x: &Bounded| x.may_be_zero()).collect()
+    }
+
+    /// The derivative of the states by the input at this place.
+    pub(crate) fn derivative(&self, place: usize) -> Vec<f64> {
+        let along = |(i, &x): (usize, &f64)| if i == place { Dual::along(x, 0) } else { Dual::from_f64(x) };
+        let inputs: Vec<Dual> = self.inputs.iter().enumerate().map(along).collect();
+        let mut program = Evaluator::new(self.program.tape().clone());
+        program.evaluate(&inputs)[..self.states].iter().map(|x| x.tangents.0[0]).collect()
     }
 
     /// The states, and the guess for the unknowns of the instant, empty unless each has a derived one.

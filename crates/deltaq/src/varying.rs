@@ -5,7 +5,7 @@ use mechanics::{ConstantsRule, Parameter, RemovalProgram, State, System};
 use scene::Scene;
 use symbolic::{Evaluator, Symbol};
 
-use crate::constants::resolve;
+use crate::constants::{chord, resolve};
 use crate::{Choice, Form, Prepared, Settings, SolveError, derive_in_form, setting};
 
 /// A motion of a scene while numbers vary: what is derived and compiled stays.
@@ -74,7 +74,8 @@ impl Varying {
     }
 
     /// Sets `(t₀, q₀, v₀)`, the parameters that vary and the other free constants. What is natural at a
-    /// horizon is looked for from zero on, or, if `near`, from the constants of the motion before.
+    /// horizon is looked for from zero on (in an ensemble from the constants of its scene), or, if `near`,
+    /// from the constants of the motion before.
     ///
     /// # Errors
     /// [`SolveError`] without a start, or where a formula as written has no value there;
@@ -106,6 +107,12 @@ impl Varying {
         prepared.set_parameters(parameters);
         let near = near.then(|| prepared.own_constants().to_vec());
         resolve(prepared, constants, &self.settings, None, near.as_deref())
+    }
+
+    /// From now on constants that are natural at `horizon` are searched from those of the scene on, by the
+    /// Jacobian there.
+    pub(crate) fn search_from_here(&mut self, horizon: f64) {
+        self.prepared.chord = chord(&mut self.prepared.clone(), horizon, &self.settings);
     }
 
     /// Sets the parameters that vary and the other free constants, for states of the caller's own: what a

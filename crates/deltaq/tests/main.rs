@@ -3,7 +3,9 @@
 mod answers;
 mod beginnings;
 mod charts;
+mod collocation;
 mod cones;
+mod connect;
 mod contradictions;
 mod endings;
 mod errors;
@@ -15,6 +17,7 @@ mod known_members;
 mod known_round_off;
 mod known_values;
 mod long;
+mod model;
 mod round_off;
 mod sensitivities;
 mod sentences;

@@ -5,24 +5,20 @@
 //! ```
 //!
 //! `r` is the caller's: it integrates from the start state that belongs to `c` and returns what is to vanish
-//! at the end. The minimiser is the crate `levenberg-marquardt`, a port of MINPACK's.
+//! at the end. Its derivatives are the caller's, too, where he has them ([`Residuals::jacobian`]), or central
+//! differences. The minimiser is the crate `levenberg-marquardt`, a port of MINPACK's.
 
-use std::cell::RefCell;
+mod search;
 
-use levenberg_marquardt::{LeastSquaresProblem, LevenbergMarquardt};
-use nalgebra_0_34::storage::Owned;
-use nalgebra_0_34::{DMatrix, DVector, Dyn};
+use levenberg_marquardt::LevenbergMarquardt;
 use thiserror::Error;
 
 use crate::dense::DenseOutput;
 use crate::error::CallError;
 use crate::status::{Solution, Status, StopCause};
+use search::{Search, Target};
 
-/// Stands for the residuals where they cannot be evaluated: the minimiser then tries a shorter step.
-const OUT_OF_REACH: f64 = 1e100;
-/// A guess this much better than the tolerance is not improved; for others differences are taken.
-const AT_ONCE: f64 = 1e-3;
-/// Above this condition number a Jacobian from differences does not determine the unknowns.
+/// Above this condition number a Jacobian does not determine the unknowns.
 const SINGULAR: f64 = 1e12;
 
 /// How to solve for the unknowns.
@@ -60,7 +56,9 @@ pub struct Shot {
     pub residual: f64,
     /// Jacobians evaluated on the way.
     pub iterations: usize,
-    /// Evaluations of r, those for the Jacobians included.
+    /// How many of these the caller gave; the others are differences.
+    pub exact: usize,
+    /// Evaluations of r, those for differences included.
     pub evaluations: usize,
     /// Whether the limit on iterations ended the search.
     pub exhausted: bool,
@@ -151,8 +149,29 @@ impl Solution {
     }
 }
 
-/// What is to vanish as a function of the unknowns: reads `c`, writes `r(c)`.
-pub type Residual<'a> = dyn FnMut(&[f64], &mut [f64]) -> Result<(), BoundaryError> + 'a;
+/// What is to vanish as a function of the unknowns; a closure has no derivatives of its own.
+pub trait Residuals {
+    /// Reads `c`, writes `r(c)`.
+    ///
+    /// # Errors
+    /// Where it cannot be evaluated.
+    fn residual(&mut self, unknowns: &[f64], residual: &mut [f64]) -> Result<(), BoundaryError>;
+
+    /// Reads `c`, writes `∂r_i/∂c_j`, row by row, and gives `true`; `false` where it is not known, so that
+    /// differences are taken.
+    ///
+    /// # Errors
+    /// Where it cannot be evaluated; differences are taken then.
+    fn jacobian(&mut self, _unknowns: &[f64], _jacobian: &mut [f64]) -> Result<bool, BoundaryError> {
+        Ok(false)
+    }
+}
+
+impl<F: FnMut(&[f64], &mut [f64]) -> Result<(), BoundaryError>> Residuals for F {
+    fn residual(&mut self, unknowns: &[f64], residual: &mut [f64]) -> Result<(), BoundaryError> {
+        self(unknowns, residual)
+    }
+}
 
 /// Single shooting: finds `c` near `guess` with `|r(c)| ≤ tolerance`, as many residuals as unknowns.
 ///
@@ -174,7 +193,7 @@ pub type Residual<'a> = dyn FnMut(&[f64], &mut [f64]) -> Result<(), BoundaryErro
 /// let shot = shoot(&mut end, &[0.3], &ShootOptions::with_tolerance(1e-12)).unwrap();
 /// assert!((shot.unknowns[0] - 1.0 / 1f64.sin()).abs() < 1e-11);
 /// ```
-pub fn shoot(residual: &mut Residual, guess: &[f64], options: &ShootOptions) -> Result<Shot, BoundaryError> {
+pub fn shoot(residual: &mut dyn Residuals, guess: &[f64], options: &ShootOptions) -> Result<Shot, BoundaryError> {
     let shot = minimise(residual, guess.len(), guess, options, [options.tolerance, 0.0])?;
     // The negation catches a condition or residual that is NaN.
     if shot.residual <= options.tolerance {
@@ -209,7 +228,7 @@ pub fn shoot(residual: &mut Residual, guess: &[f64], options: &ShootOptions) -> 
 /// assert!((shot.residual - 14f64.sqrt()).abs() < 1e-9);
 /// ```
 pub fn fit(
-    residual: &mut Residual,
+    residual: &mut dyn Residuals,
     residuals: usize,
     guess: &[f64],
     options: &ShootOptions,
@@ -219,36 +238,17 @@ pub fn fit(
 
 /// The best point of a minimisation that ends early where `|r| ≤ enough`; differences up to `noise` are none.
 fn minimise(
-    residual: &mut Residual,
+    residual: &mut dyn Residuals,
     residuals: usize,
     guess: &[f64],
     options: &ShootOptions,
     [enough, noise]: [f64; 2],
 ) -> Result<Shot, BoundaryError> {
     check(residuals, guess, options)?;
-    let mut search = Search {
-        residual,
-        residuals,
-        options,
-        enough,
-        noise,
-        at: guess.to_vec(),
-        best: guess.to_vec(),
-        smallest: f64::INFINITY,
-        iterations: 0,
-        evaluations: 0,
-        first: None,
-        last: None,
-        condition: f64::INFINITY,
-    };
-    search.first = Some(search.values(guess)?);
+    let target = Target::new(Search::new((residual, residuals), guess, options, [enough, noise])?);
     let minimiser = LevenbergMarquardt::new().with_patience(10 * options.max_iterations).with_ftol(options.least_gain);
-    let (problem, _report) = minimiser.minimize(Target(RefCell::new(search)));
-    let mut search = problem.0.into_inner();
-    search.finish();
-    let Search { best, smallest, iterations, evaluations, condition, .. } = search;
-    let exhausted = iterations >= options.max_iterations;
-    Ok(Shot { unknowns: best, residual: smallest, iterations, evaluations, exhausted, condition })
+    let (target, _report) = minimiser.minimize(target);
+    Ok(target.found())
 }
 
 fn check(residuals: usize, guess: &[f64], options: &ShootOptions) -> Result<(), BoundaryError> {
@@ -272,129 +272,5 @@ fn check(residuals: usize, guess: &[f64], options: &ShootOptions) -> Result<(), 
     match guess.iter().find(|c| !c.is_finite()) {
         Some(&found) => Err(BoundaryError::Option { name: "guess", found, needed: "finite" }),
         None => Ok(()),
-    }
-}
-
-fn condition(jacobian: &DMatrix<f64>) -> f64 {
-    let values = jacobian.singular_values();
-    // Sorted, largest first; there is at least one.
-    let (largest, smallest) = (values[0], values[values.len() - 1]);
-    if smallest > 0.0 { largest / smallest } else { f64::INFINITY }
-}
-
-struct Search<'a, 'r> {
-    residual: &'a mut Residual<'r>,
-    residuals: usize,
-    options: &'a ShootOptions,
-    enough: f64,
-    noise: f64,
-    at: Vec<f64>,
-    best: Vec<f64>,
-    smallest: f64,
-    iterations: usize,
-    evaluations: usize,
-    /// r at the guess, until the minimiser asks for it.
-    first: Option<Vec<f64>>,
-    /// The last Jacobian, and its condition.
-    last: Option<DMatrix<f64>>,
-    condition: f64,
-}
-
-impl Search<'_, '_> {
-    /// r(c), finite or an error; remembers the best c.
-    fn values(&mut self, unknowns: &[f64]) -> Result<Vec<f64>, BoundaryError> {
-        let mut values = vec![0.0; self.residuals];
-        self.evaluations += 1;
-        (self.residual)(unknowns, &mut values)?;
-        if let Some(index) = values.iter().position(|r| !r.is_finite()) {
-            return Err(BoundaryError::NotFinite { index, found: values[index] });
-        }
-        let norm = values.iter().map(|r| r * r).sum::<f64>().sqrt();
-        if norm < self.smallest {
-            self.smallest = norm;
-            self.best.copy_from_slice(unknowns);
-        }
-        Ok(values)
-    }
-
-    /// ∂r/∂c by central differences; one-sided where one side cannot be evaluated.
-    fn differences(&mut self, unknowns: &[f64]) -> Result<DMatrix<f64>, BoundaryError> {
-        let mut jacobian = DMatrix::zeros(self.residuals, unknowns.len());
-        let mut shifted = unknowns.to_vec();
-        for (j, mut column) in jacobian.column_iter_mut().enumerate() {
-            let step = self.options.difference_step * unknowns[j].abs().max(self.options.scale);
-            shifted[j] = unknowns[j] + step;
-            let above = self.values(&shifted);
-            shifted[j] = unknowns[j] - step;
-            let below = self.values(&shifted);
-            shifted[j] = unknowns[j];
-            let (above, below, width) = match (above, below) {
-                (Ok(above), Ok(below)) => (above, below, 2.0 * step),
-                (Ok(above), Err(_)) => (above, self.values(unknowns)?, step),
-                (Err(_), Ok(below)) => (self.values(unknowns)?, below, step),
-                (Err(error), Err(_)) => return Err(error),
-            };
-            for (i, entry) in column.iter_mut().enumerate() {
-                *entry = above[i] - below[i];
-            }
-            column *= if column.norm() > self.noise { width.recip() } else { 0.0 };
-        }
-        self.condition = condition(&jacobian);
-        self.last = Some(jacobian.clone());
-        Ok(jacobian)
-    }
-
-    /// One step more, kept where it is one nearer; none where what was found is not good enough.
-    fn finish(&mut self) {
-        if self.smallest == 0.0 || self.smallest > self.enough {
-            return;
-        }
-        let (best, last) = (self.best.clone(), self.last.take().filter(|_| self.condition <= SINGULAR));
-        let (Some(jacobian), Ok(values)) = (last, self.values(&best)) else { return };
-        if let Some(step) = jacobian.lu().solve(&DVector::from_vec(values)) {
-            // what cannot be evaluated is not nearer
-            let _ = self.values(&best.iter().zip(step.iter()).map(|(c, s)| c - s).collect::<Vec<_>>());
-        }
-    }
-}
-
-/// What the minimiser sees.
-struct Target<'a, 'r>(RefCell<Search<'a, 'r>>);
-
-impl LeastSquaresProblem<f64, Dyn, Dyn> for Target<'_, '_> {
-    type ResidualStorage = Owned<f64, Dyn>;
-    type JacobianStorage = Owned<f64, Dyn, Dyn>;
-    type ParameterStorage = Owned<f64, Dyn>;
-
-    fn set_params(&mut self, unknowns: &DVector<f64>) {
-        self.0.get_mut().at.copy_from_slice(unknowns.as_slice());
-    }
-
-    fn params(&self) -> DVector<f64> {
-        DVector::from_column_slice(&self.0.borrow().at)
-    }
-
-    fn residuals(&self) -> Option<DVector<f64>> {
-        let search = &mut *self.0.borrow_mut();
-        let at = search.at.clone();
-        // it asks for the guess first
-        let values = match search.first.take() {
-            Some(values) => Ok(values),
-            None => search.values(&at),
-        };
-        let values = values.unwrap_or_else(|_| vec![OUT_OF_REACH; search.residuals]);
-        Some(DVector::from_vec(values))
-    }
-
-    /// `None` ends the minimisation: good enough, out of iterations, or no differences.
-    fn jacobian(&self) -> Option<DMatrix<f64>> {
-        let search = &mut *self.0.borrow_mut();
-        let enough = if search.iterations == 0 { AT_ONCE * search.enough } else { search.enough };
-        if search.smallest <= enough || search.iterations >= search.options.max_iterations {
-            return None;
-        }
-        search.iterations += 1;
-        let at = search.at.clone();
-        search.differences(&at).ok()
     }
 }

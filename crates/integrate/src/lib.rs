@@ -93,7 +93,7 @@ mod taylor;
 mod taylor_step;
 mod time_loop;
 
-pub use boundary::{BoundaryError, Residual, ShootOptions, Shot, fit, shoot};
+pub use boundary::{BoundaryError, Residuals, ShootOptions, Shot, fit, shoot};
 pub use dense::DenseOutput;
 pub use error::{CallError, DenseError};
 pub use interrupt::Interrupt;

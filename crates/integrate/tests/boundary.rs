@@ -164,3 +164,40 @@ fn an_unknown_that_only_errors_move_stays() {
     let shot = fit(&mut fitted, 2, &[0.5, 1.0], &ShootOptions { tolerance: 1e-12, ..coarse }).expect("the guess");
     assert!((shot.unknowns[1] - 1.0).abs() > 1.0, "{shot:?}");
 }
+
+/// `r = (c₀² + c₁ − 3, c₀ − c₁²)` with its derivatives, the first of which is `part` of what it is.
+struct Curves {
+    part: f64,
+    calls: usize,
+}
+
+impl integrate::Residuals for Curves {
+    fn residual(&mut self, c: &[f64], r: &mut [f64]) -> Result<(), BoundaryError> {
+        self.calls += 1;
+        r.copy_from_slice(&[c[0] * c[0] + c[1] - 3.0, c[0] - c[1] * c[1]]);
+        Ok(())
+    }
+    fn jacobian(&mut self, c: &[f64], jacobian: &mut [f64]) -> Result<bool, BoundaryError> {
+        jacobian.copy_from_slice(&[2.0 * c[0] * self.part, 1.0, 1.0, -2.0 * c[1]]);
+        Ok(self.part > 0.0)
+    }
+}
+
+#[test]
+fn the_callers_derivatives_are_taken_where_he_has_them() {
+    let options = ShootOptions::with_tolerance(1e-12);
+    let guess = [1.0, 1.5];
+    let searched = |part: f64| {
+        let mut curves = Curves { part, calls: 0 };
+        let shot = shoot(&mut curves, &guess, &options).unwrap();
+        assert!((shot.unknowns[1].powi(4) + shot.unknowns[1] - 3.0).abs() < 1e-11, "{shot:?}");
+        assert_eq!(shot.evaluations, curves.calls);
+        shot
+    };
+    let (exact, differences) = (searched(1.0), searched(0.0));
+    assert_eq!((exact.exact, differences.exact), (exact.iterations, 0));
+    assert!(exact.iterations <= 6 && exact.evaluations + 3 * exact.iterations < differences.evaluations);
+    // it is these that are followed: wrong ones lead nowhere
+    let wrong = shoot(&mut Curves { part: 0.5, calls: 0 }, &guess, &options);
+    assert!(matches!(wrong, Err(BoundaryError::NotConverged { .. })), "{wrong:?}");
+}

@@ -5,6 +5,7 @@ use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyString};
 
 use crate::comparison::{Comparison, Decided, Fit, Growth, LeadingTerm, Pair, Run};
+use crate::connect::{Connection, Connections};
 use crate::ensemble::Ensemble;
 use crate::kept::{Kept, field};
 use crate::linearization::{Linearization, LinearizationSweep, StabilityChange};
@@ -34,7 +35,7 @@ pub(crate) fn _again<'py>(name: &Bound<'py, PyString>, state: &Bound<'py, PyDict
         };
     }
     among!(
-        Comparison Decided Ensemble Fit Growth LeadingTerm Linearization LinearizationSweep Motion Outputs Pair Run
-        StabilityChange State Trajectory
+        Comparison Connection Connections Decided Ensemble Fit Growth LeadingTerm Linearization LinearizationSweep Motion
+        Outputs Pair Run StabilityChange State Trajectory
     )
 }

@@ -77,7 +77,11 @@ pub(crate) fn solve(error: impl Into<deltaq::SolveError>) -> PyErr {
         Error::AtStart(_) | Error::OutsideDomain { .. } | Error::Reading { .. } | Error::Dense(_) => {
             EvaluationError::new_err(text)
         }
-        Error::Boundary { .. } | Error::Search { .. } | Error::Ended { .. } => BoundaryError::new_err(text),
+        Error::Boundary { .. }
+        | Error::Search { .. }
+        | Error::Ended { .. }
+        | Error::TwoPoint { .. }
+        | Error::Interrupted { .. } => BoundaryError::new_err(text),
         Error::Call(_) | Error::Tolerance { .. } => CallError::new_err(text),
         Error::ConstantCount { .. }
         | Error::ConstantNotFinite { .. }

@@ -9,6 +9,7 @@ mod arrays;
 mod at_run_time;
 mod background;
 mod comparison;
+mod connect;
 mod ensemble;
 mod equations;
 mod errors;
@@ -19,6 +20,7 @@ mod outputs;
 mod proof;
 mod questions;
 mod reading;
+mod residuals;
 mod scene_text;
 mod sensitivities;
 mod system;
@@ -30,6 +32,8 @@ mod _native {
     use crate::again::_again;
     #[pymodule_export]
     use crate::comparison::{Comparison, Decided, Fit, Growth, LeadingTerm, Pair, Run};
+    #[pymodule_export]
+    use crate::connect::{Connection, Connections};
     #[pymodule_export]
     use crate::ensemble::Ensemble;
     #[pymodule_export]
@@ -47,6 +51,8 @@ mod _native {
     use crate::outputs::Outputs;
     #[pymodule_export]
     use crate::reading::{_read_again, built_in, load, parse};
+    #[pymodule_export]
+    use crate::residuals::Residuals;
     #[pymodule_export]
     use crate::system::{State, System};
     #[pymodule_export]

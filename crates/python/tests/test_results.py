@@ -56,7 +56,7 @@ def test_everything_is_pickled_and_copied(sledge, system, way):
         short.solve("vakonomic", [0.0, 0.5, 1.0], mu0=[0.3], tolerance=1e-9), escaping().solve(), short.compare(),
         short.start, equations.integrate([0.0, 0.5]), equations.outputs(0.0, equations.initial_state()),
         short.ensemble("vakonomic", [0.5, 1.0], vary={"mu0_1": [0.1, 0.2]}), escaping().ensemble(vary={"x'": [0.1, 3.0]}),
-        system.linearize(at=0.5),
+        system.linearize(at=0.5), deltaq.built_in("disc").connect({"psi": 3.0, "phi": 1.5}, 2.0, "chetaev", starts=2),
     ]
     for result in results:
         same(result, ROUNDS[way](result))

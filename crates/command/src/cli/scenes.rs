@@ -99,7 +99,8 @@ impl From<CodeLanguage> for deltaq::Language {
     }
 }
 
-fn assignment(text: &str) -> Result<(String, Number), String> {
+/// `NAME=VALUE`.
+pub(super) fn assignment(text: &str) -> Result<(String, Number), String> {
     let (name, value) = text.split_once('=').ok_or_else(|| format!("`{text}` is not NAME=VALUE"))?;
     let number = value.parse().map_err(|error| format!("`{value}` in `{text}`: {error}"))?;
     Ok((name.trim().to_string(), number))

@@ -258,6 +258,64 @@ class System:
         True
         """
     def _certificate(self, almost_every_start: bool) -> tuple[dict[str, Any] | None, str | None]: ...
+    def connect(
+        self,
+        to: Mapping[str, float],
+        at: float | None = None,
+        formulation: str = "vakonomic",
+        *,
+        removal: str | None = None,
+        mu0: _Floats | None = None,
+        constants: _Constants | None = None,
+        starts: int = 60,
+        tolerance: float = 1e-11,
+        threads: int = 0,
+    ) -> Connections:
+        """The motions under a formulation that end at other coordinates: a two-point problem.
+
+        to: coordinates at the end, name to number, as many as there are unknowns: start velocities that the
+        constraints leave free, and free constants. at: time of the end; by default that of `duration`.
+        mu0, constants: a first guess. starts: from how many starts motions are searched. Else as in `solve`.
+
+        BoundaryError where there are more or fewer coordinates than unknowns; no motion found is no error.
+
+        >>> geodesics = deltaq.built_in("heisenberg").connect({"x": 0.2, "y": 0.5, "z": 0.3})
+        >>> [shortest] = geodesics.motions
+        >>> shortest.is_minimum, round(shortest.unknowns["mu0_1"], 9)
+        (True, 0.443803456)
+        """
+
+    def residuals(
+        self,
+        names: Sequence[str],
+        times: _Floats,
+        data: Mapping[str, _Floats],
+        formulation: str = "chetaev",
+        *,
+        sigma: Mapping[str, float] | None = None,
+        removal: str | None = None,
+        mu0: _Floats | None = None,
+        constants: _Constants | None = None,
+        method: str = "auto",
+        tolerance: float = 1e-11,
+        max_steps: int = 100_000,
+        penalty: float = 1e6,
+    ) -> Residuals:
+        """What a motion misses of data, as a function of numbers of the system that never raises: for
+        `scipy.optimize.least_squares`.
+
+        names: parameters, start values ("x", "x'"), multipliers ("mu0_1", ...) or costates ("P0_w") that are
+        to vary. times: of the data, shape (k,), ascending. data: name of a column, a coordinate, a velocity
+        ("x'") or a multiplier, to its values, shape (k,). sigma: name of a column to its unit, 1 by default.
+        constants: zero by default where the removal's are natural at a horizon. penalty: what
+        residuals are at times that a motion does not reach. Else as in `solve`, in one run.
+
+        >>> times = [0.5, 1.0]
+        >>> miss = sledge.residuals(["phi'"], times, {"phi": [0.6, 1.2]}, sigma={"phi": 0.1})
+        >>> miss([1.0]).round(9), miss.jac([1.0]).round(9).tolist()
+        (array([-1., -2.]), [[5.0], [10.0]])
+        """
+
     def solve(
         self,
         formulation: str = "chetaev",
@@ -508,6 +566,84 @@ class Linearization:
     """The same in words: "like t" where an eigenvalue on the imaginary axis has too few eigenvectors,
     "undecided" where errors leave it open or all eigenvalues are zero.
     """
+
+@final
+class Connections:
+    """What `System.connect` found."""
+    formulation: Final[str]
+    """Name of the formulation."""
+    unknowns: Final[list[str]]
+    """Names of the unknowns: free start velocities, free constants."""
+    motions: Final[list[Connection]]
+    """The motions, by rising action."""
+    starts: Final[int]
+    """Number of starts of the search."""
+    failures: Final[dict[str, int]]
+    """Why starts led nowhere, and how many."""
+    runs: Final[int]
+    """Motions integrated in the search, those with derivatives among them."""
+    with_derivatives: Final[int]
+    """How many of them with derivatives."""
+    def __len__(self) -> int: ...
+
+@final
+class Connection:
+    """A motion between two points."""
+    system: Final[System]
+    """The system with the start velocities and multipliers of this motion, until its end: `solve` it with
+    `constants`.
+    """
+    unknowns: Final[dict[str, float]]
+    """The unknowns by name."""
+    errors: Final[dict[str, float]]
+    """How far they may be wrong, by name."""
+    constants: Final[_Array]
+    """Free constants, shape (c,)."""
+    velocities: Final[_Array]
+    """Start velocities, shape (n,)."""
+    action: Final[float]
+    """The integral of L over time."""
+    action_error: Final[float]
+    """Error of its quadrature."""
+    residuals: Final[dict[str, float]]
+    """What the end is missed by, by coordinate."""
+    condition: Final[float]
+    """Condition number of the end by the unknowns, in units of the problem."""
+    is_isolated: Final[bool]
+    """Whether no other motion is beside it."""
+    conjugate_times: Final[_Array | None]
+    """Times conjugate to the start, shape (k,), rising; None where the unknowns are dependent at all times."""
+    conjugate_errors: Final[_Array | None]
+    """Their errors, shape (k,): what two runs differ by."""
+    multiplicities: Final[list[int] | None]
+    """By how much the rank falls there, length k."""
+    is_minimum: Final[bool | None]
+    """Whether the action has a local minimum, by conjugate times; None where it is not stationary."""
+    starts: Final[int]
+    """How many starts led here."""
+
+@final
+class Residuals:
+    """What a motion misses of data at k times, as a function of numbers p of its system: for `scipy.optimize`.
+
+    Residual i of a column is (value at time i - data)/sigma; columns follow one another, so that there are
+    as many residuals as columns times k. They have no unit where `sigma` has that of its column.
+
+    A call never raises for numbers: at times that the motion does not reach residuals are `penalty`, with
+    derivatives zero, and `ended` says why. Numbers that are no start give that at all times.
+    """
+    names: Final[list[str]]
+    """Names of the numbers p, length P."""
+    columns: Final[list[str]]
+    """Names of the columns: coordinates ("x"), velocities ("x'"), multipliers and costates."""
+    penalty: Final[float]
+    """Residuals at times that a motion does not reach."""
+    ended: Final[str | None]
+    """Why the motion of the last call ended before the last time; None where it did not."""
+    def __call__(self, p: _Floats) -> _Array: ...
+    def jac(self, p: _Floats) -> _Array:
+        """Their exact derivatives by p, shape (columns times k, P), finite whatever p is."""
+    def __len__(self) -> int: ...
 
 @final
 class LinearizationSweep:

@@ -1,0 +1,102 @@
+//! One run of a motion with its derivatives, for searches: with no second run, so without an error estimate.
+
+use equations::{Outputs, Tangents};
+use integrate::{Method, Options, Status, StopCause};
+
+use crate::sensitivity_start::Direction;
+use crate::{Prepared, SingleRun, SolveError};
+
+/// A motion with its derivatives along directions, eight to a run.
+pub(crate) struct Carried<'a> {
+    runs: Vec<(Tangents, SingleRun)>,
+    along: &'a [Direction],
+    states: usize,
+}
+
+/// A run with derivatives along eight directions or less takes as long as this many without (measured on the
+/// sledge, the bowl and three cylinders: 4.5 to 5.5). Fewer runs give differences in less time.
+pub(crate) const PLAIN_RUNS: usize = 5;
+
+/// Which of the two runs of a motion.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Which {
+    Kept,
+    /// Its start has its last digits changed.
+    Looser,
+}
+
+impl<'a> Carried<'a> {
+    /// From the start of `prepared` to `end`. Taylor series give way to Runge and Kutta where rates are not
+    /// smooth.
+    pub(crate) fn run(
+        prepared: &mut Prepared,
+        along: &'a [Direction],
+        end: f64,
+        options: &Options,
+        which: Which,
+    ) -> Result<Self, SolveError> {
+        prepared.complete(options.method)?;
+        let mut runs = Vec::new();
+        for part in along.chunks(Tangents::DIRECTIONS) {
+            let mut tangents = Tangents::new(&prepared.compiled, part.len());
+            for (l, direction) in part.iter().enumerate() {
+                tangents.set_constants(&prepared.compiled, l, &direction.constants);
+            }
+            let starts: Vec<Vec<f64>> = part.iter().map(|direction| direction.start.clone()).collect();
+            let run = prepared.integrate_with(&mut tangents, &starts, end, options, which == Which::Looser)?;
+            let is_rough = matches!(&run.solution.status, Status::Stopped { cause: StopCause::NotSmooth { .. }, .. });
+            if is_rough && options.method == Method::Taylor {
+                let options = Options { method: Method::Dop853, ..options.clone() };
+                return Carried::run(prepared, along, end, &options, which);
+            }
+            runs.push((tangents, run));
+        }
+        Ok(Carried { runs, along, states: prepared.start.len() })
+    }
+
+    /// How the run ended; of several, the first that stopped.
+    pub(crate) fn status(&self) -> &Status {
+        let each = || self.runs.iter().map(|(_, run)| &run.solution.status);
+        each().find(|status| **status != Status::Completed).or_else(|| each().next()).expect("there are directions")
+    }
+
+    /// The time that all runs reached.
+    pub(crate) fn end(&self) -> f64 {
+        self.runs.iter().map(|(_, run)| run.end()).fold(f64::INFINITY, f64::min)
+    }
+
+    /// End points of the steps.
+    pub(crate) fn step_times(&self) -> Vec<f64> {
+        self.runs.iter().flat_map(|(_, run)| run.solution.dense.step_times().iter().copied()).collect()
+    }
+
+    /// Steps of all runs, rejected ones too.
+    pub(crate) fn steps(&self) -> usize {
+        self.runs.iter().map(|(_, run)| run.solution.work.steps + run.solution.work.rejected).sum()
+    }
+
+    /// The derivatives of the states at the end of the run along each direction, over its scale.
+    pub(crate) fn end_derivatives(&self) -> Vec<Vec<f64>> {
+        let ends = self.runs.iter().map(|(_, run)| &run.solution.dense.end_state()[self.states..]);
+        let along = ends.flat_map(|end| end.chunks_exact(self.states));
+        along.zip(self.along).map(|(dy, along)| dy.iter().map(|x| x / along.scale).collect()).collect()
+    }
+
+    /// What is read off at `t`, and its derivatives along each direction, over its scale.
+    pub(crate) fn at(&mut self, prepared: &mut Prepared, t: f64) -> Result<(Outputs, Vec<Outputs>), SolveError> {
+        let mut read: Option<(Outputs, Vec<Outputs>)> = None;
+        for (tangents, run) in &mut self.runs {
+            let mut state = vec![0.0; self.states * (1 + tangents.directions())];
+            run.states_at(&mut prepared.compiled, t, &mut state)?;
+            let found = tangents.outputs(&mut prepared.compiled, t, &state);
+            let (outputs, derivatives) = found.map_err(|failure| SolveError::Reading { t, failure })?;
+            read.get_or_insert((outputs, Vec::new())).1.extend(derivatives);
+        }
+        let (outputs, mut derivatives) = read.expect("there are directions");
+        for (found, along) in derivatives.iter_mut().zip(self.along) {
+            let parts = [&mut found.coordinates, &mut found.velocities, &mut found.multipliers, &mut found.invariants];
+            parts.into_iter().flatten().for_each(|x| *x /= along.scale);
+        }
+        Ok((outputs, derivatives))
+    }
+}

@@ -1,0 +1,208 @@
+//! Motions between two points.
+
+use deltaq::{Aim, Choice, Connections as Found, Settings, SolveError};
+use integrate::Interrupt;
+use mechanics::ConstantsRule;
+use numpy::PyArrayDyn;
+use pyo3::prelude::*;
+use pyo3::types::{IntoPyDict, PyDict};
+use scene::Scene;
+
+use crate::arguments::Numbers;
+use crate::arrays::{Floats, fixed};
+use crate::kept::kept;
+use crate::system::{Overrides, System};
+use crate::{arguments, background, errors};
+
+/// What `System.connect` found.
+#[pyclass(frozen, get_all, module = "deltaq")]
+pub(crate) struct Connections {
+    /// Name of the formulation.
+    formulation: String,
+    /// Names of the unknowns: free start velocities, free constants.
+    unknowns: Vec<String>,
+    /// The motions, by rising action.
+    motions: Vec<Py<Connection>>,
+    /// Number of starts of the search.
+    starts: usize,
+    /// Why starts led nowhere, and how many.
+    failures: Py<PyDict>,
+    /// Motions integrated in the search, those with derivatives among them.
+    runs: usize,
+    /// How many of them with derivatives.
+    with_derivatives: usize,
+}
+
+kept!(Connections: formulation unknowns motions starts failures runs with_derivatives);
+
+#[pymethods]
+impl Connections {
+    fn __len__(&self) -> usize {
+        self.motions.len()
+    }
+
+    fn __repr__(&self) -> String {
+        format!("<deltaq.Connections: {} motions, {}>", self.motions.len(), self.formulation)
+    }
+}
+
+/// A motion between two points.
+#[pyclass(frozen, get_all, module = "deltaq")]
+pub(crate) struct Connection {
+    /// The system with the start velocities and multipliers of this motion, until its end: `solve` it with
+    /// `constants`.
+    system: Py<System>,
+    /// The unknowns by name.
+    unknowns: Py<PyDict>,
+    /// How far they may be wrong, by name.
+    errors: Py<PyDict>,
+    /// Free constants, shape (c,).
+    constants: Py<PyArrayDyn<f64>>,
+    /// Start velocities, shape (n,).
+    velocities: Py<PyArrayDyn<f64>>,
+    /// The integral of L over time.
+    action: f64,
+    /// Error of its quadrature.
+    action_error: f64,
+    /// What the end is missed by, by coordinate.
+    residuals: Py<PyDict>,
+    /// Condition number of the end by the unknowns, in units of the problem.
+    condition: f64,
+    /// Whether no other motion is beside it.
+    is_isolated: bool,
+    /// Times conjugate to the start, shape (k,), rising; None where the unknowns are dependent at all times.
+    conjugate_times: Option<Py<PyArrayDyn<f64>>>,
+    /// Their errors, shape (k,): what two runs differ by.
+    conjugate_errors: Option<Py<PyArrayDyn<f64>>>,
+    /// By how much the rank falls there, length k.
+    multiplicities: Option<Vec<usize>>,
+    /// Whether the action has a local minimum, by conjugate times; None where it is not stationary.
+    is_minimum: Option<bool>,
+    /// How many starts led here.
+    starts: usize,
+}
+
+kept!(
+    Connection: system unknowns errors constants velocities action action_error residuals condition is_isolated
+    conjugate_times conjugate_errors multiplicities is_minimum starts
+);
+
+#[pymethods]
+impl Connection {
+    fn __repr__(&self) -> String {
+        format!("<deltaq.Connection, action {}>", self.action)
+    }
+}
+
+#[pymethods]
+impl System {
+    /// The motions under a formulation that end at other coordinates: a two-point problem.
+    ///
+    /// to: coordinates at the end, name to number, as many as there are unknowns: start velocities that the
+    /// constraints leave free, and free constants. at: time of the end; by default that of `duration`.
+    /// mu0, constants: a first guess. starts: from how many starts motions are searched. Else as in `solve`.
+    ///
+    /// BoundaryError where there are more or fewer coordinates than unknowns; no motion found is no error.
+    ///
+    /// >>> geodesics = deltaq.built_in("heisenberg").connect({"x": 0.2, "y": 0.5, "z": 0.3})
+    /// >>> [shortest] = geodesics.motions
+    /// >>> shortest.is_minimum, round(shortest.unknowns["mu0_1"], 9)
+    /// (True, 0.443803456)
+    #[expect(clippy::too_many_arguments, reason = "named in Python, and most of them left out")]
+    #[pyo3(signature = (
+        to, at=None, formulation="vakonomic", *, removal=None, mu0=None, constants=None, starts=60, tolerance=1e-11,
+        threads=0
+    ))]
+    fn connect(
+        &self,
+        py: Python<'_>,
+        to: Numbers,
+        at: Option<f64>,
+        formulation: &str,
+        removal: Option<&str>,
+        mu0: Option<Floats<'_>>,
+        constants: Option<Bound<'_, PyAny>>,
+        starts: usize,
+        tolerance: f64,
+        threads: usize,
+    ) -> PyResult<Connections> {
+        let given = arguments::constants(constants.as_ref(), mu0)?;
+        let scene = self.scene().clone();
+        let (settings, interrupt) = arguments::settings("auto", tolerance, true, 1_000_000, None, None)?;
+        let formulation = arguments::formulation(formulation)?;
+        let (scene, choice) = arguments::choice(py, &interrupt, scene, (formulation, removal), given)?;
+        let t = at.unwrap_or(scene.start.t + scene.duration);
+        let aim = Aim { t, to: to.0, starts, threads };
+        found(py, (scene, choice), aim, (settings, interrupt))
+    }
+}
+
+/// What is found, in a thread beside Python's.
+fn found(
+    py: Python<'_>,
+    (scene, choice): (Scene, Choice),
+    aim: Aim,
+    (settings, interrupt): (Settings, Interrupt),
+) -> PyResult<Connections> {
+    let formulation = choice.formulation.name.to_string();
+    let work = move || {
+        let found = deltaq::connect(&scene, &choice, &aim, &settings)?;
+        Ok::<_, SolveError>((found, scene, aim))
+    };
+    let (found, scene, aim) = background::run(py, &interrupt, work)?.map_err(errors::solve)?;
+    let Found { unknowns, found, failures, runs: [runs, with_derivatives] } = found;
+    let motions = found.into_iter().map(|motion| Py::new(py, one(py, &scene, &aim, &unknowns, motion)?));
+    Ok(Connections {
+        formulation,
+        motions: motions.collect::<PyResult<_>>()?,
+        unknowns,
+        starts: aim.starts,
+        failures: failures.into_py_dict(py)?.unbind(),
+        runs,
+        with_derivatives,
+    })
+}
+
+fn one(
+    py: Python<'_>,
+    scene: &Scene,
+    aim: &Aim,
+    unknowns: &[String],
+    motion: deltaq::Connection,
+) -> PyResult<Connection> {
+    let named = |values: &[f64]| unknowns.iter().zip(values.iter().copied()).into_py_dict(py).map(Bound::unbind);
+    let vector = |values: Vec<f64>| {
+        let count = values.len();
+        fixed(py, values, None, &[count]).map(Bound::unbind)
+    };
+    let mut own = Scene { start: motion.start.clone(), duration: aim.t - scene.start.t, ..scene.clone() };
+    let constants = motion.motion.constants.clone();
+    if constants.len() == own.multipliers.len() {
+        own.multipliers.clone_from(&constants);
+    }
+    for removal in &mut own.removals {
+        removal.constants = ConstantsRule::Zero;
+    }
+    let system = System::read(py, (&scene.name, None), own.to_toml(), Overrides::new())?;
+    let times = motion.conjugate.as_ref();
+    let column = |pick: fn(&deltaq::ConjugateTime) -> f64| {
+        times.map(|times| vector(times.iter().map(pick).collect())).transpose()
+    };
+    Ok(Connection {
+        system: Py::new(py, system)?,
+        unknowns: named(&motion.unknowns)?,
+        errors: named(&motion.errors)?,
+        conjugate_times: column(|time| time.t)?,
+        conjugate_errors: column(|time| time.error)?,
+        multiplicities: times.map(|times| times.iter().map(|time| time.multiplicity).collect()),
+        is_isolated: motion.is_isolated(),
+        constants: vector(constants)?,
+        velocities: vector(motion.start.v)?,
+        action: motion.action[0],
+        action_error: motion.action[1],
+        residuals: aim.to.iter().map(|(name, _)| name).zip(motion.residuals).into_py_dict(py)?.unbind(),
+        condition: motion.condition,
+        is_minimum: motion.is_minimum,
+        starts: motion.starts,
+    })
+}
