@@ -59,8 +59,6 @@ pub enum Command {
     Explore(ExploreArguments),
     /// Prove that no multipliers make a scene's vakonomic motion Chetaev's: a certificate others can check.
     Prove(ProveArguments),
-    /// Judge motions that another program made: which constraint law does it integrate?
-    Judge(JudgeArguments),
     /// Measure error against run time, by every method at every tolerance.
     Bench(BenchArguments),
     /// Print completions for a shell.
@@ -191,21 +189,6 @@ pub struct ProveArguments {
     #[arg(long)]
     pub almost_every: bool,
     /// Output format of the answer; a certificate is JSON.
-    #[arg(long, value_enum, default_value_t = TextOrJson::Text)]
-    pub format: TextOrJson,
-}
-
-/// `deltaq judge`.
-#[derive(Args, Debug)]
-pub struct JudgeArguments {
-    #[command(flatten)]
-    pub scene: SceneArguments,
-    /// Motions as comma-separated values: `t`, and a column per coordinate of the scene by its name; of one
-    /// that no equation contains, its rate will do (`psi'`). Of several files each has half the step of the
-    /// one before.
-    #[arg(required = true, value_name = "FILM.csv")]
-    pub films: Vec<PathBuf>,
-    /// Output format.
     #[arg(long, value_enum, default_value_t = TextOrJson::Text)]
     pub format: TextOrJson,
 }

@@ -10,7 +10,6 @@ mod compare_command;
 mod connect_command;
 mod ensemble_command;
 mod explore_command;
-mod judge_command;
 mod linearize_command;
 mod prove_command;
 mod scene_commands;
@@ -48,7 +47,6 @@ fn run(cli: Cli) -> Result<Answer> {
         Command::Linearize(arguments) => linearize_command::run(&arguments)?,
         Command::Compare(arguments) => compare_command::run(&arguments, quiet)?,
         Command::Explore(arguments) => explore_command::run(&arguments)?,
-        Command::Judge(arguments) => judge_command::run(&arguments)?,
         Command::Bench(arguments) => bench_command::run(&arguments, quiet)?,
         Command::Completions { shell } => {
             let mut text = Vec::new();

@@ -9,7 +9,6 @@ mod derivations;
 mod ensembles;
 mod forces;
 mod frames;
-mod judge;
 mod leading_term;
 mod linearization;
 mod matching;
