@@ -1,9 +1,10 @@
-"""Figures of motions on the turning table, from columns alone: `python plain.py A.csv B.csv C.csv` (each with half the step of the last).
+"""Figures of motions on the turning table, from columns alone: `python plain.py A.csv B.csv C.csv`.
 
-With z = x + iy, v = z', omega = omega_x + i omega_y: slip f = v + i a omega - i Omega z, zero where the ball rolls; the acceleration of
-`v ~ exp((growth + i turning) t)`, by Chetaev growth 0 and turning 2/7 Omega; f = -(m/N) v' + s (i Omega z - v), with the creep m/N
-and the part s by which the arm of the contact is shorter than the radius, where bodies sink into each other. Fits leave out the first
-second, where contacts settle. Distance: of the centre to Chetaev's circle at the end; order: by differences of three files.
+With z = x + iy, v = z', omega = omega_x + i omega_y: slip f = v + i a omega - i Omega z, zero where the ball rolls.
+Growth and turning: `v ~ exp((growth + i turning) t)`, by Chetaev 0 and 2/7 Omega. Creep m/N and short arm s:
+f = -(m/N) v' + s (i Omega z - v), where bodies sink into each other and the arm of the contact is (1 - s) a.
+Fits leave out the first second, where contacts settle. Distance: of the centre to Chetaev's circle at the end.
+Order: by differences of three files, each with half the step of the one before.
 """
 
 import argparse

@@ -1,4 +1,4 @@
-"""What adapters share: numbers of the scene `turntable`, Euler angles, the command line, the CSV.
+"""What adapters share: numbers of the scene `turntable`, the command line, the CSV.
 
 An adapter calls `run(SETTINGS, motion, __doc__)`; its `motion(ball, dt, steps, every)` yields, at every so many steps,
 `(t, centre, rotation, velocity, spin)`: s, m, ball to room as a matrix, m/s, rad/s, the last two seen from the room.
@@ -14,29 +14,13 @@ from types import SimpleNamespace
 
 import numpy as np
 
+from attitude import angles, axes, rotation
+
 SCENE = Path(__file__).resolve().parents[2] / "crates/catalogue/scenes/turntable.toml"
 COORDINATES = ["x", "y", "psi", "theta", "phi"]
 GRAVITY = 9.81  # m/s², presses the ball onto the table; the scene has none
+SUNK = 0.1  # of the radius: how far the centre may be from its height
 SAMPLES = 100, 600  # the fewest and the most steps that are written
-
-
-def rotation(psi, theta, phi):
-    """Ball to room, Rz(psi) Rx(theta) Rz(phi)."""
-    about_z = lambda v: np.array([[np.cos(v), -np.sin(v), 0], [np.sin(v), np.cos(v), 0], [0, 0, 1]])
-    about_x = np.array([[1, 0, 0], [0, np.cos(theta), -np.sin(theta)], [0, np.sin(theta), np.cos(theta)]])
-    return about_z(psi) @ about_x @ about_z(phi)
-
-
-def axes(psi, theta):
-    """Angular velocity in the room is this matrix times (psi', theta', phi')."""
-    body = [np.sin(theta) * np.sin(psi), -np.sin(theta) * np.cos(psi), np.cos(theta)]
-    return np.array([[0, 0, 1], [np.cos(psi), np.sin(psi), 0], body]).T
-
-
-def angles(R):
-    """psi, theta, phi of a rotation, 0 < theta < pi."""
-    tilt = np.arctan2(np.hypot(R[0, 2], R[1, 2]), R[2, 2])
-    return np.array([np.arctan2(R[0, 2], -R[1, 2]), tilt, np.arctan2(R[2, 0], R[2, 1])])
 
 
 def start(changes):
@@ -73,8 +57,8 @@ def run(settings, motion, doc):
     parser.add_argument("--with", action="append", default=[], metavar="NAME=JSON", help="another setting of the engine", dest="other")
     arguments = parser.parse_args()
     changes, other = (dict(pair.split("=", 1) for pair in pairs) for pairs in (arguments.set, arguments.other))
-    if unknown := other.keys() - settings.keys():
-        raise SystemExit(f"--with: the engine has no {', '.join(unknown)}; it has {', '.join(settings)}")
+    if unknown := other.keys() - (names := settings.keys() - {"engine"}):
+        raise SystemExit(f"--with: there is no {', '.join(unknown)}, but {', '.join(names)}")
     settings.update({name: json.loads(value) for name, value in other.items()})
     steps = round(arguments.end / arguments.dt)
     if abs(steps * arguments.dt - arguments.end) > 1e-9 * arguments.end:
@@ -85,8 +69,8 @@ def run(settings, motion, doc):
     ball, rows = start(changes), []
     for state in motion(ball, arguments.dt, steps, steps // samples):
         rows.append(row(*state, np.array(rows[-1][3:6] if rows else ball.angles)))
-        if not np.all(np.isfinite(rows[-1])):
-            raise SystemExit(f"the motion is not finite at t = {state[0]} s")
+        if not np.all(np.isfinite(rows[-1])) or abs(state[1][2] - ball.a) > SUNK * ball.a:
+            raise SystemExit(f"t = {state[0]} s: centre at {state[1]} m; the limit is a height of {ball.a} m within {SUNK * ball.a} m")
     with open(arguments.out, "w", newline="", encoding="utf-8") as file:
         csv.writer(file, lineterminator="\n").writerows([["t", *COORDINATES, *(f"{q}'" for q in COORDINATES)], *rows])
     print(json.dumps(settings | {"dt": arguments.dt, "end": arguments.end, "set": changes}))

@@ -8,28 +8,29 @@ import numpy as np
 
 import turntable
 
-SETTINGS = {
+SETTINGS = {  # as shipped; with a friction of 10 the pyramids are so soft that the ball falls through the table
     "engine": f"MuJoCo {mujoco.__version__}",
-    "integrator": "Euler",  # as shipped, like all to solimp but the cone
+    "integrator": "Euler",
     "solver": "Newton",
     "iterations": 100,
-    "tolerance": 1e-8,
-    "cone": "elliptic",  # shipped: pyramidal
+    "tolerance": 1e-8,  # relative to the mean inertia
+    "cone": "pyramidal",  # or elliptic
     "impratio": 1.0,  # stiffness of friction over that of the normal force
     "noslip_iterations": 0,
     "solref": [0.02, 1.0],  # time constant, s, and damping ratio of contacts; at least two steps long
     "solimp": [0.9, 0.95, 0.001, 0.5, 2.0],
-    "friction": 10.0,
+    "friction": 1.0,
+    "table_inertia": 1e3,  # kg m²; 1e6 loosens the tolerance so much that the ball gets a false spin
     "settle": 2.0,  # s, that the ball sinks in on a table at rest, before the start
 }
-TABLE_INERTIA = 1e6  # kg m²; without `meaninertia`, of the ball alone, it would loosen the solver's tolerance as much
 
 
 def model(ball, dt):
     s = SETTINGS
-    contact = f"""friction="{s['friction']} 0 0" condim="3" solref="{' '.join(map(str, s['solref']))}" solimp="{' '.join(map(str, s['solimp']))}" """
+    solref, solimp = (" ".join(map(str, s[name])) for name in ("solref", "solimp"))
+    contact = f"""friction="{s['friction']} 0 0" condim="3" solref="{solref}" solimp="{solimp}" """
     inertia = 0.4 * ball.m * ball.a**2
-    heavy = f'diaginertia="{TABLE_INERTIA} {TABLE_INERTIA} {TABLE_INERTIA}"'
+    heavy = 'diaginertia="{0} {0} {0}"'.format(s["table_inertia"])
     return mujoco.MjModel.from_xml_string(f"""<mujoco>
       <option timestep="{dt}" gravity="0 0 {-turntable.GRAVITY}" integrator="{s['integrator']}" solver="{s['solver']}"
         iterations="{s['iterations']}" tolerance="{s['tolerance']}" cone="{s['cone']}" impratio="{s['impratio']}"

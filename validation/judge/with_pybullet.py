@@ -1,7 +1,4 @@
-"""PyBullet: the table is a plane on a revolute joint, whose rate is set to Omega before each step. Licence Zlib.
-
-Velocities of a body of no mass would not do: Bullet takes it for one at rest.
-"""
+"""PyBullet: the table is a plane on a revolute joint, whose rate is set to Omega before each step. Licence Zlib."""
 
 import importlib.metadata
 
@@ -12,16 +9,16 @@ import turntable
 
 SETTINGS = {
     "engine": f"PyBullet {importlib.metadata.version('pybullet')}",
-    "numSolverIterations": 50,
+    "numSolverIterations": 50,  # as shipped, like all to friction
     "solverResidualThreshold": 1e-7,
     "numSubSteps": 0,
     "enableConeFriction": 1,
     "erp": 0.2,
-    "contactERP": 0.2,
+    "contactERP": 0.08,
     "frictionERP": 0.2,
     "globalCFM": 0.0,
-    "friction": 10.0,  # coefficient of the contact; Bullet multiplies those of the bodies
-    "damping": 0.0,  # linear and angular; shipped 0.04 per s
+    "friction": 0.5,  # of both bodies; that of the contact is the product
+    "damping": 0.0,  # linear and angular, 1/s; shipped 0.04
     "motor": 1e9,  # N m, largest torque that keeps the table's rate
     "settle": 1.0,  # s, that the ball sinks in on a table at rest, before the start
 }
@@ -31,14 +28,14 @@ def world(ball, dt):
     s = SETTINGS
     pybullet.connect(pybullet.DIRECT)
     pybullet.setGravity(0, 0, -turntable.GRAVITY)
-    names = ["numSolverIterations", "solverResidualThreshold", "numSubSteps", "enableConeFriction", "erp", "contactERP", "frictionERP", "globalCFM"]
-    pybullet.setPhysicsEngineParameter(fixedTimeStep=dt, **{name: s[name] for name in names})
+    of_ours = ["engine", "friction", "damping", "motor", "settle"]
+    pybullet.setPhysicsEngineParameter(fixedTimeStep=dt, **{name: s[name] for name in s if name not in of_ours})
     plane = pybullet.createCollisionShape(pybullet.GEOM_PLANE, planeNormal=[0, 0, 1])
     still = {"linkPositions": [[0, 0, 0]], "linkOrientations": [[0, 0, 0, 1]], "linkInertialFramePositions": [[0, 0, 0]],
              "linkInertialFrameOrientations": [[0, 0, 0, 1]], "linkParentIndices": [0], "linkVisualShapeIndices": [-1]}
     table = pybullet.createMultiBody(0, linkMasses=[1], linkCollisionShapeIndices=[plane], linkJointTypes=[pybullet.JOINT_REVOLUTE],
                                      linkJointAxis=[[0, 0, 1]], **still)
-    pybullet.changeDynamics(table, 0, localInertiaDiagonal=[1, 1, 1], lateralFriction=1.0, jointDamping=0.0)
+    pybullet.changeDynamics(table, 0, localInertiaDiagonal=[1, 1, 1], lateralFriction=s["friction"], jointDamping=0.0)
     sphere = pybullet.createCollisionShape(pybullet.GEOM_SPHERE, radius=ball.a)
     body = pybullet.createMultiBody(ball.m, sphere, basePosition=[0, 0, ball.a])
     inertia = 0.4 * ball.m * ball.a**2

@@ -10,6 +10,7 @@ import sympy as sp
 from pydy.system import System
 from sympy.physics.mechanics import KanesMethod, Point, ReferenceFrame, RigidBody, dynamicsymbols, inertia
 
+import attitude
 import turntable
 
 SETTINGS = {
@@ -35,7 +36,9 @@ def kane():
     contact.set_vel(room, u[0] * room.x + u[1] * room.y)
     rolling = [u[0] - a * u[3] + Omega * y, u[1] + a * u[2] - Omega * x]
     about = inertia(room, *[sp.Rational(2, 5) * m * a**2] * 3)
-    method = KanesMethod(room, q_ind=list(q), u_ind=[u[0], u[1], u[4]], kd_eqs=kinematic, u_dependent=[u[3], u[2]], velocity_constraints=rolling, kd_eqs_solver="CRAMER")
+    # Cramer's rule divides by sin(theta) alone; SymPy's own choice of pivots divides by cos(psi), zero at the start
+    method = KanesMethod(room, list(q), [u[0], u[1], u[4]], kd_eqs=kinematic, u_dependent=[u[3], u[2]],
+                         velocity_constraints=rolling, kd_eqs_solver="CRAMER")
     method.kanes_equations([RigidBody("ball", contact, body, m, (about, contact))], [])
     return method, q, u, constants
 
@@ -50,7 +53,7 @@ def motion(ball, dt, steps, every):
     found = system.integrate(rtol=SETTINGS["rtol"], atol=SETTINGS["atol"], hmax=dt)
     order = [system.states.index(s) for s in [*q, *u]]
     for t, line in zip(times, found[:, order]):
-        yield t, [*line[:2], ball.a], turntable.rotation(*line[2:5]), [*line[5:7], 0.0], line[7:10]
+        yield t, [*line[:2], ball.a], attitude.rotation(*line[2:5]), [*line[5:7], 0.0], line[7:10]
 
 
 if __name__ == "__main__":

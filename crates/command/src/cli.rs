@@ -2,6 +2,7 @@
 
 mod connect;
 mod ensemble;
+mod judge;
 mod linearize;
 mod range;
 mod scenes;
@@ -17,6 +18,7 @@ pub use connect::ConnectArguments;
 use deltaq::{Fits, Stepping};
 pub use ensemble::{EnsembleArguments, FreeArguments, Limits, MotionArguments};
 use equations::Formulation;
+pub use judge::JudgeArguments;
 pub use linearize::{LinearizeArguments, TableFormat};
 use program::{Common, Output, TextOrJson, by_name};
 pub use range::{MOST_MEMBERS, Range};
@@ -59,6 +61,8 @@ pub enum Command {
     Explore(ExploreArguments),
     /// Prove that no multipliers make a scene's vakonomic motion Chetaev's: a certificate others can check.
     Prove(ProveArguments),
+    /// Say which law a program integrates, from motions that it made: slip, epsilon and drag with errors.
+    Judge(JudgeArguments),
     /// Measure error against run time, by every method at every tolerance.
     Bench(BenchArguments),
     /// Print completions for a shell.

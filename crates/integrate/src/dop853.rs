@@ -69,9 +69,9 @@ impl<'s, 'p> Dop853<'s, 'p> {
         })
     }
 
-    /// Hairer's starting step: a hundredth of |y|/|F|, then from an estimate of the second derivative, and at
-    /// most |y|/|F|; ours is shorter by the root of the tolerance. Two runs with other tolerances may not have
-    /// the same first step: their difference would not show its error, a motion's only one near the start.
+    /// Hairer's starting step: a hundredth of |y|/|F|, then from an estimate of the second derivative,
+    /// and at most |y|/|F|; ours is shorter by the root of the tolerance. Two runs may not share the first
+    /// step: their difference would not show its error, a motion's only one near the start.
     fn choose_first_step(&mut self) {
         let n = self.y.len();
         let longest = (self.end - self.t).abs();

@@ -11,7 +11,7 @@
 
 use deltaq::{Choice, Run, Settings, setting, solve};
 use equations::{Block, Derivation, DerivationError, Equations, Formulation, Needs, Role, StateVariable, Statement};
-use mechanics::{ConstantsRule, Removal, System};
+use mechanics::{ConstantsRule, DisplacementParameter, Removal, System};
 use scene::Scene;
 use symbolic::Expr;
 
@@ -29,6 +29,17 @@ fn derive_for(system: &System, derivation: &Derivation) -> Result<Equations, Der
     derivation.removal.map(|removal| derive(system, removal)).ok_or(missing)
 }
 
+/// What the wrong equations set to zero, `d/dt ∂L̃/∂u̇ − ∂L̃/∂u` in `(ü, u̇, u, w, t)`, one for each parameter.
+pub fn residuals(system: &System, removal: &Removal) -> Vec<Expr> {
+    let (g, flow) = (&system.graph, removal.flow(system));
+    let lagrangian = removal.rewrite(system, system.lagrangian);
+    let of = |u: &DisplacementParameter| {
+        let momentum = g.derivative(lagrangian, u.rate);
+        g.sub(g.total_derivative(momentum, &flow), g.derivative(lagrangian, u.symbol))
+    };
+    removal.parameters.iter().map(of).collect()
+}
+
 /// The wrong equations for `removal`.
 ///
 /// Second rates are treated as Lagrange's first-order equations would: no removal may bring them into `L`.
@@ -37,14 +48,10 @@ pub fn derive(system: &System, removal: &Removal) -> Equations {
     let g = &system.graph;
     let mut equations = Equations::new(SUBSTITUTION.name, &system);
     let lagrangian = removal.rewrite(&system, system.lagrangian);
-    let flow = removal.flow(&system);
-    let mut residuals = Vec::new();
-    for u in &removal.parameters {
-        let momentum = g.derivative(lagrangian, u.rate);
-        let residual = g.sub(g.total_derivative(momentum, &flow), g.derivative(lagrangian, u.symbol));
+    let residuals = residuals(&system, removal);
+    for (u, &residual) in removal.parameters.iter().zip(&residuals) {
         let meaning = format!("balance for {}", g.name(u.symbol));
         equations.statements.push(Statement { meaning, left: residual, right: g.zero() });
-        residuals.push(residual);
         let role = if u.coordinate.is_some() { Role::Position } else { Role::DisplacementParameter };
         for (symbol, role, rate) in [(u.symbol, role, u.rate), (u.rate, Role::ParameterRate, u.second_rate)] {
             let (rate, start) = (g.variable(rate), g.variable(symbol));

@@ -1,0 +1,114 @@
+//! `deltaq judge`: which law does a program integrate that made these motions?
+
+use std::fmt::Write;
+
+use anyhow::{Context, Result, bail};
+use judge::{Judgement, Number, Order, Samples, judge, order};
+use program::{Answer, TextOrJson, pretty};
+use serde_json::{Value, json};
+
+use crate::cli::JudgeArguments;
+
+/// Judges every table.
+///
+/// # Errors
+/// A scene or table that cannot be read, with its place, and one that cannot be judged.
+pub fn run(arguments: &JudgeArguments) -> Result<Answer> {
+    let scene = arguments.scene.find()?;
+    let (files, given) = (&arguments.motions, &arguments.steps);
+    if !given.is_empty() && given.len() != files.len() {
+        bail!("--steps: {} steps are given for {} tables", given.len(), files.len());
+    }
+    if let Some(step) = given.iter().find(|step| !(step.is_finite() && **step > 0.0)) {
+        bail!("--steps: {step} is no positive number");
+    }
+    if !(arguments.tolerance > 0.0 && arguments.tolerance <= 1.0) {
+        bail!("--tolerance: {} is not between 0 and 1", arguments.tolerance);
+    }
+    let (mut motions, mut judgements) = (Vec::new(), Vec::new());
+    for file in files {
+        let text = std::fs::read_to_string(file).with_context(|| format!("cannot read {}", file.display()))?;
+        let samples = Samples::read(&scene.system, &text).with_context(|| file.display().to_string())?;
+        let judgement = judge(&scene, &samples, arguments.tolerance).with_context(|| file.display().to_string())?;
+        judgements.push((file.display().to_string(), judgement));
+        motions.push(samples);
+    }
+    let steps = if given.is_empty() { motions.iter().map(Samples::step).collect() } else { given.clone() };
+    let order = order(&motions, &steps);
+    let none: Vec<&str> = judgements.iter().filter(|(_, j)| j.law().is_none()).map(|(f, _)| f.as_str()).collect();
+    let complaint = (!none.is_empty()).then(|| format!("no law fits: {}", none.join(", ")));
+    let text = match arguments.format {
+        TextOrJson::Text => {
+            let mut text: String = judgements.iter().map(|(file, j)| table(file, j)).collect();
+            if let Some(o) = order {
+                let [a, b] = o.distances;
+                let _ = writeln!(text, "order in the step {:.3}: distances {a:.3e}, {b:.3e} at t = {}", o.order, o.t);
+            }
+            text
+        }
+        TextOrJson::Json => {
+            let motions: Vec<Value> = judgements.iter().map(|(file, j)| value(file, j)).collect();
+            pretty("judge", &json!({ "scene": scene.name, "motions": motions, "order": order.map(order_value) }))
+        }
+    };
+    Ok(Answer { text, complaint })
+}
+
+fn numbers(j: &Judgement) -> [(&'static str, &'static str, Option<Number>); 4] {
+    [
+        ("epsilon", "ε, a time", j.epsilon),
+        ("slip", "1/N", j.slip),
+        ("drag", "γ of −γ M v", j.drag),
+        ("left_out", "part of ḟ − A a left out", j.left_out),
+    ]
+}
+
+fn table(file: &str, j: &Judgement) -> String {
+    let mut text = format!("{file}: {} samples, {:.6e} apart\n", j.samples, j.step);
+    let law = match j.fitting.split_first() {
+        None => "none of these".to_string(),
+        Some((law, [])) => law.name().to_string(),
+        Some((law, also)) => {
+            let also: Vec<&str> = also.iter().map(|l| l.name()).collect();
+            format!("{}; these samples cannot tell it from {}", law.name(), also.join(", "))
+        }
+    };
+    let _ = writeln!(text, "  law: {law}");
+    for left in &j.laws {
+        let with = if left.with.is_empty() { String::new() } else { format!("  ({})", left.with) };
+        let _ = writeln!(text, "  {:<14} leaves {:.3e} of the forces{with}", left.law.name(), left.residual / j.scale);
+    }
+    let _ = writeln!(text, "  {:<14} {:>13.3e} of the forces", "noise", j.noise / j.scale);
+    for (name, what, number) in numbers(j) {
+        let _ = match number {
+            Some(Number { value, error }) => writeln!(text, "  {name:<14} {value:>13.6e} ± {error:.1e}  ({what})"),
+            None => writeln!(text, "  {name:<14} is not seen in this motion  ({what})"),
+        };
+    }
+    for (i, (largest, rms, parts)) in j.constraints.iter().enumerate() {
+        let _ = writeln!(text, "  f_{:<12} largest {largest:.3e}, rms {rms:.3e}; rms of its parts {parts:.3e}", i + 1);
+    }
+    for d in &j.drifts {
+        let _ = writeln!(text, "  {:<14} {:.6e}, drifts by {:.3e}", d.name, d.start, d.largest);
+    }
+    text
+}
+
+fn value(file: &str, j: &Judgement) -> Value {
+    let of = |n: Option<Number>| n.map(|n| json!({ "value": n.value, "error": n.error }));
+    let found: serde_json::Map<String, Value> =
+        numbers(j).into_iter().map(|(name, _, n)| (name.to_string(), json!(of(n)))).collect();
+    let laws = j.laws.iter().map(|l| json!({ "law": l.law.name(), "residual": l.residual, "with": l.with }));
+    let constraints = j.constraints.iter().map(|(m, r, p)| json!({ "largest": m, "rms": r, "parts": p }));
+    let drifts = j.drifts.iter().map(|d| json!({ "name": d.name, "start": d.start, "largest": d.largest }));
+    json!({
+        "file": file, "samples": j.samples, "step": j.step,
+        "law": j.law().map(|l| l.name()), "fitting": j.fitting.iter().map(|l| l.name()).collect::<Vec<_>>(),
+        "laws": laws.collect::<Vec<_>>(), "scale": j.scale, "noise": j.noise, "numbers": found,
+        "constraints": constraints.collect::<Vec<_>>(), "drifts": drifts.collect::<Vec<_>>(),
+    })
+}
+
+fn order_value(o: Order) -> Value {
+    json!({ "order": o.order, "t": o.t, "distances": o.distances })
+}

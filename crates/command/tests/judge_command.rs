@@ -1,0 +1,48 @@
+//! `deltaq judge`: a motion of the program's own is judged, and what cannot be judged is refused with its place.
+
+use std::fs;
+use std::process::{Command, Output};
+
+use serde_json::Value;
+
+fn run(arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_deltaq")).args(arguments).output().unwrap()
+}
+
+#[test]
+fn motions_that_solve_writes_are_named() {
+    let folder = tempfile::tempdir().unwrap();
+    for law in ["chetaev", "vakonomic"] {
+        let solved = run(&["solve", "sledge", "-f", law, "--times", "0:2:401"]);
+        let path = folder.path().join(law);
+        fs::write(&path, solved.stdout).unwrap();
+        let judged = run(&["judge", "sledge", path.to_str().unwrap(), "--format", "json"]);
+        assert_eq!(judged.status.code(), Some(0), "{}", String::from_utf8_lossy(&judged.stderr));
+        let answer: Value = serde_json::from_slice(&judged.stdout).unwrap();
+        assert_eq!(answer["schema"], "deltaq/judge/1");
+        assert_eq!(answer["motions"][0]["law"], law);
+    }
+    // a motion on another slope is one of no law
+    let path = folder.path().join("chetaev");
+    let judged = run(&["judge", "sledge", path.to_str().unwrap(), "--set", "g=4"]);
+    assert_eq!(judged.status.code(), Some(3), "{}", String::from_utf8_lossy(&judged.stdout));
+}
+
+#[test]
+fn what_cannot_be_read_is_refused_with_its_place() {
+    let folder = tempfile::tempdir().unwrap();
+    for (text, said) in [
+        ("t,x,y\n0,1,2\n", "there is no column `phi`"),
+        ("t,x,y,phi\n0,1,2,3\n0.1,1,2,nan\n", "line 3, column `phi`: `nan` is no finite number"),
+        ("t,x,y,phi\n0,1,2,3\n0,1,2,3\n", "line 3: t = 0 is not later than t = 0, one line before"),
+        ("t,x,y,phi\n0,1,2,3\n1,1,2\n", "line 3 has 3 cells, and the header has 4"),
+        ("t,x,y,phi,x'\n0,1,2,3,4\n", "there are rates of 1 of 3 coordinates: column `y'` is missing"),
+        ("t,x,y,phi\n0,1,2,3\n1,1,2,3\n", "there are 2 samples, and 20 are needed"),
+    ] {
+        let path = folder.path().join("motion.csv");
+        fs::write(&path, text).unwrap();
+        let judged = run(&["judge", "sledge", path.to_str().unwrap()]);
+        let complaint = String::from_utf8_lossy(&judged.stderr).into_owned();
+        assert!(complaint.contains(said) && judged.status.code() == Some(2), "{complaint}");
+    }
+}

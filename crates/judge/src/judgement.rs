@@ -1,0 +1,178 @@
+//! The judgement on one table: laws side by side, numbers, constraint, integrals.
+
+use scene::Scene;
+
+use crate::balance::{Balance, Instant};
+use crate::laws::{FirstOrder, as_force, first_order, left_out, vakonomic};
+use crate::regression::{Number, rms};
+use crate::substituted::substituted;
+use crate::{JudgeError, Samples};
+
+/// A law of motion.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Law {
+    /// Chetaev's, with ε, slip and drag of any size.
+    Chetaev,
+    /// Chetaev's reaction, and `A a = 0` in the place of `ḟ = 0`.
+    MissingRate,
+    /// The vakonomic law, for some `μ₀`.
+    Vakonomic,
+    /// The constraint put into `L`.
+    Substitution,
+}
+
+impl Law {
+    /// Its word.
+    pub fn name(self) -> &'static str {
+        match self {
+            Law::Chetaev => "chetaev",
+            Law::MissingRate => "missing-rate",
+            Law::Vakonomic => "vakonomic",
+            Law::Substitution => "substitution",
+        }
+    }
+}
+
+/// What a law leaves of the motion.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Left {
+    /// The law.
+    pub law: Law,
+    /// What is left of the balance of forces and of the rate of the constraint, rms, in `√E/T`.
+    pub residual: f64,
+    /// What was found with it: `mu0_1 = …`, the removal.
+    pub with: String,
+}
+
+/// A quantity that should not move, and how far it does.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Drift {
+    /// Its name.
+    pub name: String,
+    /// At the first sample.
+    pub start: f64,
+    /// The farthest it is from that.
+    pub largest: f64,
+}
+
+/// The judgement on one table.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Judgement {
+    /// Mean distance of two samples.
+    pub step: f64,
+    /// Samples that were looked at.
+    pub samples: usize,
+    /// Forces and accelerations by which residuals are measured, rms, in `√E/T`.
+    pub scale: f64,
+    /// What differences make of the balance, rms: by how much two orders of them differ.
+    pub noise: f64,
+    /// Laws, in the order in which one is preferred to another.
+    pub laws: Vec<Left>,
+    /// The laws that leave no more than three times the least, or than three times the noise; none where
+    /// the least is more than `tolerance` of the scale.
+    pub fitting: Vec<Law>,
+    /// `ε`, in `T`.
+    pub epsilon: Option<Number>,
+    /// `1/N`, in `T [f]²/E`.
+    pub slip: Option<Number>,
+    /// `γ` of `−γ M v`, in `1/T`.
+    pub drag: Option<Number>,
+    /// The part of `ḟ − A a` that is left out: 1 where the constraint is not differentiated as it is.
+    pub left_out: Option<Number>,
+    /// Largest `|f|` of each constraint, and the rms of its parts `Aᵢⱼ vⱼ`.
+    pub constraints: Vec<(f64, f64, f64)>,
+    /// Energy where it should be kept, and what the scene says is constant.
+    pub drifts: Vec<Drift>,
+}
+
+impl Judgement {
+    /// The law: the first of those that fit.
+    pub fn law(&self) -> Option<Law> {
+        self.fitting.first().copied()
+    }
+}
+
+/// Which law does the program integrate that made these samples?
+///
+/// # Errors
+/// [`JudgeError`]: too few samples, dependent constraints, a mass matrix that is not positive definite.
+pub fn judge(scene: &Scene, samples: &Samples, tolerance: f64) -> Result<Judgement, JudgeError> {
+    let reach = if samples.v.is_some() { 3 } else { 4 };
+    let mut balance = Balance::new(&scene.system)?;
+    let fine = balance.along(samples, reach, reach)?;
+    let coarse = balance.along(samples, reach - 1, reach)?;
+    let noise = rms(fine.iter().zip(&coarse).map(|(a, b)| (&a.balance - &b.balance).norm()));
+    let scale = rms(fine.iter().map(|i| i.inertia.norm() + i.balance.norm()));
+    let [numbers, others] = [first_order(&fine), first_order(&coarse)];
+    let laws = laws(scene, &fine, &numbers)?;
+    let least = laws.iter().map(|l| l.residual).fold(f64::INFINITY, f64::min);
+    let limit = 3.0 * least.max(noise);
+    let fits = |l: &&Left| l.residual <= limit && least <= tolerance * scale;
+    let fitting = laws.iter().filter(fits).map(|l| l.law).collect();
+    let h = scene.system.constraints.len();
+    let constraint = |c: usize| {
+        let values = || fine.iter().map(move |i| i.constraint[c]);
+        (values().fold(0.0, |m: f64, f| m.max(f.abs())), rms(values()), rms(fine.iter().map(|i| i.parts[c])))
+    };
+    Ok(Judgement {
+        step: samples.step(),
+        samples: fine.len(),
+        scale,
+        noise,
+        laws,
+        fitting,
+        epsilon: both(numbers.epsilon, others.epsilon),
+        slip: both(numbers.slip, others.slip),
+        drag: both(numbers.drag, others.drag),
+        left_out: both(left_out(&fine), left_out(&coarse)),
+        constraints: (0..h).map(constraint).collect(),
+        drifts: drifts(scene, &fine)?,
+    })
+}
+
+/// The estimate with the better differences; what worse ones change is part of its error.
+fn both(fine: Option<Number>, coarse: Option<Number>) -> Option<Number> {
+    let (fine, coarse) = (fine?, coarse?);
+    Some(Number { value: fine.value, error: fine.error.hypot(fine.value - coarse.value) })
+}
+
+fn laws(scene: &Scene, instants: &[Instant], numbers: &FirstOrder) -> Result<Vec<Left>, JudgeError> {
+    let kept = rms(instants.iter().map(|i| as_force(i, &(&i.driven + &i.rest)).norm()));
+    let driven = rms(instants.iter().map(|i| as_force(i, &i.driven).norm()));
+    let of = |law, a: f64, b: f64, with: String| Left { law, residual: a.hypot(b), with };
+    let mut laws = vec![
+        of(Law::Chetaev, numbers.balance, numbers.constraint, String::new()),
+        of(Law::MissingRate, numbers.balance, driven, String::new()),
+    ];
+    if let Some((left, start)) = vakonomic(instants) {
+        let start = start.iter().enumerate();
+        let start = start.filter_map(|(i, n)| n.map(|n| format!("mu0_{} = {:.6e}", i + 1, n.value)));
+        laws.push(of(Law::Vakonomic, left, kept, start.collect::<Vec<_>>().join(", ")));
+    }
+    if let Some((left, removal)) = substituted(scene, instants)? {
+        laws.push(of(Law::Substitution, left, kept, format!("removal {removal}")));
+    }
+    Ok(laws)
+}
+
+fn drifts(scene: &Scene, instants: &[Instant]) -> Result<Vec<Drift>, JudgeError> {
+    let system = &scene.system;
+    let mut wanted: Vec<(String, symbolic::Expr)> =
+        system.watched.iter().filter(|w| w.constant).map(|w| (w.name.clone(), w.expression)).collect();
+    let kept = system.is_autonomous() && !system.has_forces() && system.is_workless(&system.constraint_jacobian());
+    if kept {
+        wanted.insert(0, ("energy".into(), system.energy()));
+    }
+    let inputs = [&[system.time], &system.positions()[..], &system.velocities()].concat();
+    let expressions: Vec<_> = wanted.iter().map(|(_, e)| *e).collect();
+    let mut program = system.evaluator::<f64>(&inputs, &expressions)?;
+    let mut rows: Vec<Vec<f64>> = Vec::new();
+    for i in instants {
+        rows.push(program.evaluate(&[&[i.t], &i.state[0][..], &i.state[1]].concat()).to_vec());
+    }
+    let drift = |(k, (name, _)): (usize, (String, symbolic::Expr))| {
+        let largest = rows.iter().map(|row| (row[k] - rows[0][k]).abs()).fold(0.0, f64::max);
+        Drift { name, start: rows[0][k], largest }
+    };
+    Ok(wanted.into_iter().enumerate().map(drift).collect())
+}
