@@ -1,4 +1,4 @@
-//! `deltaq judge`: a motion of the program's own is judged, and what cannot be judged is refused with its place.
+//! `deltaq judge`: a motion of the program's own is judged; what cannot be judged is refused with its place.
 
 use std::fs;
 use std::process::{Command, Output};

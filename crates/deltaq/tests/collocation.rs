@@ -9,7 +9,7 @@ use nalgebra::{DMatrix, DVector};
 pub type Rates<'a> = &'a dyn Fn(&[f64]) -> Vec<f64>;
 
 /// Nodes of Gauss and Legendre on [−1, 1] with six points, both signs.
-const NODES: [f64; 3] = [0.238_619_186_083_196_9, 0.661_209_386_466_264_5, 0.932_469_514_203_152_1];
+const NODES: [f64; 3] = [0.238_619_186_083_196_9, 0.661_209_386_466_264_5, 0.932_469_514_203_152];
 const WEIGHTS: [f64; 3] = [0.467_913_934_572_691_1, 0.360_761_573_048_138_6, 0.171_324_492_379_170_4];
 
 fn nodes() -> Vec<(f64, f64)> {

@@ -125,9 +125,12 @@ fn disc(y: &[f64]) -> Vec<f64> {
     vec![r * roll * c, r * roll * s, roll, y[7] / j, 0.0, 0.0, 0.0, r * roll * (mu1 * s - mu2 * c)]
 }
 
+/// Momenta at q, v and μ.
+type Momenta<'a> = &'a dyn Fn(&[f64], &[f64], &[f64]) -> Vec<f64>;
+
 /// Each motion that was found is one of collocation, with its conjugate times where a determinant of
 /// differences changes its sign.
-fn judged(name: &str, rates: Rates, aim: &Aim, momenta: &dyn Fn(&[f64], &[f64], &[f64]) -> Vec<f64>) -> usize {
+fn judged(name: &str, rates: Rates, aim: &Aim, momenta: Momenta) -> usize {
     const PANELS: usize = 30;
     let all = found(name, VAKONOMIC, aim);
     let mut times = 0;

@@ -2,7 +2,7 @@
 //! Scene by scene they are judged in `tests/tests/acceptance/sensitivities.rs`.
 
 use deltaq::{
-    Choice, Ending, Sensitivities, Settings, SolveError, choices, constant_names, sensitivities, setting, solve_choice,
+    Choice, Ending, Sensitivities, Settings, SolveError, choices, constant_names, sensitivities, solve_choice,
 };
 use equations::Outputs;
 use integrate::Method;

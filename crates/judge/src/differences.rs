@@ -1,7 +1,8 @@
 //! Values and derivatives between samples, by the polynomial through the nearest of them.
 
 /// Weights `w[d][j]` such that `Σⱼ w[d][j] y(tⱼ)` is the derivative of order `d ≤ 2` at `at` of the
-/// polynomial through the samples (Fornberg 1988): exact for polynomials of a degree less than the number of `nodes`.
+/// polynomial through the samples (Fornberg 1988): exact for polynomials of a degree less than the number of
+/// `nodes`.
 pub fn weights(nodes: &[f64], at: f64) -> [Vec<f64>; 3] {
     let mut w = [0; 3].map(|_| vec![0.0; nodes.len()]);
     w[0][0] = 1.0;

@@ -29,7 +29,7 @@ fn derive_for(system: &System, derivation: &Derivation) -> Result<Equations, Der
     derivation.removal.map(|removal| derive(system, removal)).ok_or(missing)
 }
 
-/// What the wrong equations set to zero, `d/dt ∂L̃/∂u̇ − ∂L̃/∂u` in `(ü, u̇, u, w, t)`, one for each parameter.
+/// What the wrong equations set to zero, `d/dt ∂L̃/∂u̇ − ∂L̃/∂u` in `(ü, u̇, u, w, t)`, one per parameter.
 pub fn residuals(system: &System, removal: &Removal) -> Vec<Expr> {
     let (g, flow) = (&system.graph, removal.flow(system));
     let lagrangian = removal.rewrite(system, system.lagrangian);
