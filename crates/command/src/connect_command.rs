@@ -77,7 +77,8 @@ fn text(scene: &Scene, formulation: &str, aim: &Aim, found: &Connections) -> Str
 
 fn one(number: usize, motion: &Connection, found: &Connections, aim: &Aim) -> String {
     let [action, error] = motion.action;
-    let mut text = format!("{number}. action {action:.9} (quadrature {error:.0e}), from {} starts: ", motion.starts);
+    let starts = if motion.starts == 1 { "1 start".into() } else { format!("{} starts", motion.starts) };
+    let mut text = format!("{number}. action {action:.9} (quadrature {error:.0e}), from {starts}: ");
     text += match (motion.is_minimum, &motion.conjugate) {
         (Some(true), _) => "a local minimum of the action, by its conjugate times\n",
         (Some(false), Some(times)) if times.is_empty() => "whether a minimum is not known\n",

@@ -29,6 +29,7 @@ ANSWERS = {
     "compare": {"compare sledge bowl --set duration=1": 0},
     "prove": {f"prove {scene} --out FOLDER/proof": code for scene, code in {"sledge": 0, "heisenberg": 3, "planar-body": 3}.items()},
     "connect": {"connect heisenberg --to x=0.2,y=0.5,z=1 --starts 8": 0, "connect disc -f chetaev --to psi=3,phi=1 --starts 2": 0},
+    "judge": {"judge sledge FOLDER/motion.csv": 0, "judge sledge FOLDER/motion.csv FOLDER/motion.csv FOLDER/motion.csv --set g=5": 3},
     "certificate": {"prove sledge --out -": 0},
     "linearize": {"linearize bicycle --free lean,steer --sweep v=4:5:2": 0, "linearize sledge --at 1": 0},
     "random": {"random --count 3": 0},
@@ -59,6 +60,9 @@ def check(kind, text):
 @pytest.mark.parametrize("kind", SCHEMAS.keys() - {"verdicts"})
 def test_answers_are_as_described(kind, tmp_path):
     Draft202012Validator.check_schema(SCHEMAS[kind])
+    if kind == "judge":
+        motion = subprocess.run([PROGRAM, "solve", "sledge", "-f", "chetaev"], capture_output=True, text=True, check=True).stdout
+        (tmp_path / "motion.csv").write_text(motion)
     for call, code in ANSWERS[kind].items():
         form = [] if kind == "certificate" else ["--format", "json"]
         words = call.replace("FOLDER", str(tmp_path)).split(" ") + form
