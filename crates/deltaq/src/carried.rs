@@ -3,7 +3,7 @@
 use equations::{Outputs, Tangents};
 use integrate::{Method, Options, Status, StopCause};
 
-use crate::sensitivity_start::Direction;
+use crate::direction::Direction;
 use crate::{Prepared, SingleRun, SolveError};
 
 /// A motion with its derivatives along directions, eight to a run.

@@ -71,6 +71,7 @@ mod connect;
 mod constants;
 mod contradiction;
 mod costates;
+mod direction;
 mod discrete_run;
 mod disturbed;
 mod doubt;

@@ -6,7 +6,8 @@ use mechanics::ConstantsRule;
 use scene::Scene;
 
 use crate::carried::{Carried, Which};
-use crate::sensitivity_start::{Direction, derivative, size};
+use crate::direction::Direction;
+use crate::sensitivity_start::{derivative, size};
 use crate::wanted::wanted;
 use crate::{ByName, Choice, Settings, SolveError};
 

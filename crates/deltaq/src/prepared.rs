@@ -4,10 +4,9 @@ use equations::{Compiled, Equations, Plan, Role, Tangents};
 use integrate::{Method, Options, Start};
 use symbolic::Symbol;
 
-use crate::constants::Chord;
+use crate::direction::{Chord, Direction};
 use crate::last_digits::{UNITS, move_digits};
 use crate::method::{Chosen, suited};
-use crate::sensitivity_start::Direction;
 use crate::single_run::{SingleRun, chart_size};
 use crate::sizes::unbounded_sizes;
 use crate::start_values::StartValues;

@@ -15,8 +15,9 @@ use mechanics::ConstantsRule;
 use scene::Scene;
 
 use crate::clock::Clock;
+use crate::direction::Direction;
 use crate::ending::vanishing_guard;
-use crate::sensitivity_start::{Direction, Numbers, kept_natural};
+use crate::sensitivity_start::{Numbers, kept_natural};
 use crate::single_run::SingleRun;
 use crate::wanted::wanted;
 use crate::{ByName, Choice, Ending, Prepared, Settings, SolveError, TIGHTER, setting};

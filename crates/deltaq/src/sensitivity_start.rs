@@ -15,18 +15,8 @@ use mechanics::linear::Factors;
 use scene::{Scene, Starts};
 
 use crate::constants::constant_names;
+use crate::direction::Direction;
 use crate::{ByName, Choice, Prepared, SolveError, Varying};
-
-/// How a motion and its constants move with a number, times `scale`.
-#[derive(Clone)]
-pub(crate) struct Direction {
-    /// Of the start, `dy(t₀)`.
-    pub(crate) start: Vec<f64>,
-    /// Of the free constants, parameters that vary included.
-    pub(crate) constants: Vec<f64>,
-    /// The size of the number: derivatives by it are those along the direction over this.
-    pub(crate) scale: f64,
-}
 
 /// Weights of the differences of order 8 and of order 6.
 pub(crate) const ORDER_8: [f64; 4] = [4.0 / 5.0, -1.0 / 5.0, 4.0 / 105.0, -1.0 / 280.0];

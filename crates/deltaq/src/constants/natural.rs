@@ -7,6 +7,7 @@ use nalgebra::{DMatrix, DVector};
 
 use crate::carried::{Carried, PLAIN_RUNS, Which};
 use crate::charts::{self, Course};
+use crate::direction::Chord;
 use crate::{Ending, Prepared, Setting, Settings, SolveError, TIGHTER};
 
 /// Residual at the horizon that is accepted, over the tolerance of the integration and the costate's size.
@@ -42,14 +43,6 @@ pub(super) fn natural_constants(
     let mut search = Search::new(prepared, horizon, settings, setting, near)?;
     let shot = search.shoot()?;
     Ok(search.in_units(&shot.unknowns))
-}
-
-/// Natural constants of a motion, and the inverse of the Jacobian there: those of motions with other numbers
-/// are found by few runs from it, whatever was found before.
-#[derive(Clone)]
-pub(crate) struct Chord {
-    constants: Vec<f64>,
-    inverse: DMatrix<f64>,
 }
 
 /// Steps by the same Jacobian; each has to lessen the residual to this part.

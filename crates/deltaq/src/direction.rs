@@ -1,0 +1,22 @@
+//! How motions move with their numbers, as far as what is prepared keeps it.
+
+use nalgebra::DMatrix;
+
+/// How a motion and its constants move with a number, times `scale`.
+#[derive(Clone)]
+pub(crate) struct Direction {
+    /// Of the start, `dy(t₀)`.
+    pub(crate) start: Vec<f64>,
+    /// Of the free constants, parameters that vary included.
+    pub(crate) constants: Vec<f64>,
+    /// The size of the number: derivatives by it are those along the direction over this.
+    pub(crate) scale: f64,
+}
+
+/// Natural constants of a motion, and the inverse of the Jacobian there: those of motions with other numbers
+/// are found by few runs from it, whatever was found before.
+#[derive(Clone)]
+pub(crate) struct Chord {
+    pub(crate) constants: Vec<f64>,
+    pub(crate) inverse: DMatrix<f64>,
+}
