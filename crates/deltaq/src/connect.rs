@@ -140,7 +140,7 @@ pub fn connect(scene: &Scene, choice: &Choice, aim: &Aim, settings: &Settings) -
     let problem = TwoPoint::new(scene, choice, aim, settings)?;
     let coarse = Settings { tolerance: SEARCH / TIGHTER, max_steps: STEPS.min(settings.max_steps), ..settings.clone() };
     let guesses = guesses::guesses(&problem, aim.starts)?;
-    let problem = Mutex::new(problem.scaled(&guesses));
+    let problem = Mutex::new(problem.scaled(&guesses.units, &guesses.sizes));
     let searched = from_all(&problem, aim.threads, &guesses.values, |problem, i, guess| {
         let plain = |problem: &mut TwoPoint| search(problem, guess, &coarse, SEARCHED);
         match i % 2 {

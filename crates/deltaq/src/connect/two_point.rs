@@ -7,7 +7,6 @@ use nalgebra::{DMatrix, DVector};
 use scene::Scene;
 
 use crate::carried::{Carried, Which};
-use crate::connect::guesses::Guesses;
 use crate::connect::velocities::Velocities;
 use crate::connect::{Aim, own_constant_names};
 use crate::direction::Direction;
@@ -102,9 +101,9 @@ impl TwoPoint {
         })
     }
 
-    /// In the units of these guesses.
-    pub(super) fn scaled(mut self, guesses: &Guesses) -> Self {
-        (self.units, self.sizes) = (guesses.units.clone(), guesses.sizes.clone());
+    /// With these units of unknowns and sizes of coordinates.
+    pub(super) fn scaled(mut self, units: &[f64], sizes: &[f64]) -> Self {
+        (self.units, self.sizes) = (units.to_vec(), sizes.to_vec());
         self
     }
 
