@@ -1,7 +1,7 @@
-//! One run of a motion with its derivatives, for searches: with no second run, so without an error estimate.
+//! One run of a motion with its derivatives: alone for searches, beside a second one where errors are asked for.
 
 use equations::{Outputs, Tangents};
-use integrate::{Method, Options, Status, StopCause};
+use integrate::{Method, Options, Status, StopCause, Work};
 
 use crate::direction::Direction;
 use crate::{Prepared, SingleRun, SolveError};
@@ -11,6 +11,8 @@ pub(crate) struct Carried<'a> {
     runs: Vec<(Tangents, SingleRun)>,
     along: &'a [Direction],
     states: usize,
+    /// The method that was taken.
+    pub(crate) method: Method,
 }
 
 /// A run with derivatives along eight directions or less takes as long as this many without (measured on the
@@ -26,9 +28,40 @@ pub(crate) enum Which {
 }
 
 impl<'a> Carried<'a> {
+    /// Whether a method carries derivatives.
+    pub(crate) fn is_by(method: Method) -> bool {
+        matches!(method, Method::Taylor | Method::Dop853)
+    }
+
+    /// Refuses the other methods.
+    pub(crate) fn check(method: Method) -> Result<(), SolveError> {
+        if Carried::is_by(method) {
+            return Ok(());
+        }
+        let reason = format!("derivatives are carried by taylor and dop853, not by {}", method.name());
+        Err(SolveError::Member { reason })
+    }
+
     /// From the start of `prepared` to `end`. Taylor series give way to Runge and Kutta where rates are not
     /// smooth.
     pub(crate) fn run(
+        prepared: &mut Prepared,
+        along: &'a [Direction],
+        end: f64,
+        options: &Options,
+        which: Which,
+    ) -> Result<Self, SolveError> {
+        let carried = Carried::by(prepared, along, end, options, which)?;
+        let rough = |status: &Status| matches!(status, Status::Stopped { cause: StopCause::NotSmooth { .. }, .. });
+        if options.method == Method::Taylor && carried.runs.iter().any(|(_, run)| rough(&run.solution.status)) {
+            let options = Options { method: Method::Dop853, ..options.clone() };
+            return Carried::by(prepared, along, end, &options, which);
+        }
+        Ok(carried)
+    }
+
+    /// The same by the method of the options, whatever comes.
+    pub(crate) fn by(
         prepared: &mut Prepared,
         along: &'a [Direction],
         end: f64,
@@ -44,14 +77,9 @@ impl<'a> Carried<'a> {
             }
             let starts: Vec<Vec<f64>> = part.iter().map(|direction| direction.start.clone()).collect();
             let run = prepared.integrate_with(&mut tangents, &starts, end, options, which == Which::Looser)?;
-            let is_rough = matches!(&run.solution.status, Status::Stopped { cause: StopCause::NotSmooth { .. }, .. });
-            if is_rough && options.method == Method::Taylor {
-                let options = Options { method: Method::Dop853, ..options.clone() };
-                return Carried::run(prepared, along, end, &options, which);
-            }
             runs.push((tangents, run));
         }
-        Ok(Carried { runs, along, states: prepared.start.len() })
+        Ok(Carried { runs, along, states: prepared.start.len(), method: options.method })
     }
 
     /// How the run ended; of several, the first that stopped.
@@ -60,9 +88,9 @@ impl<'a> Carried<'a> {
         each().find(|status| **status != Status::Completed).or_else(|| each().next()).expect("there are directions")
     }
 
-    /// The time that all runs reached.
-    pub(crate) fn end(&self) -> f64 {
-        self.runs.iter().map(|(_, run)| run.end()).fold(f64::INFINITY, f64::min)
+    /// The times that the runs reached.
+    pub(crate) fn ends(&self) -> impl Iterator<Item = f64> {
+        self.runs.iter().map(|(_, run)| run.end())
     }
 
     /// End points of the steps.
@@ -75,11 +103,16 @@ impl<'a> Carried<'a> {
         self.runs.iter().map(|(_, run)| run.solution.work.steps + run.solution.work.rejected).sum()
     }
 
-    /// The derivatives of the states at the end of the run along each direction, over its scale.
-    pub(crate) fn end_derivatives(&self) -> Vec<Vec<f64>> {
+    /// Work of the first run, with the steps of all.
+    pub(crate) fn work(&self) -> Work {
+        let all = || self.runs.iter().map(|(_, run)| run.solution.work);
+        Work { steps: all().map(|work| work.steps).sum(), ..all().next().expect("there are directions") }
+    }
+
+    /// How the states at the end of the run move along each direction.
+    pub(crate) fn end_moves(&self) -> impl Iterator<Item = &[f64]> {
         let ends = self.runs.iter().map(|(_, run)| &run.solution.dense.end_state()[self.states..]);
-        let along = ends.flat_map(|end| end.chunks_exact(self.states));
-        along.zip(self.along).map(|(dy, along)| dy.iter().map(|x| x / along.scale).collect()).collect()
+        ends.flat_map(|end| end.chunks_exact(self.states))
     }
 
     /// What is read off at `t`, and its derivatives along each direction, over its scale.

@@ -6,8 +6,8 @@ use equations::Equations;
 use mechanics::ConstantsRule;
 
 use crate::{Prepared, Setting, Settings, SolveError};
-pub(crate) use natural::chord;
 use natural::natural_constants;
+pub(crate) use natural::{chord, places};
 
 /// Compiles `equations` and computes what they start from. Nothing is integrated, unless the constants are
 /// natural at a horizon; that is done as `settings` say.

@@ -1,7 +1,7 @@
 //! What is read off a motion as a function of numbers of its scene, for fits: no numbers are an error.
 
 use equations::Outputs;
-use integrate::{Method, Status};
+use integrate::Status;
 use mechanics::ConstantsRule;
 use scene::Scene;
 
@@ -78,9 +78,7 @@ impl Model {
         }
         let by_name = ByName::new(scene, choice, names, settings)?;
         let method = by_name.varying().prepared().method.method;
-        if ![Method::Taylor, Method::Dop853].contains(&method) {
-            return refused(format!("derivatives are carried by taylor and dop853, not by {}", method.name()));
-        }
+        Carried::check(method)?;
         let settings = Settings { method: Some(method), ..settings.clone() };
         let names = names.iter().map(|name| name.to_string()).collect();
         Ok(Model { by_name, names, times: times.to_vec(), settings, start })
@@ -139,7 +137,7 @@ impl Model {
         let prepared = self.by_name.varying_mut().prepared_mut();
         let carried = Carried::run(prepared, &along, end, &options, Which::Kept);
         let mut carried = carried.map_err(|error| error.to_string())?;
-        let reached = carried.end();
+        let reached = carried.ends().fold(f64::INFINITY, f64::min);
         for t in self.times.iter().take_while(|t| **t <= reached) {
             let (outputs, derivatives) = carried.at(prepared, *t).map_err(|error| error.to_string())?;
             found.outputs.push(outputs);

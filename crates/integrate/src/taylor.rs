@@ -110,7 +110,7 @@ impl<'s, 'p> Taylor<'s, 'p> {
             dropped: false,
             rough: false,
             rates: vec![0.0; n],
-            digits: Vec::with_capacity(n),
+            digits: Vec::new(),
             inside: vec![0.0; n],
             inside_slope: vec![0.0; n],
             place: 0.0,

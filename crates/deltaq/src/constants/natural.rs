@@ -1,7 +1,7 @@
 //! Constants that are natural at a horizon: a boundary value.
 
 use equations::Equations;
-use integrate::{BoundaryError, Dense, Interrupt, Method, Options, Residuals, ShootOptions, Shot, Status, shoot};
+use integrate::{BoundaryError, Dense, Interrupt, Options, Residuals, ShootOptions, Shot, Status, shoot};
 
 use nalgebra::{DMatrix, DVector};
 
@@ -213,7 +213,7 @@ impl Residuals for Search<'_> {
     }
 
     fn jacobian(&mut self, constants: &[f64], jacobian: &mut [f64]) -> Result<bool, BoundaryError> {
-        if !self.carries || ![Method::Taylor, Method::Dop853].contains(&self.of_all.method) {
+        if !self.carries || !Carried::is_by(self.of_all.method) {
             return Ok(false);
         }
         let options = self.begin(constants)?;
@@ -224,17 +224,17 @@ impl Residuals for Search<'_> {
         if *carried.status() != Status::Completed {
             return Ok(false);
         }
-        for ((j, derivatives), unit) in carried.end_derivatives().into_iter().enumerate().zip(&self.sizes) {
+        for (j, moves) in carried.end_moves().enumerate() {
             for ((i, &place), size) in self.places.iter().enumerate().zip(&self.sizes) {
-                jacobian[i * constants.len() + j] = derivatives[place] * unit / size;
+                jacobian[i * constants.len() + j] = moves[place] / size;
             }
         }
         Ok(true)
     }
 }
 
-/// The states that are natural with these constants: costates of memory variables.
-fn places(equations: &Equations, count: usize) -> Option<Vec<usize>> {
+/// The states that are natural with the first constants: costates of memory variables.
+pub(crate) fn places(equations: &Equations, count: usize) -> Option<Vec<usize>> {
     let constants = equations.free_constants[..count].iter();
     constants
         .map(|c| {

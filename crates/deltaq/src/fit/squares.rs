@@ -1,6 +1,6 @@
 //! The constants for which the sum of squares is least, with exact derivatives where these cost less.
 
-use integrate::{BoundaryError, Method, Options, Residuals, ShootOptions, Shot, Status, fit};
+use integrate::{BoundaryError, Options, Residuals, ShootOptions, Shot, Status, fit};
 use nalgebra::DVector;
 
 use super::{CLOSE, Differences, INSTANTS, SEARCH_TOLERANCE};
@@ -64,7 +64,7 @@ impl Residuals for Squares<'_> {
     fn jacobian(&mut self, constants: &[f64], jacobian: &mut [f64]) -> Result<bool, BoundaryError> {
         let Differences { prepared, goal, end, work, .. } = &mut *self.differences;
         let method = prepared.method.method;
-        if !self.carries || ![Method::Taylor, Method::Dop853].contains(&method) {
+        if !self.carries || !Carried::is_by(method) {
             return Ok(false);
         }
         let broken = |error: crate::SolveError| BoundaryError::Residual { reason: error.to_string() };
