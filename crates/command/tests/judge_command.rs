@@ -46,3 +46,21 @@ fn what_cannot_be_read_is_refused_with_its_place() {
         assert!(complaint.contains(said) && judged.status.code() == Some(2), "{complaint}");
     }
 }
+
+/// Every law has a motion without forces and accelerations; one without accelerations is judged.
+#[test]
+fn where_nothing_happens_no_law_is_named() {
+    let folder = tempfile::tempdir().unwrap();
+    let (scene, motion) = (folder.path().join("blade.toml"), folder.path().join("motion.csv"));
+    let rows: String = (0..40).map(|k| format!("{},0,0,0.3\n", 0.1 * f64::from(k))).collect();
+    fs::write(&motion, format!("t,x,y,phi\n{rows}")).unwrap();
+    let text = "title = \"blade\"\n[parameters]\ng = 0\n[coordinates]\nx = { start = 0 }\ny = { start = 0 }\nphi = { start = 0.3 }\n\
+                [system]\nlagrangian = \"(x'^2 + y'^2 + phi'^2)/2 + g*x\"\nconstraints = [\"y'*cos(phi) - x'*sin(phi)\"]\n[start.velocities]\n\"x'\" = 0\n\"phi'\" = 0\n[run]\nduration = 1\n";
+    fs::write(&scene, text).unwrap();
+    let call = ["judge", scene.to_str().unwrap(), motion.to_str().unwrap()];
+    let judged = run(&call);
+    let complaint = String::from_utf8_lossy(&judged.stderr).into_owned();
+    assert!(complaint.contains("every law has this motion") && judged.status.code() == Some(2), "{complaint}");
+    // on a slope no blade stays where it is
+    assert_eq!(run(&[&call[..], &["--set", "g=1"]].concat()).status.code(), Some(3));
+}

@@ -1,4 +1,4 @@
-//! One run of a motion with its derivatives: alone for searches, beside a second one where errors are asked for.
+//! One run of a motion with its derivatives: alone for searches, beside a second one for error estimates.
 
 use equations::{Outputs, Tangents};
 use integrate::{Method, Options, Status, StopCause, Work};

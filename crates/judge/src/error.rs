@@ -65,6 +65,16 @@ pub enum JudgeError {
         /// The time.
         t: f64,
     },
+    /// Forces and accelerations do not stand out from what differences make of the samples.
+    #[error(
+        "forces and accelerations are {scale:.1e}, differences of the samples are sure to {noise:.1e}: every law has this motion"
+    )]
+    Rest {
+        /// Forces and accelerations, rms, in `√E/T`.
+        scale: f64,
+        /// By how much two orders of differences differ.
+        noise: f64,
+    },
     /// Constraints are dependent.
     #[error("at t = {t}: the constraints are dependent, or something in the scene is not finite")]
     Dependent {

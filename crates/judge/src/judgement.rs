@@ -92,10 +92,14 @@ impl Judgement {
     }
 }
 
+/// What is this many times the least, or the noise, does not stand out from it.
+const NOISES: f64 = 3.0;
+
 /// Which law does the program integrate that made these samples?
 ///
 /// # Errors
-/// [`JudgeError`]: too few samples, dependent constraints, a mass matrix that is not positive definite.
+/// [`JudgeError`]: too few samples, none in which anything happens, dependent constraints, a mass matrix that is
+/// not positive definite.
 pub fn judge(scene: &Scene, samples: &Samples, tolerance: f64) -> Result<Judgement, JudgeError> {
     let reach = if samples.v.is_some() { 3 } else { 4 };
     let mut balance = Balance::new(&scene.system)?;
@@ -103,10 +107,13 @@ pub fn judge(scene: &Scene, samples: &Samples, tolerance: f64) -> Result<Judgeme
     let coarse = balance.along(samples, reach - 1, reach)?;
     let noise = rms(fine.iter().zip(&coarse).map(|(a, b)| (&a.balance - &b.balance).norm()));
     let scale = rms(fine.iter().map(|i| i.inertia.norm() + i.balance.norm()));
+    if scale <= NOISES * noise {
+        return Err(JudgeError::Rest { scale, noise });
+    }
     let [numbers, others] = [first_order(&fine), first_order(&coarse)];
     let laws = laws(scene, &fine, &numbers)?;
     let least = laws.iter().map(|l| l.residual).fold(f64::INFINITY, f64::min);
-    let limit = 3.0 * least.max(noise);
+    let limit = NOISES * least.max(noise);
     let fits = |l: &&Left| l.residual <= limit && least <= tolerance * scale;
     let fitting = laws.iter().filter(fits).map(|l| l.law).collect();
     let h = scene.system.constraints.len();

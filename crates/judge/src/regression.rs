@@ -29,11 +29,14 @@ pub fn fit(x: &[Vec<f64>], y: &[f64]) -> Vec<Option<Number>> {
     let norms: Vec<f64> = (0..width).map(|j| x.iter().map(|row| row[j] * row[j]).sum::<f64>().sqrt()).collect();
     let mut numbers = vec![None; width];
     let kept: Vec<usize> = (0..width).filter(|&j| norms[j] > 1e-150 && norms[j].is_finite()).collect();
+    if kept.is_empty() {
+        return numbers;
+    }
     // columns of length one: whether they are independent does not hang on units
     let rows = DMatrix::from_fn(x.len(), kept.len(), |i, j| x[i][kept[j]] / norms[kept[j]]);
     let right = DVector::from_column_slice(y);
     let svd = rows.clone().svd(true, true);
-    if kept.is_empty() || svd.singular_values.min() < 1e-10 {
+    if svd.singular_values.min() < 1e-10 {
         return numbers;
     }
     let Ok(theta) = svd.solve(&right, 0.0) else { return numbers };

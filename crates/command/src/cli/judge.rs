@@ -16,7 +16,7 @@ pub struct JudgeArguments {
     /// of none, which are then taken from differences.
     #[arg(required = true)]
     pub motions: Vec<PathBuf>,
-    /// Steps of the method that made the motions, one a table: from three motions of one start its order
+    /// Steps of the method that made the motions, one per table: from three motions of one start its order
     /// follows. The distances of the samples if left out.
     #[arg(long, value_name = "H,…", value_delimiter = ',')]
     pub steps: Vec<f64>,
