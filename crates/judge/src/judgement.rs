@@ -98,8 +98,8 @@ const NOISES: f64 = 3.0;
 /// Which law does the program integrate that made these samples?
 ///
 /// # Errors
-/// [`JudgeError`]: too few samples, none in which anything happens, dependent constraints, a mass matrix that is
-/// not positive definite.
+/// [`JudgeError`]: too few samples, a motion in which nothing happens, dependent constraints, a mass matrix
+/// that is not positive definite.
 pub fn judge(scene: &Scene, samples: &Samples, tolerance: f64) -> Result<Judgement, JudgeError> {
     let reach = if samples.v.is_some() { 3 } else { 4 };
     let mut balance = Balance::new(&scene.system)?;
