@@ -65,8 +65,8 @@ pub struct Sensitivities {
 ///
 /// # Errors
 /// As [`ByName::new`] and [`crate::solve_choice`]; [`SolveError::Member`] without names, with a name of which
-/// the start is no smooth function, or for a method other than [`Method::Taylor`] and
-/// [`Method::Dop853`].
+/// the start is no smooth function, or for a method other than [`integrate::Method::Taylor`] and
+/// [`integrate::Method::Dop853`].
 pub fn sensitivities(
     scene: &Scene,
     choice: &Choice,
