@@ -18,8 +18,8 @@ SETTLED = 1.0
 # Ratios of numbers that are no farther from each other are alike.
 ALIKE = 0.05
 
-HEAD = """# Which law do rigid-body engines integrate?
-
+TITLE = "# Which law do rigid-body engines integrate?\n\n"
+HEAD = """
 A ball on a turning table, the scene `turntable`: an engine has a table on a driven joint, a ball, a contact with friction, and
 the start of the scene; PyDy has the two constraints. Its motions, 500 samples in 5 s, from 1 s on, went to `deltaq judge`. This is measured, with the settings that
 are named, and no blame: other settings are other numbers. Errors are those of the regression, one standard error. A law
@@ -66,9 +66,8 @@ def number(found, digits=2):
 
 
 def main(deltaq, page):
-    text = HEAD
-    text += "| engine | step | law | leaves | slip | ε | drag | constraint |\n| --- | ---: | --- | ---: | ---: | ---: | ---: | ---: |\n"
-    notes = ""
+    text = "| engine | step | law | leaves | slip | ε | drag | constraint |\n| --- | ---: | --- | ---: | ---: | ---: | ---: | ---: |\n"
+    notes, answers = "", []
     with tempfile.TemporaryDirectory() as folder:
         for name, package in ENGINES:
             files = [str(Path(folder) / f"{package}-{step}.csv") for step in STEPS]
@@ -92,11 +91,13 @@ def main(deltaq, page):
                 said = "the contact creeps"
                 said += " in proportion to the step" if abs(parts[0] / parts[1] - 1) < ALIKE else ""
                 said += " whatever the step" if abs(parts[0] - 1) < ALIKE else ""
+            laws = {", ".join(motion["fitting"]) or "none of these laws" for motion in answer["motions"]}
+            answers.append(f"{name}: {' or '.join(sorted(laws))}, {said}.")
             if answer["order"] and "rtol" not in settings:
                 said += f"; order in the step {answer['order']['order']:.2f}"
             settings = ", ".join(f"{key} = {value}" for key, value in settings.items())
             notes += f"- **{name}** {importlib.metadata.version(package)}: {said}. Settings: {settings}.\n"
-    Path(page).write_text(text + "\n" + notes + TAIL)
+    Path(page).write_text(TITLE + f"**{' '.join(answers)}**\n" + HEAD + text + "\n" + notes + TAIL)
 
 
 if __name__ == "__main__":
