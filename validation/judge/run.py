@@ -3,7 +3,6 @@
 In an environment with `requirements.txt`; any folder will do to run it in.
 """
 
-import importlib.metadata
 import json
 import subprocess
 import sys
@@ -12,7 +11,7 @@ from pathlib import Path
 
 HERE = Path(__file__).parent
 STEPS = ["0.002", "0.001", "0.0005"]
-ENGINES = [("MuJoCo", "mujoco"), ("PyBullet", "pybullet"), ("PyDy", "pydy")]
+ENGINES = [("MuJoCo", "mujoco"), ("PyBullet", "pybullet"), ("Rapier", "rapier"), ("PyDy", "pydy")]
 # When a contact that was not pressed at the start has come to rest, s.
 SETTLED = 1.0
 # Ratios of numbers that are no farther from each other are alike.
@@ -74,7 +73,8 @@ def main(deltaq, page):
             for step, file in zip(STEPS, files):
                 call = [sys.executable, HERE / f"with_{package}.py", file, "--dt", step]
                 said = subprocess.run(call, check=True, capture_output=True, text=True).stdout
-                settings = {key: value for key, value in json.loads(said).items() if key not in ("dt", "end", "set", "engine")}
+                settings = {key: value for key, value in json.loads(said).items() if key not in ("dt", "end", "set")}
+                engine = settings.pop("engine")
                 settle(file)
             answer = judged(deltaq, files)
             for step, motion in zip(STEPS, answer["motions"]):
@@ -96,7 +96,7 @@ def main(deltaq, page):
             if answer["order"] and "rtol" not in settings:
                 said += f"; order in the step {answer['order']['order']:.2f}"
             settings = ", ".join(f"{key} = {value}" for key, value in settings.items())
-            notes += f"- **{name}** {importlib.metadata.version(package)}: {said}. Settings: {settings}.\n"
+            notes += f"- **{engine}**: {said}. Settings: {settings}.\n"
     Path(page).write_text(TITLE + f"**{' '.join(answers)}**\n" + HEAD + text + "\n" + notes + TAIL)
 
 

@@ -36,7 +36,7 @@ def start(changes):
     across = np.array([n["Omega"] * n["x"] - n["y'"], n["x'"] + n["Omega"] * n["y"]]) / n["a"]
     rates = [n["psi'"], *np.linalg.solve(turn[:2, 1:], across)]
     return SimpleNamespace(
-        m=n["m"], a=n["a"], Omega=n["Omega"], centre=np.array([n["x"], n["y"], n["a"]]), velocity=np.array([n["x'"], n["y'"], 0.0]),
+        changes=changes, m=n["m"], a=n["a"], Omega=n["Omega"], centre=np.array([n["x"], n["y"], n["a"]]), velocity=np.array([n["x'"], n["y'"], 0.0]),
         angles=[n["psi"], n["theta"], n["phi"]], rotation=rotation(n["psi"], n["theta"], n["phi"]), spin=turn @ rates)
 
 

@@ -1,6 +1,7 @@
 //! The evidence: the paper's audit, scaling, stability, referees in Python, the reports.
 
 pub mod audit;
+pub mod benchmark;
 pub mod casadi_job;
 pub mod report;
 pub mod scaling;

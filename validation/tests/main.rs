@@ -3,6 +3,7 @@
 mod audit;
 mod batches;
 mod bench;
+mod benchmark;
 mod casadi;
 mod changed_pages;
 mod control;

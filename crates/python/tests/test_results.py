@@ -145,24 +145,30 @@ def test_other_threads_go_on_meanwhile(system, ask):
         "constraint": lambda: system.constraint(0, q, v), "mass": lambda: system.mass(0, q, v),
     }[ask]
     work()
-    longest, last, done = [0.0], [time.perf_counter()], threading.Event()
 
-    def tick():
-        while not done.is_set():
-            now = time.perf_counter()
-            longest[0], last[0] = max(longest[0], now - last[0]), now
-            time.sleep(1e-4)
+    def parts():
+        """The longest time without a turn of another thread, and the time of three calls."""
+        longest, last, done = [0.0], [time.perf_counter()], threading.Event()
 
-    began = time.perf_counter()
-    held = threading.Thread(target=lambda: [work() for _ in range(3)])
-    ticking = threading.Thread(target=tick)
-    ticking.start()
-    held.start()
-    held.join()
-    done.set()
-    ticking.join()
-    # with the lock held there is no turn in a third of that time
-    assert longest[0] < 0.25 * (time.perf_counter() - began), f"{longest[0]} of {time.perf_counter() - began} s"
+        def tick():
+            while not done.is_set():
+                now = time.perf_counter()
+                longest[0], last[0] = max(longest[0], now - last[0]), now
+                time.sleep(1e-4)
+
+        began = time.perf_counter()
+        held = threading.Thread(target=lambda: [work() for _ in range(3)])
+        ticking = threading.Thread(target=tick)
+        ticking.start()
+        held.start()
+        held.join()
+        done.set()
+        ticking.join()
+        return longest[0], time.perf_counter() - began
+
+    # with the lock held there never is a turn in a third of that time; a busy machine keeps one waiting as long now and then
+    tries = (parts() for _ in range(20))
+    assert any(longest < 0.25 * whole for longest, whole in tries)
 
 
 def test_threads_that_share_equations(system):

@@ -50,6 +50,8 @@ pub struct Run {
 pub struct Trajectory {
     /// `samples + 1` poses, the start first.
     pub poses: Vec<Pose>,
+    /// Velocity of the centre, m/s, and angular velocity in the room frame, rad/s, at each of them.
+    pub rates: Vec<[Vector; 2]>,
     /// Largest distance of the ball's skin from the surface at the samples, m.
     pub off_surface: f64,
     /// Largest velocity of the contact point over the surface at the samples, m/s.
@@ -81,7 +83,12 @@ impl Run {
             parameters.max_ccd_substeps = 0;
         }
         let hooks = ClosedForm { setup: *setup, ball };
-        let mut trajectory = Trajectory { poses: vec![setup.pose], off_surface: 0.0, slip: 0.0 };
+        let mut trajectory = Trajectory {
+            poses: vec![setup.pose],
+            rates: vec![[setup.velocity, setup.spin]],
+            off_surface: 0.0,
+            slip: 0.0,
+        };
         for step in 1..=self.steps {
             world.step_with_events(&hooks, &());
             if step.is_multiple_of(self.steps / self.samples) {
@@ -107,6 +114,7 @@ impl Trajectory {
         self.off_surface = self.off_surface.max(height.abs());
         self.slip = self.slip.max(setup.slip(pose.centre, body.linvel(), body.angvel()).length());
         self.poses.push(pose);
+        self.rates.push([body.linvel(), body.angvel()]);
         Some(())
     }
 }

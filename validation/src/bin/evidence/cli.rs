@@ -6,6 +6,7 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 
 use program::{Common, Output, TextOrJson, by_name};
 use random::Kind;
+use validation::benchmark::STARTS;
 
 /// The evidence for deltaq: every scene in every formulation, random systems, stiff cases; the reports.
 #[derive(Parser, Debug)]
@@ -78,6 +79,8 @@ pub enum Command {
     Scaling(ScalingArguments),
     /// Put every method to stiff and extreme cases: is what comes back right, and if not, does it say so?
     Stability(StabilityArguments),
+    /// Write the reference motions that other programs are held against.
+    Benchmark(BenchmarkArguments),
     /// Run the main job in memory and compare its verdicts with those in the reports folder.
     Reports(ReportsArguments),
 }
@@ -139,6 +142,20 @@ pub struct ScalingArguments {
     pub repeats: u16,
     #[command(flatten)]
     pub output: Output,
+}
+
+/// `evidence benchmark`.
+#[derive(Args, Debug)]
+pub struct BenchmarkArguments {
+    /// Systems, all if left out.
+    #[arg(long, value_name = "NAME,…", value_delimiter = ',', requires = "out")]
+    pub systems: Vec<String>,
+    /// Starts of each.
+    #[arg(long, default_value_t = STARTS as u16, requires = "out", value_parser = clap::value_parser!(u16).range(1..=1000))]
+    pub starts: u16,
+    /// Folder for the tables; `validation/benchmark` of the project's sources if left out.
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
 }
 
 /// `evidence reports`.

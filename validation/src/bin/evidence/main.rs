@@ -1,6 +1,7 @@
 //! The evidence: the main job, which derives, integrates and compares every scene and writes the reports;
 //! random systems; stiff cases; cost over size. Exit codes are those of [`program`].
 
+mod benchmark_command;
 mod cli;
 mod main_job;
 mod random_command;
@@ -29,6 +30,7 @@ fn run(cli: Cli) -> Result<Answer> {
     let quiet = cli.common.quiet;
     match cli.command {
         None => main_job::run(&cli.job, quiet).map(Answer::from),
+        Some(Command::Benchmark(arguments)) => benchmark_command::run(&arguments, quiet).map(Answer::from),
         Some(Command::Reports(arguments)) => reports_command::run(&arguments).map(Answer::from),
         Some(Command::Scaling(arguments)) => scaling_command::run(&arguments, quiet).map(Answer::from),
         Some(Command::Random(arguments)) => random_command::run(&arguments, quiet),
