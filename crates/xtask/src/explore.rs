@@ -50,8 +50,15 @@ pub(crate) fn write() -> Result<Outcome> {
     Ok(Outcome::Passed(String::new()))
 }
 
-/// Moves the sliders of a fresh page for this number of seconds; an error if it grows.
-pub(crate) fn growth(seconds: u32) -> Result<Outcome> {
+/// Seconds.
+const FIVE_MINUTES: u32 = 300;
+
+/// Moves the sliders of a fresh page for the number of seconds given, or five minutes; an error if it grows.
+pub(crate) fn growth(words: &[&str]) -> Result<Outcome> {
+    let seconds = match words.first() {
+        Some(seconds) => seconds.parse().context("growth takes a number of seconds")?,
+        None => FIVE_MINUTES,
+    };
     match tools()? {
         Err(lacking) => bail!("the page cannot be tried: {lacking}"),
         Ok(browser) => {

@@ -5,14 +5,38 @@ mod dependencies;
 mod explore;
 mod lint;
 mod python;
+mod site;
 mod sources;
 mod tools;
 
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-/// Seconds.
-const FIVE_MINUTES: u32 = 300;
+use anyhow::Result;
+
+use tools::Outcome;
+
+/// A chore that is no check: its name, what it does, and what it does with further words.
+type Chore = (&'static str, &'static str, fn(&[&str]) -> Result<Outcome>);
+
+const CHORES: [Chore; 6] = [
+    (
+        "wheel",
+        "builds wheel (for glibc 2.28 and newer) and source distribution of the Python module, tests the wheel",
+        |_| python::wheel(),
+    ),
+    ("site", "builds the site of documents, reports and references, follows its links, into target/site", |_| {
+        site::build()
+    }),
+    ("explore", "builds the page to explore scenes, writes reports/explore.html", |_| explore::write()),
+    ("growth", "moves sliders of a fresh page for five minutes, or SECONDS, and fails if it grows", explore::growth),
+    ("engine", "runs the physics engine, writes reports/engine.md", |_| checks::engine()),
+    (
+        "peers",
+        "times other tools beside ours, writes reports/peers.md; --quick for a look, --redraw for pictures",
+        python::peers,
+    ),
+];
 
 fn main() -> ExitCode {
     if let Some(code) = lint::in_place_of_rustc() {
@@ -24,28 +48,12 @@ fn main() -> ExitCode {
         eprintln!("{}: {error}", root().display());
         return ExitCode::FAILURE;
     }
+    if let [name, rest @ ..] = arguments.as_slice()
+        && let Some((_, _, chore)) = CHORES.iter().find(|chore| chore.0 == *name)
+    {
+        return checks::chore(chore(rest));
+    }
     let checks = checks::all();
-    if arguments == ["engine"] {
-        return checks::chore(checks::engine());
-    }
-    if arguments == ["explore"] {
-        return checks::chore(explore::write());
-    }
-    if let ["growth", rest @ ..] = arguments.as_slice() {
-        return match rest.first().map_or(Ok(FIVE_MINUTES), |seconds| seconds.parse()) {
-            Ok(seconds) => checks::chore(explore::growth(seconds)),
-            Err(error) => {
-                eprintln!("growth takes a number of seconds: {error}");
-                ExitCode::FAILURE
-            }
-        };
-    }
-    if arguments == ["wheel"] {
-        return checks::chore(python::wheel());
-    }
-    if let ["peers", rest @ ..] = arguments.as_slice() {
-        return checks::chore(python::peers(rest));
-    }
     let chosen = match arguments.as_slice() {
         [] | ["help" | "--help" | "-h"] => {
             list(&checks);
@@ -73,18 +81,7 @@ fn list(checks: &[checks::Check]) {
     for check in checks {
         println!("  {:<10} {}", check.name, check.about);
     }
-    println!(
-        "\n  {:<10} no check: builds wheel (for glibc 2.28 and newer) and source distribution of the Python module, tests the wheel",
-        "wheel"
-    );
-    println!("\n  {:<10} no check: builds the page to explore scenes, writes reports/explore.html", "explore");
-    println!(
-        "\n  {:<10} no check: moves sliders of a fresh page for five minutes, or SECONDS, and fails if it grows",
-        "growth"
-    );
-    println!("\n  {:<10} no check: runs the physics engine, writes reports/engine.md", "engine");
-    println!(
-        "\n  {:<10} no check: times other tools beside ours, writes reports/peers.md; --quick for a look, --redraw for pictures",
-        "peers"
-    );
+    for (name, about, _) in CHORES {
+        println!("\n  {name:<10} no check: {about}");
+    }
 }

@@ -201,7 +201,7 @@ pub(crate) fn environment() -> Result<PathBuf> {
 
 /// The Python of an environment with what a file of requirements pins. It is built once for each content of
 /// that file: in a folder beside its place, and then moved, so that half an environment is never used.
-fn make(target: &Path, name: &str, requirements: &Path) -> Result<PathBuf> {
+pub(crate) fn make(target: &Path, name: &str, requirements: &Path) -> Result<PathBuf> {
     let text = std::fs::read_to_string(requirements).with_context(|| requirements.display().to_string())?;
     let (program, version) = interpreter()?;
     let mut hasher = DefaultHasher::new();

@@ -1,0 +1,26 @@
+//! The site: documents, reports and references as pages that need no server but one of files.
+
+use std::path::Path;
+
+use anyhow::Result;
+
+use crate::python;
+use crate::tools::{Outcome, cargo, outside, succeed, target};
+
+/// What builds the pages.
+const SCRIPTS: &str = "docs/site";
+
+/// Packages whose reference is not for users.
+const EVIDENCE: [&str; 7] =
+    ["deltaq-random", "deltaq-referees", "deltaq-validation", "engine", "python", "tests", "xtask"];
+
+/// Builds it into `target/site`: the reference of Rust by `cargo doc`, all else by Sphinx.
+pub(crate) fn build() -> Result<Outcome> {
+    let target = target()?;
+    let left_out = EVIDENCE.iter().flat_map(|package| ["--exclude", package]);
+    succeed(cargo().args(["doc", "--no-deps", "--workspace", "--lib", "--quiet"]).args(left_out))?;
+    let python = python::make(&target, "site", &Path::new(SCRIPTS).join("requirements.txt"))?;
+    let mut run = outside(&python);
+    run.arg("-B").arg(Path::new(SCRIPTS).join("build.py")).arg(target.join("site"));
+    succeed(run.arg(target.join("doc")))
+}
