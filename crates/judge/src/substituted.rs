@@ -11,11 +11,12 @@ use crate::regression::rms;
 
 /// The least of what is left of them, rms, over the removals of the scene whose parameters and memory
 /// variables are coordinates, and the name of that removal; none without such a removal, and with forces.
+/// Where none can be derived either, there is none: the scene's own were read with it.
 pub fn substituted(scene: &Scene, instants: &[Instant]) -> Result<Option<(f64, String)>, JudgeError> {
     if scene.system.has_forces() {
         return Ok(None);
     }
-    let removals = deltaq::removals(scene).unwrap_or_default();
+    let Ok(removals) = deltaq::removals(scene) else { return Ok(None) };
     let mut least: Option<(f64, String)> = None;
     for removal in removals {
         if let Some(left) = left_by(scene, &removal, instants)?
