@@ -6,7 +6,9 @@ them. The action is the sum of the S-point Gauss rule (order 2 S), and the const
     vakonomic           sum_c w_c [ L(q, q', t) + mu_c . f(q, q', t) ]             stationary in q and mu; q(t0), q(t1) fixed
     removed constraint  sum_c w_c [ L(u', u, w, t) + P_c . (B(u', u, w, t) - w') ]  stationary in u, w and P; u(t0), u(t1), w(t0) fixed, w(t1) free
 
-Newton's method with CasADi's exact Hessian of that sum, from a guess that is wrong by some hundredths. The multipliers between the Gauss points are those of
+Where forces act, the sum of w_c Q_c . delta q_c is added to the change of that sum, and both together vanish.
+
+Newton's method with CasADi's exact Jacobian of the change, from a guess that is wrong by some hundredths. The multipliers between the Gauss points are those of
 the polynomial of degree S - 1 through the values of their interval. Removals whose B or L contains u'' are left to the other comparisons.
 """
 
@@ -41,16 +43,15 @@ def points():
 
 
 def problem(scene, case):
-    """(x tags, lambda tags, integrand(t, x, x', multipliers), function of x that gives q, tags free at the end)."""
-    if scene.forces:
-        raise ValueError("forces are left to the other comparisons: the discretized action has no virtual work in it")
+    """(x tags, lambda tags, [integrand, Q . q_(x, x', m)] (t, x, x', multipliers), function of x that gives q, tags free at the end)."""
     n, h = len(scene.coordinates), len(scene.constraints)
     t, multiplier = ca.SX.sym("t"), None
     if case["formulation"] == "vakonomic":
         q, v, multiplier = ca.SX.sym("q", n), ca.SX.sym("v", n), ca.SX.sym("mu", h)
-        lagrangian, f, _ = system(scene, q, v, t)
+        lagrangian, f, forces = system(scene, q, v, t)
         integrand = lagrangian + (ca.dot(multiplier, f) if h else 0)
-        integrand = ca.Function("integrand", [t, q, v, multiplier], [integrand])
+        work = ca.vertcat(forces, ca.SX.zeros(n + h))
+        integrand = ca.Function("integrand", [t, q, v, multiplier], [integrand, work])
         tags = [("q", x) for x in scene.coordinates]
         return tags, [("mu", str(i + 1)) for i in range(h)], integrand, ca.Function("q", [t, q], [q]), []
     s = Substitution(scene, case["removal"])
@@ -63,14 +64,16 @@ def problem(scene, case):
     free = [("w", name) for name in s.memory]
     tags = [("u", name) for name in s.parameters] + free
     costates = [("P", name) for name in s.memory]
-    integrand = ca.Function("integrand", [s.t, x, dx, costate], [integrand])
+    # a removal may have q depend on u', and then on delta u'
+    work = ca.mtimes(ca.jacobian(s.q, ca.vertcat(x, dx, costate)).T, s.forces)
+    integrand = ca.Function("integrand", [s.t, x, dx, costate], [integrand, work])
     return tags, costates, integrand, ca.Function("q", [s.t, x], [s.q]), free
 
 
 class Action:
     """The discretized action with its constraints; unknowns are the nodes (d x (N S + 1)) and the multipliers (k x N S), column after column.
 
-    Gradient and Hessian are CasADi's at every Gauss point, in (x, x', m), and carried over to the unknowns by the chain rule: x = V nodes, x' = D nodes.
+    Its change with the virtual work, and that change's Jacobian, are CasADi's at every Gauss point, in (x, x', m), and carried over to the unknowns by the chain rule: x = V nodes, x' = D nodes.
     """
 
     def __init__(self, integrand, d, k, times, intervals):
@@ -82,13 +85,14 @@ class Action:
         self.weights = np.tile(weights, intervals) * self.length
         self.times = times[0] + (np.arange(intervals)[:, None] + gauss[None, :]).ravel() * self.length
         t, z = ca.SX.sym("t"), ca.SX.sym("z", 2 * d + k)
-        hessian, gradient = ca.hessian(integrand(t, z[:d], z[d : 2 * d], z[2 * d :]), z)
-        self.local = ca.Function("local", [t, z], [ca.densify(hessian), ca.densify(gradient)]).map(len(self.times))
+        value, work = integrand(t, z[:d], z[d : 2 * d], z[2 * d :])
+        change = ca.gradient(value, z) + work
+        self.local = ca.Function("local", [t, z], [ca.densify(ca.jacobian(change, z)), ca.densify(change)]).map(len(self.times))
         self.nodes = d * (intervals * S + 1)
         self.size = self.nodes + k * intervals * S
 
     def evaluate(self, unknowns):
-        """Hessian (size x size) and gradient (size) at `unknowns` (size)."""
+        """The change (size) at `unknowns` (size), and its Jacobian (size x size) before it."""
         d, k, count = self.d, self.k, self.intervals * S
         nodes = unknowns[: self.nodes].reshape(-1, d).T
         at = np.empty((2 * d + k, count))
@@ -96,8 +100,8 @@ class Action:
             local, part = nodes[:, i * S : (i + 1) * S + 1], slice(i * S, (i + 1) * S)
             at[:d, part], at[d : 2 * d, part] = local @ self.values.T, local @ self.slopes.T
         at[2 * d :] = unknowns[self.nodes :].reshape(-1, k).T if k else 0.0
-        local_hessian, local_gradient = (np.array(x) for x in self.local(self.times.reshape(1, -1), at))
-        hessian, gradient = np.zeros((self.size, self.size)), np.zeros(self.size)
+        local_jacobian, local_change = (np.array(x) for x in self.local(self.times.reshape(1, -1), at))
+        jacobian, total = np.zeros((self.size, self.size)), np.zeros(self.size)
         for p in range(count):
             i, c = divmod(p, S)
             # (x, x', m) at this point from the nodes of the interval and its own multipliers
@@ -107,18 +111,18 @@ class Action:
             chain[2 * d :, d * (S + 1) :] = np.eye(k)
             first = i * S * d
             places = np.concatenate([np.arange(first, first + d * (S + 1)), self.nodes + p * k + np.arange(k)])
-            block = local_hessian[:, p * (2 * d + k) : (p + 1) * (2 * d + k)]
-            hessian[np.ix_(places, places)] += self.weights[p] * (chain.T @ block @ chain)
-            gradient[places] += self.weights[p] * (chain.T @ local_gradient[:, p])
-        return hessian, gradient
+            block = local_jacobian[:, p * (2 * d + k) : (p + 1) * (2 * d + k)]
+            jacobian[np.ix_(places, places)] += self.weights[p] * (chain.T @ block @ chain)
+            total[places] += self.weights[p] * (chain.T @ local_change[:, p])
+        return jacobian, total
 
 
 def newton(action, unknowns, free):
     """Stationary values of the unknowns at the places `free`; (values of all, steps)."""
     relative = np.inf
     for step in range(NEWTON_STEPS):
-        hessian, gradient = action.evaluate(unknowns)
-        change = -np.linalg.solve(hessian[np.ix_(free, free)], gradient[free])
+        jacobian, total = action.evaluate(unknowns)
+        change = -np.linalg.solve(jacobian[np.ix_(free, free)], total[free])
         unknowns[free] += change
         previous, relative = relative, np.abs(change).max() / max(1.0, np.abs(unknowns).max())
         if relative < 1e-13 or (relative < 1e-9 and relative >= previous):

@@ -162,12 +162,19 @@ pub fn built_in(name: &str, amount: Amount) -> Result<Question> {
     Ok(question)
 }
 
-/// The right-hand sides of a scene in which forces act.
+/// The right-hand sides of a scene in which forces act, and its motions where the built-in scene's action is
+/// discretized.
 ///
 /// # Errors
 /// Where the text is no scene, or a rate of ours cannot be evaluated.
 pub fn pushed(name: &str, text: &str, states: usize) -> Result<Question> {
-    Question::new(&Scene::parse(name, text)?, text, Amount { states, times: 0 })
+    let scene = Scene::parse(name, text)?;
+    let question = Question::new(&scene, text, Amount { states, times: 0 })?;
+    match TRANSCRIBED.iter().find(|(scene, ..)| name.strip_suffix(forced::SUFFIX) == Some(scene)) {
+        // with forces the sledge comes to the end of a chart within its horizon
+        Some((_, horizon, intervals)) => question.with_transcription(&scene, horizon / 2.0, *intervals),
+        None => Ok(question),
+    }
 }
 
 /// The right-hand sides of a random system.

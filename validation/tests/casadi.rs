@@ -44,6 +44,9 @@ fn the_referee_agrees_where_forces_act_in_every_formulation() {
     let worst = derived().filter_map(|row| row.largest).fold(0.0, f64::max);
     println!("{} comparisons of rates, largest difference {worst:.1e}", derived().count());
     assert!(worst < 1e-12, "{worst:.1e}");
+    // four vakonomic curves with their multipliers, and those of removals
+    let transcribed = rows.iter().filter(|row| row.who == "transcription").count();
+    assert!(transcribed >= 14, "{rows:?}");
     for (scene, _) in &scenes {
         for formulation in ["Chetaev", "vakonomic", "removed constraint"] {
             let named = |row: &&Row| row.scene == scene.name && row.what.starts_with(formulation);

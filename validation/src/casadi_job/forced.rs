@@ -55,11 +55,14 @@ constants = "zero"
 duration = 1
 "#;
 
+/// What the names of such scenes end with.
+pub(super) const SUFFIX: &str = " with forces";
+
 /// Names and texts of scenes in which forces act.
 pub fn forced() -> Vec<(String, String)> {
     let pushed = FORCED.iter().map(|(name, forces)| {
         let text = catalogue::text_of(name).unwrap_or_default();
-        (format!("{name} with forces"), format!("{text}\n[system.forces]\n{forces}\n"))
+        (format!("{name}{SUFFIX}"), format!("{text}\n[system.forces]\n{forces}\n"))
     });
-    pushed.chain([("by-rate with forces".to_string(), BY_RATE.to_string())]).collect()
+    pushed.chain([(format!("by-rate{SUFFIX}"), BY_RATE.to_string())]).collect()
 }
