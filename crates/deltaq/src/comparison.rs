@@ -258,4 +258,18 @@ mod tests {
         let found = |i: usize| comparison.fits[i].fitted.as_ref().map(|f| (f.constants[0].1, f.gap.largest));
         assert_eq!((found(0), found(1)), (Some((0.625, 0.5 * own.largest)), Some((0.0, own.largest))));
     }
+
+    /// A gap of nothing, which no search comes under.
+    #[test]
+    fn a_fit_ends_with_what_comes_closer() {
+        let scene = Scene::parse("sledge", include_str!("../../scene/sledge.toml")).expect("a scene");
+        let all = choices(&scene);
+        let settings = Settings::default();
+        let mut comparison = compare_unfitted(scene, all, Vec::new(), &settings).expect("a comparison");
+        comparison.pairs.iter_mut().for_each(|pair| pair.gap.largest = 0.0);
+        comparison.fit(Fits::All, &settings).expect("fits");
+        let fitted = comparison.fits.iter().filter_map(|fit| fit.fitted.as_ref());
+        let gaps: Vec<f64> = fitted.map(|found| found.gap.largest).collect();
+        assert!(!gaps.is_empty() && gaps.iter().all(|gap| *gap == 0.0), "{gaps:?}");
+    }
 }

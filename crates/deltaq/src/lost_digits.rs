@@ -23,6 +23,9 @@ pub(crate) const ROUNDED: f64 = 0.5 * f64::EPSILON;
 /// Time, states, and what is added up to their rates.
 pub(crate) type Looked = (f64, Vec<f64>, Vec<f64>);
 
+/// Rates at a time, of states near those of the motion there: whether they have values.
+pub(crate) type Rates<'a> = dyn FnMut(f64, &[f64], &mut [f64]) -> bool + 'a;
+
 /// What round-off of the rates comes to.
 pub(crate) enum RoundOff {
     /// No more than the runs differ by, or numbers are rounded by.
@@ -41,21 +44,24 @@ pub(crate) fn largest(looked: &[Looked], mut sizes: Vec<f64>) -> Vec<f64> {
     sizes
 }
 
-/// Numbers of terms as they count: an infinite slope tells nothing.
-pub(crate) fn finite(mut terms: Vec<f64>) -> Vec<f64> {
+/// What there is at an instant, if that can be told. An infinite slope tells nothing.
+pub(crate) fn look(compiled: &mut Compiled, t: f64, y: &[f64]) -> Option<Looked> {
+    let mut terms = compiled.terms_of_rates(t, y).ok()?;
     terms.iter_mut().filter(|x| !x.is_finite()).for_each(|x| *x = 0.0);
-    terms
+    Some((t, y.to_vec(), terms))
 }
 
 /// `−∂ẏ_i/∂y_i` in the direction of time at an instant, where it is positive and no round-off, or else 0.
-fn decay(compiled: &mut Compiled, direction: f64, (t, y, terms): &Looked, sizes: &[f64]) -> Option<Vec<f64>> {
+fn decay(rates: &mut Rates, direction: f64, (t, y, terms): &Looked, sizes: &[f64]) -> Option<Vec<f64>> {
     let (mut here, mut there) = (vec![0.0; y.len()], vec![0.0; y.len()]);
-    compiled.rates(*t, y, &mut here).ok()?;
+    if !rates(*t, y, &mut here) {
+        return None;
+    }
     let mut decay = vec![0.0; y.len()];
     for i in 0..y.len() {
         let (step, mut moved) = (f64::EPSILON.sqrt() * sizes[i].max(y[i].abs()), y.to_vec());
         moved[i] += step;
-        if compiled.rates(*t, &moved, &mut there).is_ok() {
+        if rates(*t, &moved, &mut there) {
             let change = direction * (here[i] - there[i]);
             decay[i] = if change > 16.0 * f64::EPSILON * terms[i] { change / step } else { 0.0 };
         }
@@ -115,7 +121,7 @@ pub(crate) fn is_small(looked: &[Looked], looser: &[Vec<f64>], sizes: &[f64], be
 /// the names and sizes of states. A doubt begins where it is no small part of a state. What cannot be
 /// evaluated is another matter.
 pub(crate) fn round_off(
-    compiled: &mut Compiled,
+    rates: &mut Rates,
     names: &dyn Fn() -> Vec<String>,
     looked: &[Looked],
     looser: &[Vec<f64>],
@@ -127,7 +133,7 @@ pub(crate) fn round_off(
     let (mut sums, mut over) = (Sums::new(sizes.len()), vec![false; sizes.len()]);
     for (pair, looser) in stretches(looked, looser) {
         let [(before, ..), second] = pair;
-        let Some(decay) = decay(compiled, (second.0 - before).signum(), second, sizes) else { break };
+        let Some(decay) = decay(rates, (second.0 - before).signum(), second, sizes) else { break };
         sums.add(pair, looser, &decay);
         for i in sums.over(sizes) {
             over[i] = true;
@@ -143,19 +149,19 @@ pub(crate) fn round_off(
             }
         }
     }
-    if over.contains(&true) { RoundOff::Counts(disturbance(compiled, looked, looser, &over)) } else { RoundOff::Small }
+    if over.contains(&true) { RoundOff::Counts(disturbance(rates, looked, looser, &over)) } else { RoundOff::Small }
 }
 
 /// `d`, then `η`: the mean round-off of rates up to some instant, where that is largest, in the direction of
 /// the way that a state goes by its rate, and as a part of the largest rate; of states whose round-off
 /// counts. All of one sign: that in which the looser run is apart from the kept one.
-fn disturbance(compiled: &mut Compiled, looked: &[Looked], looser: &[Vec<f64>], counts: &[bool]) -> Vec<f64> {
+fn disturbance(rates_at: &mut Rates, looked: &[Looked], looser: &[Vec<f64>], counts: &[bool]) -> Vec<f64> {
     let zeros = vec![0.0_f64; counts.len()];
     let [mut sums, mut means, mut way, mut farthest] = [(); 4].map(|()| zeros.clone());
     let [mut largest, mut apart, mut rates] = [(); 3].map(|()| zeros.clone());
     for (pair, looser) in stretches(looked, looser) {
         let [(before, here, first), (t, y, terms)] = pair;
-        if compiled.rates(*t, y, &mut rates).is_err() {
+        if !rates_at(*t, y, &mut rates) {
             rates.fill(0.0);
         }
         for i in 0..counts.len() {
@@ -216,17 +222,40 @@ mod tests {
         assert_eq!(largest(&looked, vec![1.0; 2]), [3.0, 1.0]);
     }
 
+    /// A particle at speed 2 under this force, at these times, places and with so much added up to a rate;
+    /// the looser run is this much apart from the second instant on.
+    fn of_a_motion(force: &str, looked: [[f64; 3]; 3], apart: f64) -> RoundOff {
+        let text = format!(
+            "title = \"free\"\n[coordinates]\nx = {{ start = 0 }}\n[system]\nlagrangian = \"x'^2/2\"\n\
+             forces = {{ x = \"{force}\" }}\n[start.velocities]\n\"x'\" = 2\n[run]\nduration = 2\n"
+        );
+        let scene = Scene::parse("free", &text).unwrap_or_else(|e| panic!("{e}"));
+        let equations = derive_at(&scene.system, &scene.start, &choices(&scene)[0]).expect("equations");
+        let mut compiled = Compiled::new(&equations).expect("compiled");
+        let own = usize::from(force != "0");
+        let terms = |terms: f64| if own == 0 { vec![terms, 0.0] } else { vec![0.0, terms] };
+        let states: Vec<Looked> = looked.map(|[t, x, added]| (t, vec![x, 2.0], terms(added))).into();
+        let mut looser: Vec<Vec<f64>> = states.iter().map(|(_, y, _)| y.clone()).collect();
+        looser.iter_mut().skip(1).for_each(|y| y[own] += apart);
+        let mut rates = |t: f64, y: &[f64], rates: &mut [f64]| compiled.rates(t, y, rates).is_ok();
+        round_off(&mut rates, &|| names_of_states(&equations), &states, &looser, &[1.0, 2.0])
+    }
+
     /// A free particle at speed 2, where this much is added up to the rate of its place in each of two times
     /// 1, and the looser run is this much apart at the end of both.
     fn of_a_particle(terms: f64, apart: f64) -> RoundOff {
-        let text = "title = \"free\"\n[coordinates]\nx = { start = 0 }\n[system]\nlagrangian = \"x'^2/2\"\n\
-                    [start.velocities]\n\"x'\" = 2\n[run]\nduration = 2\n";
-        let scene = Scene::parse("free", text).unwrap_or_else(|e| panic!("{e}"));
-        let equations = derive_at(&scene.system, &scene.start, &choices(&scene)[0]).expect("equations");
-        let mut compiled = Compiled::new(&equations).expect("compiled");
-        let looked = [0.0, 1.0, 2.0].map(|t| (t, vec![2.0 * t, 2.0], vec![terms, 0.0]));
-        let looser = [0.0, 1.0, 2.0].map(|t| vec![2.0 * t + if t > 0.0 { apart } else { 0.0 }, 2.0]);
-        round_off(&mut compiled, &|| names_of_states(&equations), &looked, &looser, &[1.0, 2.0])
+        of_a_motion("0", [0.0, 1.0, 2.0].map(|t| [t, 2.0 * t, terms]), apart)
+    }
+
+    /// `d` and `η` of the place.
+    fn of_the_place(looked: [[f64; 3]; 3], apart: f64) -> [f64; 2] {
+        let RoundOff::Counts(found) = of_a_motion("0", looked, apart) else { panic!("{looked:?}") };
+        [found[0], found[2]]
+    }
+
+    fn assert_near(found: [f64; 2], known: [f64; 2]) {
+        let near = found.iter().zip(known).all(|(found, known)| (found - known).abs() <= 1e-12 * known.abs());
+        assert!(near, "{found:?}, {known:?}");
     }
 
     #[test]
@@ -252,5 +281,40 @@ mod tests {
                 assert!((found - known).abs() <= 1e-12 * known.abs(), "{found:e}, {known:e}");
             }
         }
+    }
+
+    /// Backwards, a rate of 2 goes to the other side, and the looser run is where a rate of `−d` brings it.
+    #[test]
+    fn what_counts_backwards_goes_to_the_side_of_the_looser_run() {
+        let d = 0.5 * EPS * 1e8;
+        let found = of_the_place([2.0, 1.0, 0.0].map(|t| [t, 2.0 * t, 1e8]), 1e-9);
+        assert_near(found, [-d, -0.5 * d]);
+    }
+
+    #[test]
+    fn what_counts_is_the_largest_mean_and_a_part_of_the_largest_rate() {
+        let d = 0.5 * EPS * 1e8;
+        // nothing is added up at last
+        let found = of_the_place([[0.0, 0.0, 1e8], [1.0, 2.0, 1e8], [2.0, 4.0, 0.0]], 1e-9);
+        assert_near(found, [d, 0.5 * d]);
+        // a pulse of 6 between two instants
+        let found = of_the_place([[0.0, 0.0, 1e8], [1.0, 6.0, 1e8], [2.0, 8.0, 1e8]], 1e-9);
+        assert_near(found, [d, d / 6.0]);
+    }
+
+    /// `v' = −λ v` holds `ε s/λ` of what is added up, and backwards all of it: `2 ε s`.
+    #[test]
+    fn what_decays_is_held_for_a_while_and_only_forwards() {
+        const RATE: f64 = 50.0;
+        let drag = format!("-{RATE}*x'");
+        let of = |times: [f64; 3], terms: f64| of_a_motion(&drag, times.map(|t| [t, 0.0, terms]), 0.0);
+        let forwards = |terms: f64| of([0.0, 1.0, 2.0], terms);
+        let limit = 2.0 * 256.0 * RATE;
+        assert!(
+            matches!(forwards(0.98 * limit), RoundOff::Small) && matches!(forwards(1.02 * limit), RoundOff::Counts(_))
+        );
+        assert!(matches!(of([2.0, 1.0, 0.0], 0.1 * limit), RoundOff::Counts(_)));
+        // a slope that is lost in round-off is no decay: 2 ε s is over a millionth of 2
+        assert!(matches!(forwards(5e9), RoundOff::Doubted(_)));
     }
 }

@@ -144,26 +144,25 @@ impl Motion {
     }
 
     /// The states at `t` and how much is added up to their rates, where that can be told.
-    pub(crate) fn terms_of_rates(&mut self, t: f64) -> Option<(Vec<f64>, Vec<f64>)> {
+    pub(crate) fn look(&mut self, t: f64) -> Option<Looked> {
         let y = self.states_at(t).ok()?;
-        let terms = self.compiled.terms_of_rates(t, &y).ok()?;
-        Some((y, terms))
+        lost_digits::look(&mut self.compiled, t, &y)
     }
 
     /// [`lost_digits::round_off`] of this motion.
     pub(crate) fn round_off(&mut self, looked: &[Looked], looser: &[Vec<f64>], sizes: &[f64]) -> RoundOff {
-        let names = || lost_digits::names_of_states(&self.equations);
-        lost_digits::round_off(&mut self.compiled, &names, looked, looser, sizes)
+        let Motion { equations, compiled, kept, .. } = self;
+        let names = || lost_digits::names_of_states(equations);
+        // a state that was read off has the root of the motion behind it
+        let mut rates = |t: f64, y: &[f64], rates: &mut [f64]| {
+            kept.state(compiled, t).is_ok() && compiled.rates(t, y, rates).is_ok()
+        };
+        lost_digits::round_off(&mut rates, &names, looked, looser, sizes)
     }
 
     /// The states of the looser run.
     pub(crate) fn looser_state(&mut self, t: f64) -> Option<Vec<f64>> {
         self.looser.state(&mut self.compiled, t).ok()
-    }
-
-    /// The sizes by which states were integrated.
-    pub(crate) fn sizes_of_states(&self) -> Vec<f64> {
-        self.kept.sizes().to_vec()
     }
 
     /// How much is added up to each multiplier at `t` since the time `begin`, where that can be told.

@@ -4,7 +4,7 @@ use integrate::Options;
 
 use crate::charts::{self, Course};
 use crate::disturbed::disturbed;
-use crate::lost_digits::{Looked, RoundOff, finite, is_small, largest};
+use crate::lost_digits::{Looked, RoundOff, is_small, largest};
 use crate::trajectory::Trajectory;
 use crate::{Motion, Prepared, Setting, Settings, SolveError};
 
@@ -110,12 +110,12 @@ impl Motion {
         let (start, part) = (self.start(), if self.is_complete() { 1.0 } else { BEFORE_THE_END });
         let times = self.grid(stretches).into_iter().map(|t| self.kept_before(start + part * (t - start)));
         let times: Vec<f64> = times.collect();
-        times.into_iter().map_while(|t| self.terms_of_rates(t).map(|(y, terms)| (t, y, finite(terms)))).collect()
+        times.into_iter().map_while(|t| self.look(t)).collect()
     }
 
     /// The largest value of each state, or the size by which it was integrated, if that is more.
     fn sizes_of(&self, looked: &[Looked]) -> Vec<f64> {
-        let mut sizes = self.sizes_of_states();
+        let mut sizes = self.kept.sizes().to_vec();
         sizes.resize(self.equations.states.len(), 0.0);
         largest(looked, sizes)
     }
@@ -174,5 +174,18 @@ mod tests {
         assert_eq!(motion.difference_of_runs(2.0).expect("the end")[0], apart);
         motion.replace_looser(motion.kept.clone());
         assert_eq!(motion.difference_of_runs(2.0).expect("the end")[0], 0.0);
+    }
+
+    /// Of a motion that stops at 2, one to 1.9 is nearly all, and no other reading comes farther.
+    #[test]
+    fn where_a_motion_stops_a_looser_run_may_stop_a_little_earlier() {
+        for (reached, end) in [(1.9, 1.9), (1.7, 2.0)] {
+            let mut motion = particle(1.0, 0.7, 2.0);
+            motion.stop_at(2.0, "a stop".into());
+            let apart = motion.difference_of_runs(1.0).expect("in range")[0];
+            motion.replace_looser(particle(1.0, 0.7, reached).kept);
+            assert_eq!(motion.end(), end);
+            assert_eq!(motion.difference_of_runs(1.0).expect("in range")[0] == apart, reached == 1.7);
+        }
     }
 }

@@ -136,3 +136,23 @@ fn natural_constants_are_found_beyond_the_end_of_a_chart() {
         }
     }
 }
+
+/// Heading `0.3 + 1.1 t`: at the middle instant it is so near 90° that terms of the first chart, which is
+/// left before, are large there. They are none of the motion.
+#[test]
+fn terms_of_a_chart_that_was_left_are_no_round_off() {
+    let middle = (std::f64::consts::FRAC_PI_2 - 0.3) / 1.1;
+    for off in [1e-3, 1e-5, 1e-7] {
+        let text = format!(
+            "title = \"sledge\"\n[coordinates]\nx = {{ start = 0 }}\ny = {{ start = 0 }}\nphi = {{ start = 0.3 }}\n\
+             [system]\nlagrangian = \"(x'^2 + y'^2 + phi'^2)/2\"\nconstraints = [\"y'*cos(phi) - x'*sin(phi)\"]\n\
+             [start]\nvelocities = {{ \"x'\" = 0.6, \"phi'\" = 1.1 }}\n[run]\nduration = {:?}\n",
+            2.0 * middle * (1.0 + off)
+        );
+        let scene = read(&text, &[]);
+        let choice = Choice { constants: ConstantsRule::Given(vec![0.0]), ..removed(&scene) };
+        let motion = solve_choice(&scene, &choice, &Settings::default()).expect("a motion");
+        assert!(motion.is_complete() && motion.charts.len() == 1, "{off}: {:?}", motion.ending);
+        assert_eq!(motion.doubt, None, "{off}");
+    }
+}

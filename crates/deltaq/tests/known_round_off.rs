@@ -34,7 +34,7 @@ fn member(scene: &Scene, parts: &[f64]) -> MemberMotion {
     motions.remove(0).expect("a motion")
 }
 
-/// What the runs are apart by in the velocity at the end, single and as a member.
+/// What the runs are apart by in the velocity at the end, kept minus looser, single and as a member.
 fn apart(scene: &Scene) -> [f64; 2] {
     let mut single = motion(scene);
     let (kept, looser) = single.at_in_both_runs(single.end()).expect("the end");
@@ -46,7 +46,7 @@ fn apart(scene: &Scene) -> [f64; 2] {
         let off = |i: usize| (states[i] - kept.velocities[0]).abs();
         off(i).total_cmp(&off(j))
     });
-    [(kept.velocities[0] - looser.velocities[0]).abs(), differences[speed.expect("two states")].abs()]
+    [kept.velocities[0] - looser.velocities[0], differences[speed.expect("two states")]]
 }
 
 /// Half a last digit of `2A` is `A ε`, which the rate has as far as the sum in which it stands has digits.
@@ -55,7 +55,9 @@ fn round_off_counts_from_256_last_digits_on_and_half_of_it_is_put_in() {
     for (a, counts) in [(50.0, false), (80.0, true), (750.0, true)] {
         // 4A is added up
         let scene = particle(&format!("{a:?} - {a:?}*cos(1e-14*x)"), 1.0, 2.0);
-        for found in apart(&scene).map(|apart| apart / EPS) {
+        let apart = apart(&scene);
+        assert!(apart[0] * apart[1] > 0.0, "{a}: to either side, {apart:?}");
+        for found in apart.map(|apart| apart.abs() / EPS) {
             let known = if counts { 2.0 * a } else { 0.0 };
             assert!((0.6 * known..known + 16.0).contains(&found), "{a}: {found:.0} last digits");
         }

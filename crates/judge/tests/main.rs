@@ -1,4 +1,5 @@
-//! Motions with secret numbers, made by code that shares nothing with the regression.
+//! Motions with secret numbers, made by code that shares nothing with the regression; tables and orders.
 
 mod by_hand;
 mod made;
+mod tables;

@@ -172,10 +172,14 @@ fn what_moves_is_said_with_its_rate_and_the_limit() {
     assert!((1e-9..1e-8).contains(limit), "{limit}");
     assert!(error.to_string().contains("x'' = -2"), "{error}");
     // at an instant: the same matrix, for the equations are linear
-    let frozen = linearize_at(setting(&oscillator(0.5)), &choice(&oscillator(0.5), CHETAEV), 0.7, &Settings::default());
-    let frozen = frozen.expect("runs");
-    assert!(!frozen.is_steady && (frozen.values[0] - 0.5 * 1.4_f64.cos()).abs() < 1e-9, "{frozen:?}");
-    assert_eq!(frozen.matrix, dmatrix![0.0, 1.0; -4.0, 0.0]);
+    // and one after the end of the run is reached, too
+    let swings = oscillator(0.5);
+    for t in [0.7_f64, 3.0] {
+        let frozen = linearize_at(setting(&swings), &choice(&swings, CHETAEV), t, &Settings::default());
+        let frozen = frozen.expect("runs");
+        assert!(!frozen.is_steady && (frozen.values[0] - 0.5 * (2.0 * t).cos()).abs() < 1e-9, "{frozen:?}");
+        assert_eq!(frozen.matrix, dmatrix![0.0, 1.0; -4.0, 0.0]);
+    }
 }
 
 #[test]

@@ -10,5 +10,6 @@ mod falsified;
 mod forms;
 mod generator;
 mod invariants;
+mod limits;
 mod once_wrong;
 mod support;

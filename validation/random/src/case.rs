@@ -300,9 +300,7 @@ fn solve(
 ) -> Result<Motion, SolveError> {
     let rule = ConstantsRule::Given(constants.to_vec());
     let mut best: Option<Motion> = None;
-    let allowed =
-        |tolerance: &f64| tolerance * TIGHTER >= FLOOR * floor || *tolerance == TOLERANCES[TOLERANCES.len() - 1];
-    for tolerance in TOLERANCES.into_iter().filter(allowed) {
+    for tolerance in tolerances(floor) {
         let settings = Settings { tolerance, max_steps: MAX_STEPS, plain, ..Settings::default() };
         let motion = deltaq::solve(setting, equations.clone(), &rule, &settings)?;
         if motion.is_complete() {
@@ -316,6 +314,13 @@ fn solve(
         Some(motion) => Ok(motion),
         None => unreachable!("there is a tolerance"),
     }
+}
+
+/// Those of [`TOLERANCES`] that a floor allows, sharp ones first; the last one always.
+fn tolerances(floor: f64) -> impl Iterator<Item = f64> {
+    let is_allowed =
+        move |tolerance: &f64| tolerance * TIGHTER >= FLOOR * floor || *tolerance == TOLERANCES[TOLERANCES.len() - 1];
+    TOLERANCES.into_iter().filter(is_allowed)
 }
 
 /// `10² ε κ` with the condition `κ` of the saddle-point matrix `[𝓛_vv Aᵀ; A 0]` at the start: data with
@@ -356,3 +361,6 @@ fn finding(theorem: u8, claim: &'static str, gap: &Gap, floor: f64) -> Finding {
     };
     Finding { theorem, claim, word, figure: gap.largest, limit, note }
 }
+
+#[cfg(test)]
+mod tests;

@@ -5,7 +5,7 @@ use equations::{Compiled, Named, Outputs};
 use super::{Ensemble, EnsembleMember, EnsembleOptions, MemberRun};
 use crate::error_estimate::Differences;
 use crate::last_digits::terms_of_invariants;
-use crate::lost_digits::{self, Looked, RoundOff, finite, largest};
+use crate::lost_digits::{self, Looked, RoundOff, largest};
 use crate::metric::subtract;
 use crate::round_off::BEFORE_THE_END;
 use crate::single_run::outputs;
@@ -113,9 +113,7 @@ impl Reader<'_> {
     }
 
     fn at(&mut self, run: &MemberRun, i: usize, t: f64, y: &[f64]) -> Result<Outputs, SolveError> {
-        if let Some(unknowns) = run.unknowns.get(i) {
-            self.compiled.set_guess(unknowns);
-        }
+        run.unknowns.get(i).into_iter().for_each(|unknowns| self.compiled.set_guess(unknowns));
         outputs(&mut self.compiled, t, y)
     }
 
@@ -144,7 +142,7 @@ impl Reader<'_> {
         };
         let length = (reached - member.t).abs();
         let count = self.instants.iter().take_while(|(t, _)| (t - member.t).abs() <= length).count();
-        let count = count.min(run.states.len()).min(run.differences.len());
+        let count = count.min(run.states.len());
         let mut places: Vec<usize> =
             (1..=LOOKED).map(|k| k * count / LOOKED).filter(|&i| i > 0).map(|i| i - 1).collect();
         places.dedup();
@@ -157,7 +155,12 @@ impl Reader<'_> {
         let sizes = sized(&mut self.compiled, &mut self.metric, member, sizes);
         let sizes = largest(&looked, sizes.to_vec());
         let names = || self.states.clone();
-        lost_digits::round_off(&mut self.compiled, &names, &looked, &looser, &sizes)
+        let (compiled, instants) = (&mut self.compiled, self.instants);
+        let mut rates = |t: f64, y: &[f64], rates: &mut [f64]| {
+            set_root(compiled, member, run, instants.iter().position(|(instant, _)| *instant == t));
+            compiled.rates(t, y, rates).is_ok()
+        };
+        lost_digits::round_off(&mut rates, &names, &looked, &looser, &sizes)
     }
 
     /// The start and these instants, as far as it can be told what is added up to rates there.
@@ -171,13 +174,19 @@ impl Reader<'_> {
         let all = std::iter::once(None).chain(instants);
         all.map_while(|i| {
             let (t, y) = i.map_or((member.t, &member.y), |i| (self.instants[i].0, &run.states[i]));
-            if let Some(unknowns) = i.and_then(|i| run.unknowns.get(i)) {
-                self.compiled.set_guess(unknowns);
-            }
-            let terms = self.compiled.terms_of_rates(t, y).ok()?;
-            Some((t, y.clone(), finite(terms)))
+            set_root(&mut self.compiled, member, run, i);
+            lost_digits::look(&mut self.compiled, t, y)
         })
         .collect()
+    }
+}
+
+/// Equations of the instant that have several roots start from that of the motion at an instant, or of its
+/// start.
+fn set_root(compiled: &mut Compiled, member: &EnsembleMember, run: &MemberRun, instant: Option<usize>) {
+    match instant {
+        None => member.set(compiled),
+        Some(i) => run.unknowns.get(i).into_iter().for_each(|unknowns| compiled.set_guess(unknowns)),
     }
 }
 

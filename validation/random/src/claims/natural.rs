@@ -2,11 +2,13 @@
 
 use deltaq::{CERTAINTY, Motion, REMOVED_CONSTRAINT, Setting, Settings, SolveError, TIGHTER, solve};
 use mechanics::{ConstantsRule, Removal};
+use nalgebra::{DMatrix, DVector};
 use symbolic::Expr;
 
 use super::CheckError;
 use crate::Case;
 use crate::derived::{equations, free_constants};
+use crate::realization::numbers;
 
 /// Tolerance of the looser run.
 const TOLERANCE: f64 = 1e-9;
@@ -16,6 +18,10 @@ const MAX_STEPS: usize = 3_000;
 
 /// What the search may leave of a costate, over its size: a thousand times the tolerance of the kept run.
 const LEFT: f64 = 1e3 * TOLERANCE * TIGHTER;
+
+/// A costate under this part of what kinetic energy could make of a momentum is round-off, which no search
+/// makes less.
+const ROUND_OFF: f64 = 1e-13;
 
 /// Instants at which a costate's size is looked at.
 const INSTANTS: usize = 12;
@@ -65,16 +71,43 @@ fn judged(case: &mut Case, setting: Setting, removal: &Removal, planted: bool) -
     };
     case.found.count(0, FOUND, found.is_ok());
     let Ok(mut motion) = found else { return Ok(None) };
-    let (left, limit) = left(&mut motion, &mut run(ConstantsRule::Zero)?)?;
+    let least: Vec<f64> = momenta(setting)?.into_iter().map(|size| ROUND_OFF * size).collect();
+    let (left, limit) = left(&mut motion, &mut run(ConstantsRule::Zero)?, removal, &least)?;
     case.found.bound(0, CLAIM, left, limit);
     Ok(Some(motion))
 }
 
-/// The largest `|P_k|` at the end over its size, the largest along either motion; and what it may be.
-fn left(motion: &mut Motion, from_zero: &mut Motion) -> Result<(f64, f64), SolveError> {
-    let natural: Vec<Expr> = motion.equations.free_constants.iter().filter_map(|constant| constant.natural).collect();
+/// How large a momentum may be for its kinetic energy at the start: `p_i² ≤ M_ii vᵀM v`.
+fn momenta(setting: Setting) -> Result<Vec<f64>, SolveError> {
+    let (system, v) = (setting.system, setting.system.velocities());
+    let (g, n) = (&system.graph, v.len());
+    let mut values = system.parameter_values();
+    values.extend(system.values_at(setting.start));
+    let mass = g.jacobian(&g.gradient(system.lagrangian, &v), &v);
+    let mass = DMatrix::from_row_slice(n, n, &numbers(g, mass.entries(), &values)?);
+    let speed = DVector::from_column_slice(&setting.start.v);
+    let energy = speed.dot(&(&mass * &speed)).abs();
+    Ok((0..n).map(|i| (mass[(i, i)].abs() * energy).sqrt()).collect())
+}
+
+/// The largest `|P_k|` at the end over its size, the largest along either motion; and what it may be. Those
+/// of coordinates that are not larger than `least` do not count.
+fn left(
+    motion: &mut Motion,
+    from_zero: &mut Motion,
+    removal: &Removal,
+    least: &[f64],
+) -> Result<(f64, f64), SolveError> {
+    let constants = motion.equations.free_constants.iter();
+    let natural: Vec<(Expr, f64)> = constants
+        .filter_map(|constant| {
+            let coordinate = constant.memory.and_then(|k| removal.memory[k].coordinate);
+            Some((constant.natural?, coordinate.map_or(0.0, |i| least[i])))
+        })
+        .collect();
+    let of = |e: Expr| natural.iter().find(|(costate, _)| *costate == e).map(|(_, least)| *least);
     let multipliers = motion.equations.multipliers.iter().enumerate();
-    let places: Vec<usize> = multipliers.filter(|(_, m)| natural.contains(&m.expression)).map(|(k, _)| k).collect();
+    let (places, least): (Vec<usize>, Vec<f64>) = multipliers.filter_map(|(k, m)| Some((k, of(m.expression)?))).unzip();
     let mut sizes = vec![0.0_f64; places.len()];
     for motion in [&mut *motion, from_zero] {
         for t in motion.grid(INSTANTS) {
@@ -84,7 +117,7 @@ fn left(motion: &mut Motion, from_zero: &mut Motion) -> Result<(f64, f64), Solve
     }
     let (kept, looser) = motion.at_in_both_runs(motion.end())?;
     let (mut left, mut limit) = (0.0_f64, CERTAINTY * LEFT);
-    for (&k, size) in places.iter().zip(sizes).filter(|(_, size)| *size > 0.0) {
+    for ((&k, size), _) in places.iter().zip(sizes).zip(least).filter(|((_, size), least)| size > least) {
         let (own, other) = (kept.multipliers[k], looser.multipliers[k]);
         left = left.max(own.abs() / size);
         limit = limit.max(CERTAINTY * (LEFT + (own - other).abs() / size));

@@ -1,0 +1,49 @@
+//! Limits that all claims share.
+
+use deltaq::{choices, compare_motions, solve_choice};
+
+use super::*;
+
+/// A particle whose `y` is held, under a push.
+fn particle(push: f64) -> Scene {
+    let text = format!(
+        "title = \"held\"\n[coordinates]\nx = {{ start = 0 }}\ny = {{ start = 0 }}\n[system]\n\
+         lagrangian = \"(x'^2 + y'^2)/2\"\nconstraints = [\"y'\"]\nforces = {{ x = \"{push:?}\" }}\n\
+         [start.velocities]\n\"x'\" = 1\n[run]\nduration = 2\n"
+    );
+    Scene::parse("held", &text).unwrap_or_else(|e| panic!("{text}: {e}"))
+}
+
+/// `[1 0 0; 0 1 1; 0 1 0]` has the singular values 1, φ and 1/φ.
+#[test]
+fn the_floor_is_a_hundred_last_digits_times_the_condition() {
+    let scene = particle(0.0);
+    let ratio = 0.5 * (1.0 + 5_f64.sqrt());
+    let known = 1e2 * f64::EPSILON * ratio * ratio;
+    let found = floor(&scene.system, &scene.start, &scene.multipliers).expect("a floor");
+    assert!((found / known - 1.0).abs() < 1e-12, "{found:e}, {known:e}");
+}
+
+/// A push `p` makes a gap of `p t²/2`: 2 p.
+#[test]
+fn gaps_count_over_the_floor_only() {
+    let [mut one, mut other] = [0.0, 5e-7].map(|push| {
+        let scene = particle(push);
+        solve_choice(&scene, &choices(&scene)[0], &Settings::default()).expect("a motion")
+    });
+    let mut metric = Metric::new(&particle(0.0).system).expect("a metric");
+    let gap = compare_motions(&mut one, &mut other, &mut metric).expect("a gap");
+    for (floor, word) in [(0.0, Word::Fails), (0.5e-6, Word::Fails), (2e-6, Word::Holds)] {
+        let found = finding(1, "same", &gap, floor);
+        assert_eq!(found.word, word, "{floor:e}: {found:?}");
+        assert!((found.figure - 1e-6).abs() < 1e-10, "{found:?}");
+    }
+}
+
+/// The kept run is a hundred times as sharp as its looser one, and no sharper than 10⁻⁶ of the floor.
+#[test]
+fn a_floor_asks_for_less_sharp_runs() {
+    for (floor, sharpest) in [(0.5e-7, 1e-11), (2e-7, 1e-9), (2e-5, 1e-7), (1.0, 1e-7)] {
+        assert_eq!(tolerances(floor).next(), Some(sharpest), "{floor:e}");
+    }
+}
