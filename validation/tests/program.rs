@@ -10,10 +10,14 @@ use crate::support::{all_may_be_left, all_refused, answer, commands, elsewhere, 
 /// Reports of the main job.
 const REPORTS: &str = concat!(env!("CARGO_TARGET_TMPDIR"), "/main-job");
 
+/// Reference motions.
+const TABLES: &str = concat!(env!("CARGO_TARGET_TMPDIR"), "/benchmark");
+
 /// One call of every command, and of none, but of `reports`, which is the whole main job.
-const ANSWERS: [&[&str]; 5] = [
+const ANSWERS: [&[&str]; 6] = [
     &["--scenes", "bowl", "--quiet", "--out", REPORTS],
     &["random", "--count", "1", "--quiet"],
+    &["benchmark", "--systems", "particle", "--starts", "1", "--quiet", "--out", TABLES],
     &["scaling", "--longest", "1", "--repeats", "1", "--quiet"],
     &["stability", "--case", "blow-up", "--quiet"],
     &["--help"],
