@@ -2,6 +2,7 @@
 
 mod connect;
 mod ensemble;
+mod integrals;
 mod judge;
 mod linearize;
 mod range;
@@ -18,6 +19,7 @@ pub use connect::ConnectArguments;
 use deltaq::{Fits, Stepping};
 pub use ensemble::{EnsembleArguments, FreeArguments, Limits, MotionArguments};
 use equations::Formulation;
+pub use integrals::IntegralsArguments;
 pub use judge::JudgeArguments;
 pub use linearize::{LinearizeArguments, TableFormat};
 use program::{Common, Output, TextOrJson, by_name};
@@ -61,6 +63,8 @@ pub enum Command {
     Explore(ExploreArguments),
     /// Prove that no multipliers make a scene's vakonomic motion Chetaev's: a certificate others can check.
     Prove(ProveArguments),
+    /// Decide which invariant measure and first integrals there are: printed, counted, or proved to be none.
+    Integrals(IntegralsArguments),
     /// Say which law a program integrates, from motions that it made: slip, epsilon and drag with errors.
     Judge(JudgeArguments),
     /// Measure error against run time, by every method at every tolerance.

@@ -8,7 +8,7 @@ use crate::support::{all_may_be_left, answer, command, commands, elsewhere, none
 const BAD: &str = concat!(env!("CARGO_TARGET_TMPDIR"), "/bad.toml");
 
 /// One call of every command.
-const ANSWERS: [&[&str]; 17] = [
+const ANSWERS: [&[&str]; 18] = [
     &["new"],
     &["check", "sledge"],
     &["solve", "sledge", "-f", "chetaev", "--times", "0,1"],
@@ -20,6 +20,7 @@ const ANSWERS: [&[&str]; 17] = [
     &["linearize", "bicycle"],
     &["explore", "sledge", "--out", concat!(env!("CARGO_TARGET_TMPDIR"), "/explore.html")],
     &["prove", "sledge", "--out", "-"],
+    &["integrals", "suslov"],
     &["judge", "sledge", concat!(env!("CARGO_MANIFEST_DIR"), "/tests/sledge.csv")],
     &["bench", "bowl", "--set", "duration=0.01", "--seconds", "0.0001", "--quiet"],
     &["completions", "bash"],

@@ -96,7 +96,7 @@ pub struct Flow {
 
 /// Equations whose instants are linear in their unknowns `z`, as programs for numbers of any kind.
 #[derive(Clone)]
-pub(crate) struct Dynamics {
+pub struct Dynamics {
     pub(crate) coordinates: usize,
     pub(crate) states: usize,
     pub(crate) unknowns: usize,
@@ -116,9 +116,11 @@ pub(crate) struct Dynamics {
 }
 
 impl Dynamics {
+    /// Those of `equations`, derived for `system`.
+    ///
     /// # Errors
     /// [`DecisionError::Unsuited`] where unknowns stand nonlinearly or velocities are unknowns.
-    pub(crate) fn new(system: &System, equations: &Equations) -> Result<Self, DecisionError> {
+    pub fn new(system: &System, equations: &Equations) -> Result<Self, DecisionError> {
         let system = &System { graph: equations.graph.clone(), ..system.clone() };
         let g = &system.graph;
         let unsuited =
@@ -183,7 +185,7 @@ impl Dynamics {
 impl Dynamics {
     /// Steps of one evaluation.
     pub(crate) fn steps(&self) -> usize {
-        self.instant.len() + self.rates.len()
+        self.instant.steps() + self.rates.steps()
     }
 }
 

@@ -7,36 +7,42 @@ use std::sync::Arc;
 
 /// A tape whose first inputs are the parameters of a system.
 #[derive(Clone, Debug)]
-pub(crate) struct Program {
+pub struct Program {
     tape: Arc<Tape>,
 }
 
 /// A program with registers for numbers of one kind.
 #[derive(Clone, Debug)]
-pub(crate) struct Evaluator<T> {
+pub struct Evaluator<T> {
     tape: Arc<Tape>,
     registers: Workspace<T>,
     values: Vec<T>,
 }
 
 impl Program {
-    pub(crate) fn new(graph: &Graph, inputs: &[Symbol], outputs: &[Expr]) -> Result<Self, CompileError> {
+    /// A tape for `outputs` from `inputs`, parameters first.
+    ///
+    /// # Errors
+    /// [`CompileError`] for a symbol that is no input.
+    pub fn new(graph: &Graph, inputs: &[Symbol], outputs: &[Expr]) -> Result<Self, CompileError> {
         Ok(Program { tape: Arc::new(graph.compile(inputs, outputs, &HashMap::new())?) })
     }
 
     /// Steps of one evaluation.
-    pub(crate) fn len(&self) -> usize {
+    pub fn steps(&self) -> usize {
         self.tape.len()
     }
 
-    pub(crate) fn evaluator<T: Scalar>(&self) -> Evaluator<T> {
+    /// With registers of its own.
+    pub fn evaluator<T: Scalar>(&self) -> Evaluator<T> {
         let values = vec![T::from_f64(0.0); self.tape.outputs()];
         Evaluator { registers: self.tape.workspace(), values, tape: self.tape.clone() }
     }
 }
 
 impl<T: Scalar> Evaluator<T> {
-    pub(crate) fn run(&mut self, inputs: &[T]) -> &mut [T] {
+    /// The outputs at `inputs`.
+    pub fn run(&mut self, inputs: &[T]) -> &mut [T] {
         self.tape.evaluate(inputs, &mut self.registers, &mut self.values);
         &mut self.values
     }

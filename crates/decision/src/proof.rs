@@ -177,7 +177,7 @@ impl<'a> Question<'a> {
 
     /// Orders that are looked at: `2h + 7`, and as many more as take no second.
     pub(crate) fn orders(&self) -> usize {
-        let work = |orders: usize| (self.dynamics.steps() + self.family.program.len()) * orders.pow(3);
+        let work = |orders: usize| (self.dynamics.steps() + self.family.program.steps()) * orders.pow(3);
         let usual = (2 * self.family.shape.constants + 7).min(MOST);
         (usual..=MOST).rev().find(|&orders| work(orders) <= WORK).unwrap_or(usual)
     }

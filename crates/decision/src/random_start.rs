@@ -29,7 +29,7 @@ fn size(numbers: &[Jet<Modular>], place: usize) -> Jet<Modular> {
 ///
 /// # Errors
 /// Why it does not with the largest.
-pub(crate) fn at_random<T>(
+pub fn at_random<T>(
     start: &ExactStart,
     seed: u64,
     mut compute: impl FnMut(SeriesStart<Modular>) -> Result<T, String>,

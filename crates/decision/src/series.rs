@@ -8,29 +8,42 @@ use crate::family::{CostateRate, Family};
 
 /// Why there are no series.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub(crate) enum NoSeries {
+pub enum NoSeries {
+    /// A number of it has no image.
     #[error("{0}")]
     Flaw(#[from] Flaw),
+    /// A matrix of an instant has the determinant zero.
     #[error("the equations of the {of} are singular at the start")]
-    Singular { of: &'static str },
+    Singular {
+        /// Whose.
+        of: &'static str,
+    },
+    /// A number is missing.
     #[error("the start of `{name}` is not written")]
-    Unwritten { name: String },
+    Unwritten {
+        /// Its name.
+        name: String,
+    },
 }
 
 /// A start in numbers of one kind, with their exact values where they are followed.
 #[derive(Clone, Debug)]
-pub(crate) struct SeriesStart<C> {
-    pub(crate) parameters: Vec<Jet<C>>,
-    pub(crate) time: Jet<C>,
-    pub(crate) positions: Vec<Jet<C>>,
-    pub(crate) velocities: Vec<Jet<C>>,
+pub struct SeriesStart<C> {
+    /// As the system has them.
+    pub parameters: Vec<Jet<C>>,
+    /// `t₀`.
+    pub time: Jet<C>,
+    /// `q₀`.
+    pub positions: Vec<Jet<C>>,
+    /// `v₀`.
+    pub velocities: Vec<Jet<C>>,
 }
 
 /// `q, v, a` along a curve, up to `s^{orders − 1}`, and what was divided by.
 #[derive(Clone, Debug)]
-pub(crate) struct CurveSeries<C> {
+pub struct CurveSeries<C> {
     /// Parameters, `t`, `q`, `v`, `a`: what a family asks for.
-    pub(crate) inputs: Vec<Jet<C>>,
+    pub inputs: Vec<Jet<C>>,
     /// The unknowns of an instant, order by order.
     pub(crate) unknowns: Vec<Vec<C>>,
     /// Determinant of the equations of the first instant.
@@ -95,7 +108,10 @@ impl<C: Coefficient> SeriesSolve<C> {
 
 impl Dynamics {
     /// The solution through `start` with these free constants, `orders` coefficients of it.
-    pub(crate) fn series<C: Coefficient>(
+    ///
+    /// # Errors
+    /// [`NoSeries`]: a number without an image, or equations that are singular there.
+    pub fn series<C: Coefficient>(
         &self,
         start: &SeriesStart<C>,
         constants: &[Jet<C>],

@@ -29,6 +29,7 @@ ANSWERS = {
     "compare": {"compare sledge bowl --set duration=1": 0},
     "prove": {f"prove {scene} --out FOLDER/proof": code for scene, code in {"sledge": 0, "heisenberg": 3, "planar-body": 3}.items()},
     "connect": {"connect heisenberg --to x=0.2,y=0.5,z=1 --starts 8": 0, "connect disc -f chetaev --to psi=3,phi=1 --starts 2": 0},
+    "integrals": {"integrals suslov": 0, "integrals turntable --degree 1": 0, "integrals sledge-with-friction --degree 1": 0},
     "judge": {"judge sledge FOLDER/motion.csv": 0, "judge sledge FOLDER/motion.csv FOLDER/motion.csv FOLDER/motion.csv --set g=5": 3},
     "certificate": {"prove sledge --out -": 0},
     "linearize": {"linearize bicycle --free lean,steer --sweep v=4:5:2": 0, "linearize sledge --at 1": 0},

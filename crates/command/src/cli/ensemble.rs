@@ -39,7 +39,7 @@ pub struct MotionArguments {
 }
 
 /// What the start leaves free.
-#[derive(Args, Debug)]
+#[derive(Args, Default, Debug)]
 pub struct FreeArguments {
     /// Vakonomic multipliers at the start, one per constraint.
     #[arg(long, value_name = "A,B,…", value_delimiter = ',', allow_hyphen_values = true)]

@@ -4,7 +4,7 @@ use std::cell::Cell;
 
 /// A prime `p = 1 + 2 · 720720 r`, under 2^61, in whose field all primes up to 47 have roots.
 #[derive(Debug)]
-pub(crate) struct Field {
+pub struct Field {
     pub(super) number: usize,
     pub(super) prime: u64,
     /// The prime order `r` of the images of `e^{i a}` and `e^a`.
@@ -41,7 +41,7 @@ impl Field {
 }
 
 /// The fields, in the order in which they are tried.
-pub(crate) static FIELDS: [Field; 4] = [
+pub static FIELDS: [Field; 4] = [
     Field::new(0, [PRIME_0, 1_085_488_079_471, 975_884_136_587_877_671, 526_195_852_125_278_733, 59]),
     Field::new(1, [PRIME_1, 1_388_298_279_469, 461_914_068_013_983_121, 202_331_662_873_999_217, 53]),
     Field::new(2, [PRIME_2, 928_303_084_897, 1_221_517_435_739_604_024, 203_386_488_316_749_660, 59]),
@@ -62,7 +62,7 @@ pub(super) fn field() -> &'static Field {
 }
 
 /// `compute`, all elements being of this field; none of them may leave it.
-pub(crate) fn in_field<T>(field: &'static Field, compute: impl FnOnce() -> T) -> T {
+pub fn in_field<T>(field: &'static Field, compute: impl FnOnce() -> T) -> T {
     struct Back(&'static Field);
     impl Drop for Back {
         fn drop(&mut self) {

@@ -8,13 +8,13 @@ use super::rational::{Exact, PARTS};
 use super::{Coefficient, Flaw};
 
 /// Coefficients a series can have.
-pub(crate) const ORDERS: usize = 48;
+pub const ORDERS: usize = 48;
 
 /// `Σ c_k s^k`, known up to `s^{known − 1}`, with no coefficient but zero from `terms` on.
 ///
 /// A constant is known to all orders; its exact value, for functions of it, while rational and moderate.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Jet<C> {
+pub struct Jet<C> {
     coefficients: [C; ORDERS],
     known: usize,
     terms: usize,
@@ -24,7 +24,7 @@ pub(crate) struct Jet<C> {
 
 impl<C: Coefficient> Jet<C> {
     /// The constant `value`.
-    pub(crate) fn constant(value: C, exact: Option<Exact>) -> Self {
+    pub fn constant(value: C, exact: Option<Exact>) -> Self {
         let mut coefficients = [C::ZERO; ORDERS];
         coefficients[0] = value;
         Jet { coefficients, known: ORDERS, terms: 1, exact: exact.filter(|_| C::FOLLOWED), flaw: None }
@@ -42,7 +42,7 @@ impl<C: Coefficient> Jet<C> {
     }
 
     /// The decimal that `x` is written as.
-    pub(crate) fn of(x: f64) -> Self {
+    pub fn of(x: f64) -> Self {
         if !C::FOLLOWED {
             return Self::number(C::of_float(x), None);
         }
@@ -53,25 +53,26 @@ impl<C: Coefficient> Jet<C> {
     }
 
     /// The series with these coefficients, all known ones; the first is exactly `exact`, if that is known.
-    pub(crate) fn series(coefficients: &[C], exact: Option<Exact>) -> Self {
+    pub fn series(coefficients: &[C], exact: Option<Exact>) -> Self {
         let known = coefficients.len().min(ORDERS);
         let mut all = [C::ZERO; ORDERS];
         all[..known].copy_from_slice(&coefficients[..known]);
         Jet { coefficients: all, known, terms: known, exact: exact.filter(|_| C::FOLLOWED), flaw: None }
     }
 
-    pub(crate) fn coefficient(&self, k: usize) -> C {
+    /// Of `s^k`.
+    pub fn coefficient(&self, k: usize) -> C {
         self.coefficients[k]
     }
 
-    pub(crate) fn exact(&self) -> Option<Exact> {
+    /// The constant, where it is known exactly.
+    pub fn exact(&self) -> Option<Exact> {
         self.exact
     }
 
     /// Why its coefficients are no images, if they are none; π in its constant counts.
-    pub(crate) fn flaw(&self) -> Option<Flaw> {
-        let with_pi = self.exact.is_some_and(|x| !x.is_rational());
-        self.flaw.or(with_pi.then_some(Flaw::Pi))
+    pub fn flaw(&self) -> Option<Flaw> {
+        self.flaw.or(self.has_pi().then_some(Flaw::Pi))
     }
 
     /// A flaw that is there already, π in a followed constant not counted.
@@ -85,9 +86,8 @@ impl<C: Coefficient> Jet<C> {
 
     /// The result of an operation on `self` and `other` that follows exact constants to `exact`.
     fn combined(&self, other: &Self, terms: usize, exact: Option<Exact>) -> Self {
-        let known = self.known.min(other.known);
-        let lost = (exact.is_none() && (self.has_pi() || other.has_pi())).then_some(Flaw::Pi);
-        let flaw = self.flaw.or(other.flaw).or(lost);
+        let (known, has_pi) = (self.known.min(other.known), self.has_pi() || other.has_pi());
+        let flaw = self.flaw.or(other.flaw).or((exact.is_none() && has_pi).then_some(Flaw::Pi));
         Jet { coefficients: [C::ZERO; ORDERS], known, terms: terms.min(known).max(1), exact, flaw }
     }
 

@@ -3,7 +3,7 @@
 use super::Coefficient;
 
 /// The inverse of a square matrix, and its determinant; `None` where it is singular.
-pub(crate) fn inverse<C: Coefficient>(matrix: &[C], size: usize, one: C) -> Option<(Vec<C>, C)> {
+pub fn inverse<C: Coefficient>(matrix: &[C], size: usize, one: C) -> Option<(Vec<C>, C)> {
     let mut right = vec![C::ZERO; size * size];
     right.iter_mut().step_by(size + 1).for_each(|x| *x = one);
     let determinant = solve(&mut matrix.to_vec(), &mut right, size, size, one)?;

@@ -9,11 +9,14 @@ mod small_fraction;
 
 use symbolic::{Bounded, Scalar};
 
-pub(crate) use field::{FIELDS, in_field};
-pub(crate) use jet::{Jet, ORDERS};
-pub(crate) use linear::{inverse, solve, subtract_product};
-pub(crate) use modular::{Modular, TRIED};
-pub(crate) use rational::{Exact, PARTS};
+pub use field::{FIELDS, Field, in_field};
+pub use jet::{Jet, ORDERS};
+pub use linear::inverse;
+pub(crate) use linear::{solve, subtract_product};
+pub use modular::Modular;
+pub(crate) use modular::TRIED;
+pub use rational::Exact;
+pub(crate) use rational::PARTS;
 
 /// Why a number has no image in the finite field.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
@@ -49,7 +52,7 @@ pub enum Flaw {
 }
 
 /// Coefficients of a power series.
-pub(crate) trait Coefficient:
+pub trait Coefficient:
     Copy
     + std::fmt::Debug
     + std::ops::Add<Output = Self>
@@ -57,10 +60,13 @@ pub(crate) trait Coefficient:
     + std::ops::Mul<Output = Self>
     + std::ops::Neg<Output = Self>
 {
+    /// 0.
     const ZERO: Self;
     /// Whether functions of constants need these exactly.
     const FOLLOWED: bool;
+    /// The image of an exact number.
     fn of(x: Exact) -> Result<Self, Flaw>;
+    /// A double as it is.
     fn of_float(x: f64) -> Result<Self, Flaw>;
     /// `None` for 0.
     fn inverse(self) -> Option<Self>;
@@ -68,7 +74,9 @@ pub(crate) trait Coefficient:
     fn weight(self) -> f64;
     /// `Σ a_i b_{m−1−i}`.
     fn convolution(a: &[Self], b: &[Self]) -> Self;
+    /// `(sin x, cos x)`.
     fn sine_and_cosine(self, exact: Option<Exact>) -> Result<(Self, Self), Flaw>;
+    /// `e^x`.
     fn exponential(self, exact: Option<Exact>) -> Result<Self, Flaw>;
     /// The square root, and that exactly where it is rational.
     fn root(self, exact: Option<Exact>) -> Result<(Self, Option<Exact>), Flaw>;

@@ -30,7 +30,7 @@ pub(crate) const TRIED: i128 = 4096;
 
 /// An element of the field, as `x 2^64` modulo `p` (Montgomery).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Modular(u64);
+pub struct Modular(u64);
 
 /// `x / 2^64` modulo `p`, for `x < p 2^64`.
 fn reduce(x: u128) -> u64 {
@@ -102,18 +102,21 @@ impl Powers {
 }
 
 impl Modular {
-    pub(crate) const ZERO: Modular = Modular(0);
+    /// 0.
+    pub const ZERO: Modular = Modular(0);
 
-    pub(crate) fn new(x: u64) -> Self {
+    /// The image of an integer.
+    pub fn new(x: u64) -> Self {
         Modular(reduce(u128::from(x % field().prime) * u128::from(field().square)))
     }
 
     /// The representative in `0..p`.
-    pub(crate) fn value(self) -> u64 {
+    pub fn value(self) -> u64 {
         reduce(u128::from(self.0))
     }
 
-    pub(crate) fn one() -> Self {
+    /// 1.
+    pub fn one() -> Self {
         Modular(field().one)
     }
 
@@ -132,7 +135,8 @@ impl Modular {
         (field().order, circle.value(), circle.power(NEPER).value())
     }
 
-    pub(crate) fn is_zero(self) -> bool {
+    /// Whether it is 0.
+    pub fn is_zero(self) -> bool {
         self.0 == 0
     }
 
@@ -146,7 +150,7 @@ impl Modular {
     }
 
     /// The image of a fraction; `None` where its denominator is a multiple of `p`.
-    pub(crate) fn fraction(x: Exact) -> Option<Self> {
+    pub fn fraction(x: Exact) -> Option<Self> {
         let over = |d: i128| match usize::try_from(d).ok().and_then(|d| kept().over.get(d)) {
             Some(&over) => Some(over),
             None => Self::integer(d).inverse(),
@@ -175,7 +179,7 @@ impl Modular {
     }
 
     /// `None` for 0.
-    pub(crate) fn inverse(self) -> Option<Self> {
+    pub fn inverse(self) -> Option<Self> {
         (!self.is_zero()).then(|| self.power(field().prime - 2))
     }
 

@@ -15,7 +15,7 @@ const LONG: usize = 15;
 
 /// `fraction + turns · π/PARTS`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Exact {
+pub struct Exact {
     pub(crate) fraction: Fraction,
     pub(crate) turns: i64,
 }
@@ -27,7 +27,7 @@ impl Exact {
     pub(crate) const QUARTER: Exact = Exact { turns: PARTS / 2, ..Exact::ZERO };
 
     /// `None` where the reduced fraction would not fit, or the denominator is zero.
-    pub(crate) fn ratio(numerator: i128, denominator: i128) -> Option<Self> {
+    pub fn ratio(numerator: i128, denominator: i128) -> Option<Self> {
         Fraction::new(numerator, denominator).map(Self::rational)
     }
 
@@ -139,7 +139,13 @@ impl Exact {
         if self.is_rational() { self.fraction.recip().map(Self::rational) } else { None }
     }
 
-    pub(crate) fn to_f64(self) -> f64 {
+    /// `a`.
+    pub fn fraction(self) -> Fraction {
+        self.fraction
+    }
+
+    /// The nearest double.
+    pub fn to_f64(self) -> f64 {
         self.fraction.to_f64() + self.turns as f64 * (PI / PARTS as f64)
     }
 }

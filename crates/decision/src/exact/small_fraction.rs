@@ -13,7 +13,7 @@ const MOST_TENS: i32 = 60;
 impl Modular {
     /// The fraction with this image and a numerator and denominator of at most a million, or else the least
     /// power of ten times one: units are such powers.
-    pub(crate) fn small_fraction(self) -> Option<Exact> {
+    pub fn small_fraction(self) -> Option<Exact> {
         self.fraction_about(0, MOST_TENS)
     }
 

@@ -1,0 +1,31 @@
+//! Options of `deltaq integrals`.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use equations::Formulation;
+use program::TextOrJson;
+
+use super::SceneArguments;
+
+/// `deltaq integrals`.
+#[derive(Args, Debug)]
+pub struct IntegralsArguments {
+    #[command(flatten)]
+    pub scene: SceneArguments,
+    /// chetaev, or a formulation whose equations are looked at in the ansatz alone: vakonomic, kappa.
+    #[arg(long, short, default_value = deltaq::CHETAEV.name, value_parser = deltaq::formulation)]
+    pub formulation: &'static Formulation,
+    /// Highest degree in the velocities.
+    #[arg(long, default_value_t = 2, value_parser = clap::value_parser!(u8).range(1..=3))]
+    pub degree: u8,
+    /// Coordinates that the functions of the ansatz contain; those in L and in the constraints if left out.
+    #[arg(long = "in", value_name = "NAME,…", value_delimiter = ',')]
+    pub names: Vec<String>,
+    /// Output format.
+    #[arg(long, value_enum, default_value_t = TextOrJson::Text)]
+    pub format: TextOrJson,
+    /// File for the answer; to the terminal if left out.
+    #[arg(long, value_name = "FILE")]
+    pub out: Option<PathBuf>,
+}

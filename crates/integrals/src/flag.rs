@@ -1,0 +1,124 @@
+//! Brackets of a basis of `ker A`, and what an invariant measure would have to be along them.
+//!
+//! Along Chetaev's motion, with `p_a = g_ab s^b` and `[X_a, X_b] = C_ab^c X_c + (M-orthogonal to ker A)`,
+//!
+//! ```text
+//! q̇ = X_b s^b ,   ṗ_a = −X_a(H) − C_ab^c s^b p_c ,   H = ½ g^{ab} p_a p_b + V ,
+//! div(q̇, ṗ) = θ_b s^b ,   θ_b = div X_b + Σ_a C_ba^a :
+//! ```
+//!
+//! the terms with `X_a(s^a)` cancel, and `C_ab^c g^{ab} = 0`. So `e^σ dq dp` is invariant iff `X_b σ = −θ_b`.
+//! From `Yσ = τ_Y`, `Zσ = τ_Z` follows `[Y, Z]σ = Y(τ_Z) − Z(τ_Y)`.
+
+use decision::SeriesStart;
+use decision::exact::Modular;
+
+use crate::Open;
+use crate::local::{Local, Reversible, draws, row_times, straight};
+use crate::ring::{Rays, Ring, Series, count, minus};
+
+/// Most coefficients of a series.
+pub(crate) const MOST: usize = 1200;
+
+/// A vector field, made of `weight` fields of `ker A`; and what `σ` has as its derivative along it.
+#[derive(Clone)]
+pub(crate) struct Field {
+    pub(crate) components: Vec<Series>,
+    pub(crate) rate: Series,
+    pub(crate) weight: usize,
+}
+
+/// Brackets that are independent at a random point, and the ranks there.
+pub(crate) struct Flag {
+    pub(crate) ring: Ring,
+    pub(crate) fields: Vec<Field>,
+    /// Rank of all brackets beside their rates `τ`; more than there are fields: no measure.
+    pub(crate) with_rates: usize,
+}
+
+/// Rows that are independent modulo `p`, each with its pivot.
+#[derive(Default)]
+pub(crate) struct Rows(pub(crate) Vec<(usize, Vec<Modular>)>);
+
+impl Rows {
+    /// Whether `row` is independent of the rows so far.
+    pub(crate) fn add(&mut self, mut row: Vec<Modular>) -> bool {
+        for (pivot, other) in &self.0 {
+            let factor = row[*pivot];
+            if !factor.is_zero() {
+                row[*pivot..].iter_mut().zip(&other[*pivot..]).for_each(|(x, &y)| *x = *x - factor * y);
+            }
+        }
+        let pivot = row.iter().position(|x| !x.is_zero());
+        let Some((pivot, over)) = pivot.and_then(|pivot| Some((pivot, row[pivot].inverse()?))) else { return false };
+        row.iter_mut().for_each(|x| *x = *x * over);
+        self.0.push((pivot, row));
+        true
+    }
+}
+
+impl Flag {
+    /// # Errors
+    /// [`Open`]: what has no image, is singular, or would take too long.
+    pub(crate) fn new(system: &Reversible, point: &SeriesStart<Modular>, seed: u64) -> Result<Flag, Open> {
+        let n = system.coordinates;
+        // every round but the last adds one field at least, and loses one order
+        let order = system.constraints + 2;
+        let weights = vec![1; system.present.len()];
+        count(&weights, order, MOST).ok_or(Open::Size { order, most: MOST })?;
+        let ring = Ring::new(&weights, system.present.clone(), order);
+        let rays = Rays::new(&ring, &mut draws(seed)).ok_or(Open::Accident)?;
+        let local = system.at(point, &ring, &rays, &straight(&ring, n, &system.present))?;
+        let basis = with_rates(&ring, &local);
+        let (mut span, mut beside) = (Rows::default(), Rows::default());
+        let mut fields: Vec<Field> = Vec::new();
+        let mut candidates = basis.clone();
+        for weight in 2.. {
+            let begin = fields.len();
+            for field in candidates {
+                let mut row: Vec<Modular> = field.components.iter().map(|x| x[0]).collect();
+                let grows = span.add(row.clone());
+                row.push(field.rate[0]);
+                beside.add(row);
+                if grows {
+                    fields.push(field);
+                }
+            }
+            if fields.len() == begin {
+                break;
+            }
+            let last = &fields[begin..];
+            let with = |x: &Field| last.iter().map(|y| bracket(&ring, x, y, weight)).collect::<Vec<_>>();
+            candidates = basis.iter().flat_map(with).collect();
+        }
+        Ok(Flag { fields, with_rates: beside.0.len(), ring })
+    }
+}
+
+fn bracket(ring: &Ring, y: &Field, z: &Field, weight: usize) -> Field {
+    let components = ring.bracket(&y.components, &z.components);
+    let rate = minus(&ring.along(&y.components, &z.rate), &ring.along(&z.components, &y.rate));
+    Field { components, rate, weight }
+}
+
+/// The fields `X_b` with their rates `−θ_b`.
+pub(crate) fn with_rates(ring: &Ring, local: &Local) -> Vec<Field> {
+    let reciprocal: Vec<Vec<Series>> = local.inverse.iter().map(|over| combined(ring, &local.basis, over)).collect();
+    // M times Σ_d g^{ad} N_d: what C^a is taken with
+    let covectors: Vec<Vec<Series>> = reciprocal.iter().map(|x| row_times(ring, &local.mass, x)).collect();
+    let of = |x: &Vec<Series>| {
+        let divergence = ring.divergence(x);
+        let traces = local.basis.iter().zip(&covectors).map(|(a, covector)| {
+            let commutator = ring.bracket(x, a);
+            ring.dot(commutator.iter().zip(covector))
+        });
+        let rate = traces.fold(minus(&ring.zero(), &divergence), |sum, trace| minus(&sum, &trace));
+        Field { components: x.clone(), rate, weight: 1 }
+    };
+    local.basis.iter().map(of).collect()
+}
+
+/// `Σ_d c_d N_d`.
+fn combined(ring: &Ring, basis: &[Vec<Series>], c: &[Series]) -> Vec<Series> {
+    (0..basis.first().map_or(0, Vec::len)).map(|i| ring.dot(basis.iter().map(|x| &x[i]).zip(c))).collect()
+}

@@ -1,0 +1,46 @@
+//! # Integrals and invariant measures: printed, counted, or proved not to exist
+//!
+//! Two roads, both linear algebra over a finite field, on the numbers as they are written ([`decision`] has
+//! the fields and says which numbers have images there).
+//!
+//! **Without an ansatz** ([`reversible`]): `L = ½ vᵀM(q)v − V(q)`, `A(q)v = 0`, no time, no forces. With a
+//! basis `N` of `ker A`, `v = N s`, everything is a power series at a random point `q₀`: `N` by Gauss'
+//! elimination of series, `M`, `V` from their values along curves.
+//!
+//! - *Measures* `e^{σ(q)} dq dp` need `X_b σ = −θ_b`. Brackets of the `X_b` tell what `σ` would have as
+//!   derivatives; where they are dependent and these are not, there is no `σ`. With brackets in all
+//!   directions that is one minor that is not zero mod p, so not zero at the point, so, analytic, at almost
+//!   every point: [`Measure::None`], *proved*. Where brackets close without that, with ranks that two
+//!   random points of two fields share, there is a `σ` near almost every point (Frobenius). [`Density`] has
+//!   it, if it is made of `det g`, sines and cosines.
+//! - *Integrals* that are polynomials in the velocities: kernels of equations of Killing's kind on weighted
+//!   Taylor coefficients. Every kernel bounds their number from above, as ranks mod p are lower bounds;
+//!   [`Found::none_proved`] is where what is trivial (energy, constants, products) reaches it. The number
+//!   itself is a matter of ranks at random points.
+//!
+//! *Near almost every point*: `σ` and coefficients are smooth there, may have periods round angles and be
+//! singular elsewhere; the sleigh has two integrals linear in its velocities with coefficients like `cos(k
+//! φ)`, `k` no integer. A measure here is smooth and positive; for weaker ones see García-Naranjo, Ortega,
+//! Ureña 2024. Where something varies under a root, all this is said of the branch of the start.
+//!
+//! **In an ansatz** ([`ansatz`]): any equations, affine, nonlinear, with forces and time. Which
+//! combinations of given functions are constant on `{f = 0}`? What is found is written down in fractions,
+//! and tried in another field.
+//!
+//! Sources: Y. Fedorov, L. García-Naranjo, J. Marrero, arXiv:1304.1788 (measures); A. Bellaïche, in
+//! *Sub-Riemannian geometry*, 1996 (privileged coordinates); L. García-Naranjo, R. Ortega, A. Ureña,
+//! arXiv:2404.14156.
+
+mod ansatz;
+mod density;
+mod flag;
+mod killing;
+mod local;
+mod open;
+mod reversible;
+mod ring;
+
+pub use ansatz::{Ansatz, Printed, ansatz, constants};
+pub use density::Density;
+pub use open::Open;
+pub use reversible::{Found, Measure, Reversed, reversible};

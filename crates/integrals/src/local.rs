@@ -1,0 +1,171 @@
+//! A system at a random point: `M`, `N` and `V` as power series there.
+
+use decision::exact::{Exact, Jet, Modular};
+use decision::{ExactStart, Program, SeriesStart};
+use mechanics::System;
+use symbolic::Expr;
+
+use crate::Open;
+use crate::ring::{Rays, Ring, Series};
+
+/// `L = ½ vᵀM(q)v − V(q)`, `A(q)v = 0`, as a program.
+pub(crate) struct Reversible {
+    /// From parameters and `q`: `A` (h×n), `M` (n×n), `V`.
+    program: Program,
+    pub(crate) coordinates: usize,
+    pub(crate) constraints: usize,
+    /// Places of the coordinates that any of these contains.
+    pub(crate) present: Vec<usize>,
+}
+
+/// Series at a point: of `M`, `V` and a basis of `ker A`.
+pub(crate) struct Local {
+    pub(crate) mass: Vec<Vec<Series>>,
+    pub(crate) potential: Series,
+    /// `N`, column by column: `v = Σ_b s^b N_b`.
+    pub(crate) basis: Vec<Vec<Series>>,
+    /// Places of the free velocities `s`.
+    pub(crate) free: Vec<usize>,
+    /// `g_ab = N_aᵀ M N_b`.
+    pub(crate) metric: Vec<Vec<Series>>,
+    /// `g^{ab}`.
+    pub(crate) inverse: Vec<Vec<Series>>,
+}
+
+impl Reversible {
+    /// # Errors
+    /// [`Open`]: what stands in `L` or `f` that has no place there.
+    pub(crate) fn new(system: &System) -> Result<Self, Open> {
+        let (g, v) = (&system.graph, system.velocities());
+        if system.has_forces() {
+            return Err(Open::Forces);
+        }
+        if !system.virtual_conditions.is_empty() {
+            return Err(Open::OwnReactions);
+        }
+        if !system.is_autonomous() {
+            return Err(Open::Time);
+        }
+        let at_rest = |e: Expr| g.substitute(e, &v.iter().map(|&v| (v, g.zero())).collect());
+        let (mass, jacobian) = (system.velocity_hessian(), system.constraint_jacobian());
+        let free = |es: &[Expr]| es.iter().all(|&e| v.iter().all(|&v| !g.depends_on(e, v)));
+        let momenta: Vec<Expr> = g.gradient(system.lagrangian, &v).into_iter().map(at_rest).collect();
+        if !free(mass.entries()) || !momenta.iter().all(|&e| g.vanishes_exactly(e)) {
+            return Err(Open::NotQuadratic);
+        }
+        let offsets: Vec<Expr> = system.constraints.iter().map(|&f| at_rest(f)).collect();
+        if !free(jacobian.entries()) || !offsets.iter().all(|&e| g.vanishes_exactly(e)) {
+            return Err(Open::NotHomogeneous);
+        }
+        let outputs = [jacobian.entries(), mass.entries(), &[g.neg(at_rest(system.lagrangian))]].concat();
+        let mut inputs: Vec<_> = system.parameters.iter().map(|p| p.symbol).collect();
+        let positions = system.positions();
+        let present = |q: &usize| outputs.iter().any(|&e| g.depends_on(e, positions[*q]));
+        let present = (0..positions.len()).filter(present).collect();
+        inputs.extend(&positions);
+        let program = Program::new(g, &inputs, &outputs).map_err(|fault| Open::Other(fault.to_string()))?;
+        Ok(Reversible { program, coordinates: positions.len(), constraints: system.constraints.len(), present })
+    }
+
+    /// Its series at `point`, where `q − q₀ = chart(z)`, without constant terms.
+    pub(crate) fn at(
+        &self,
+        point: &SeriesStart<Modular>,
+        ring: &Ring,
+        rays: &Rays,
+        chart: &[Series],
+    ) -> Result<Local, Open> {
+        let (n, h) = (self.coordinates, self.constraints);
+        let mut evaluator = self.program.evaluator::<Jet<Modular>>();
+        let mut values: Vec<Vec<Jet<Modular>>> = Vec::with_capacity(rays.values.len());
+        for monomials in &rays.values {
+            let mut inputs = point.parameters.clone();
+            for (q, chart) in point.positions.iter().zip(chart) {
+                let part = |k: usize| {
+                    let places = ring.of_weight(k);
+                    places.fold(Modular::ZERO, |sum, place| sum + chart[place] * monomials[place])
+                };
+                let mut coefficients: Vec<Modular> = (0..=ring.order).map(part).collect();
+                coefficients[0] = q.coefficient(0);
+                inputs.push(Jet::series(&coefficients, q.exact()));
+            }
+            let along = evaluator.run(&inputs);
+            if let Some(flaw) = along.iter().find_map(Jet::flaw) {
+                return Err(Open::Flaw(flaw));
+            }
+            values.push(along.to_vec());
+        }
+        let series = |i: usize| rays.series(ring, &|ray, k| values[ray][i].coefficient(k));
+        let all: Vec<Series> = (0..h * n + n * n + 1).map(series).collect();
+        let mut rows: Vec<Vec<Series>> = all[..h * n].chunks_exact(n).map(<[Series]>::to_vec).collect();
+        let mass: Vec<Vec<Series>> = all[h * n..h * n + n * n].chunks_exact(n).map(<[Series]>::to_vec).collect();
+        let pivots = ring.eliminate(&mut rows, n).ok_or(Open::Rank)?;
+        let column = |free: usize| -> Vec<Series> {
+            let entry = |i: usize| match pivots.iter().position(|&pivot| pivot == i) {
+                Some(row) => rows[row][free].iter().map(|&x| -x).collect(),
+                None if i == free => ring.constant(Modular::one()),
+                None => ring.zero(),
+            };
+            (0..n).map(entry).collect()
+        };
+        let free: Vec<usize> = (0..n).filter(|i| !pivots.contains(i)).collect();
+        let basis: Vec<Vec<Series>> = free.iter().map(|&i| column(i)).collect();
+        let momenta: Vec<Vec<Series>> = basis.iter().map(|x| row_times(ring, &mass, x)).collect();
+        let metric: Vec<Vec<Series>> =
+            basis.iter().map(|a| momenta.iter().map(|b| ring.dot(a.iter().zip(b))).collect()).collect();
+        let inverse = ring.inverse(&metric).ok_or(Open::Singular)?;
+        Ok(Local { mass, potential: all[h * n + n * n].clone(), basis, free, metric, inverse })
+    }
+}
+
+/// `M x`.
+pub(crate) fn row_times(ring: &Ring, matrix: &[Vec<Series>], x: &[Series]) -> Vec<Series> {
+    matrix.iter().map(|row| ring.dot(row.iter().zip(x))).collect()
+}
+
+/// Random elements of the field.
+pub(crate) fn draws(seed: u64) -> impl FnMut() -> Modular {
+    let mut random = symbolic::SplitMix::new(seed);
+    move || Modular::new(random.bits())
+}
+
+/// `q_i = q₀_i + z_i` for the coordinates that are present, the others held.
+pub(crate) fn straight(ring: &Ring, coordinates: usize, present: &[usize]) -> Vec<Series> {
+    let variable = |i: usize| {
+        let mut series = ring.zero();
+        if let Some(place) = present.iter().position(|&p| p == i) {
+            let of = ring
+                .monomials
+                .iter()
+                .position(|m| m.iter().enumerate().all(|(j, &e)| (j == place) == (e == 1) && e < 2));
+            if let Some(of) = of {
+                series[of] = Modular::one();
+            }
+        }
+        series
+    };
+    (0..coordinates).map(variable).collect()
+}
+
+/// `compute` at a random point of the start's branch, of as large numbers as are taken.
+pub(crate) fn at_random<T>(
+    start: &ExactStart,
+    seed: u64,
+    mut compute: impl FnMut(&SeriesStart<Modular>) -> Result<T, Open>,
+) -> Result<T, Open> {
+    let mut fault = None;
+    let found = decision::at_random(start, seed, |point| {
+        compute(&point).map_err(|open| {
+            let text = open.to_string();
+            fault.get_or_insert(open);
+            text
+        })
+    });
+    found.map_err(|text| fault.unwrap_or(Open::Other(text)))
+}
+
+/// `1/k!`, as far as is needed.
+pub(crate) fn over_factorial(k: u8) -> Modular {
+    let over = (2..=k).map(|k| Exact::ratio(1, k.into()).and_then(Modular::fraction));
+    over.fold(Modular::one(), |product, x| product * x.unwrap_or(Modular::ZERO))
+}

@@ -1,0 +1,73 @@
+//! Why a question stays open.
+
+use decision::exact::Flaw;
+
+/// What keeps an answer from being given.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum Open {
+    /// A number has no image in the finite field.
+    #[error("{0}")]
+    Flaw(#[from] Flaw),
+    /// Forces act that are no gradient of a potential as far as is known.
+    #[error("generalized forces act; only a potential in L is taken")]
+    Forces,
+    /// The scene has reactions of its own.
+    #[error("the scene has reactions of its own")]
+    OwnReactions,
+    /// Time stands in `L` or in the constraints.
+    #[error("time stands in L or in the constraints")]
+    Time,
+    /// `L` is not `½ vᵀM(q)v − V(q)`.
+    #[error("L is not quadratic in the velocities with a potential beside it")]
+    NotQuadratic,
+    /// The constraints are not `A(q)v = 0`.
+    #[error("the constraints are not linear and homogeneous in the velocities")]
+    NotHomogeneous,
+    /// The constraints are dependent at some points and not at others.
+    #[error("the constraints are dependent at a random point, and not near it")]
+    Rank,
+    /// The kinetic energy is degenerate on the constraints.
+    #[error("the kinetic energy is degenerate on the constraints")]
+    Singular,
+    /// Series would have too many coefficients.
+    #[error("series to order {order} have more than {most} coefficients")]
+    Size {
+        /// Up to this order.
+        order: usize,
+        /// Most that are taken.
+        most: usize,
+    },
+    /// Brackets of the constraints' kernel do not span all directions.
+    #[error("the constraints are integrable in part: brackets span {rank} of {dimension} directions")]
+    Integrable {
+        /// Of the brackets.
+        rank: usize,
+        /// Number of coordinates.
+        dimension: usize,
+    },
+    /// A name that is no coordinate.
+    #[error("`{name}` is no coordinate: there are {all}")]
+    Name {
+        /// As given.
+        name: String,
+        /// Names of the coordinates.
+        all: String,
+    },
+    /// Two fields disagree, or random numbers are dependent.
+    #[error("random points of two fields do not agree")]
+    Accident,
+    /// The number falls still, or has not been the same for long enough.
+    #[error("at most {most}: the number is not settled at order {order}, the highest that was looked at")]
+    Unsettled {
+        /// An upper bound, which is proved.
+        most: usize,
+        /// The order.
+        order: usize,
+    },
+    /// Two roads do not agree: a fault of the program.
+    #[error("a contradiction, please report it: {0}")]
+    Contradiction(String),
+    /// Something else, in words.
+    #[error("{0}")]
+    Other(String),
+}

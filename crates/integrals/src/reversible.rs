@@ -1,0 +1,155 @@
+//! What is asked of a system without time, of homogeneous constraints and a potential.
+
+use decision::ExactStart;
+use decision::exact::{FIELDS, in_field};
+use mechanics::System;
+
+use crate::Open;
+use crate::density::{Density, density};
+use crate::flag::Flag;
+use crate::killing::{Kernel, Killing, rank};
+use crate::local::{Reversible, at_random};
+
+/// Seeds of the random points, one per field.
+const SEEDS: [u64; FIELDS.len()] = [0x17e6_0001, 0x17e6_0002, 0x17e6_0003, 0x17e6_0004];
+/// Weights beyond the heaviest bracket that are looked at, first few.
+const ORDERS: [usize; 2] = [6, 9];
+
+/// Whether a measure `e^{σ(q)} dq dp`, smooth and positive, is invariant near almost every point.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Measure {
+    /// None is.
+    None {
+        /// Whether a minor of full size is not zero: a proof. Else it rests on ranks modulo two primes.
+        proved: bool,
+    },
+    /// One is: by ranks at random points of two fields.
+    Local {
+        /// It, where it can be written down.
+        density: Option<Density>,
+    },
+    /// It is not known, for this reason.
+    Open(Open),
+}
+
+/// How many independent integrals there are that are polynomials of one degree in the velocities, and of
+/// lower degrees of the same parity beside it, near almost every point.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Found {
+    /// Of the polynomials.
+    pub degree: usize,
+    /// Their number, over the real numbers: an upper bound always, and the number itself if `settled`.
+    pub count: usize,
+    /// How many of them the energy, constants and products of those of lower degrees make.
+    pub trivial: usize,
+    /// Whether the number stays over as many orders as brackets have.
+    pub settled: bool,
+    /// The weight to which Taylor series were looked at.
+    pub order: usize,
+}
+
+impl Found {
+    /// Those that the others do not give.
+    pub fn further(&self) -> usize {
+        self.count - self.trivial
+    }
+
+    /// Whether it is proved that there are no further ones.
+    pub fn none_proved(&self) -> bool {
+        self.count == self.trivial
+    }
+}
+
+/// The answers of the road without an ansatz.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Reversed {
+    /// Invariant measures.
+    pub measure: Measure,
+    /// Integrals, degree by degree from 1 on.
+    pub integrals: Vec<Result<Found, Open>>,
+}
+
+/// What two fields agree on, each with a seed; `enough` of it needs one field only.
+fn agreed<T: PartialEq>(
+    mut compute: impl FnMut(u64) -> Result<T, Open>,
+    enough: impl Fn(&T) -> bool,
+) -> Result<T, Open> {
+    let mut found: Vec<T> = Vec::new();
+    let mut fault = None;
+    for (field, seed) in FIELDS.iter().zip(SEEDS) {
+        match in_field(field, || compute(seed)) {
+            Ok(x) if enough(&x) || found.contains(&x) => return Ok(x),
+            Ok(x) => found.push(x),
+            // random numbers do not help against these
+            Err(open @ (Open::Size { .. } | Open::Integrable { .. })) => return Err(open),
+            Err(open) => fault = fault.or(Some(open)),
+        }
+    }
+    Err(fault.unwrap_or(Open::Accident))
+}
+
+/// Whether Chetaev's motion has an invariant measure.
+///
+/// # Errors
+/// [`Open`].
+fn decide_measure(system: &Reversible, start: &ExactStart) -> Result<Measure, Open> {
+    let n = system.coordinates;
+    let ranks = |seed| {
+        at_random(start, seed, |point| {
+            let flag = Flag::new(system, point, seed)?;
+            Ok((flag.fields.len(), flag.with_rates))
+        })
+    };
+    let (rank, with_rates) = agreed(ranks, |&(_, with_rates)| with_rates == n + 1)?;
+    if with_rates > rank {
+        return Ok(Measure::None { proved: with_rates == n + 1 });
+    }
+    Ok(Measure::Local { density: density(system, start)? })
+}
+
+/// Integrals of `degree` at one point of one field.
+fn count(killing: &Killing, degree: usize) -> Result<Found, Open> {
+    let lower: Vec<Kernel> = (0..degree).map(|d| killing.kernel(d, false)).collect::<Result<_, _>>()?;
+    let found = killing.kernel(degree, true)?;
+    let trivial = killing.trivial(degree, &lower);
+    let known = rank(&killing.ring, &trivial, found.order);
+    let together = [&found.integrals[..], &trivial].concat();
+    if rank(&killing.ring, &together, found.order) > found.integrals.len() {
+        return Err(Open::Contradiction("a product of integrals, or the energy, is none by its series".into()));
+    }
+    Ok(Found { degree, count: found.integrals.len(), trivial: known, settled: found.settled, order: found.order })
+}
+
+fn decide_integrals(system: &Reversible, start: &ExactStart, degree: usize) -> Result<Found, Open> {
+    let mut last = Err(Open::Accident);
+    for extra in ORDERS {
+        let found = agreed(
+            |seed| {
+                at_random(start, seed, |point| {
+                    let flag = Flag::new(system, point, seed)?;
+                    let step = flag.fields.iter().map(|y| y.weight).max().unwrap_or(1);
+                    count(&Killing::new(system, &flag, point, step + extra, seed)?, degree)
+                })
+            },
+            Found::none_proved,
+        );
+        match found {
+            Ok(found) if found.settled || found.none_proved() => return Ok(found),
+            Ok(found) => last = Ok(found),
+            Err(open) if last.is_err() => return Err(open),
+            Err(_) => break,
+        }
+    }
+    last
+}
+
+/// Decides measure and integrals up to a degree.
+pub fn reversible(system: &System, start: &ExactStart, degree: usize) -> Reversed {
+    match Reversible::new(system) {
+        Err(open) => Reversed { integrals: vec![Err(open.clone()); degree], measure: Measure::Open(open) },
+        Ok(reversible) => Reversed {
+            measure: decide_measure(&reversible, start).unwrap_or_else(Measure::Open),
+            integrals: (1..=degree).map(|d| decide_integrals(&reversible, start, d)).collect(),
+        },
+    }
+}

@@ -1,0 +1,75 @@
+//! What is known from the literature, of measures and of integrals without an ansatz.
+
+use std::time::Instant;
+
+use integrals::{Measure, Open, Reversed, reversible};
+
+use crate::questions::{built_in, start};
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Volume {
+    None,
+    NoneByRanks,
+    Written,
+    Some,
+}
+
+fn asked(name: &str, overrides: &[(&str, &str)], degree: usize) -> Reversed {
+    let scene = built_in(name, overrides);
+    reversible(&scene.system, &start(&scene), degree)
+}
+
+fn volume(measure: &Measure) -> Option<Volume> {
+    Some(match measure {
+        Measure::None { proved: true } => Volume::None,
+        Measure::None { proved: false } => Volume::NoneByRanks,
+        Measure::Local { density: Some(_) } => Volume::Written,
+        Measure::Local { density: None } => Volume::Some,
+        Measure::Open(_) => return None,
+    })
+}
+
+/// Measures: Kozlov 1988 (Suslov), Chaplygin 1903 and 1911, Fedorov, García-Naranjo & Marrero 2015.
+///
+/// Integrals are counted near a point, with coefficients that may depend on every coordinate: angular
+/// momentum about the point of contact of a ball has three parts that stay in space, of which `K·γ` alone is
+/// left when attitude is forgotten; of a rubber ball the two across the vertical. Suslov's body about a
+/// principal axis turns uniformly: two parts of `ω` stay in the body, three in space. A homogeneous ball
+/// has three parts of `ω` in space, three in the ball, and the moment of its velocity. Where the energy is
+/// kinetic and the momenta obey linear equations over an angle (sleigh, roller racer) the solutions of
+/// these are integrals, without a period: two for two momenta.
+#[test]
+fn measures_and_linear_integrals() {
+    for (name, overrides, measure, linear) in [
+        ("sleigh", &[][..], Volume::None, 2),
+        ("suslov", &[], Volume::None, 0),
+        ("suslov", &[("K", "0")], Volume::Written, 5),
+        ("veselova", &[], Volume::Written, 2),
+        ("chaplygin-sphere", &[], Volume::Written, 3),
+        ("chaplygin-sphere", &[("I2", "0.1"), ("I3", "0.1")], Volume::Written, 7),
+        ("rubber-chaplygin-sphere", &[], Volume::Written, 2),
+        ("routh-sphere", &[], Volume::Some, 2),
+        ("roller-racer", &[], Volume::None, 2),
+        ("heisenberg", &[], Volume::Written, 5),
+        ("disc", &[], Volume::Written, 6),
+    ] {
+        let begun = Instant::now();
+        let found = asked(name, overrides, 1);
+        println!("{name} {overrides:?}: {found:?} {:.2} s", begun.elapsed().as_secs_f64());
+        assert_eq!(volume(&found.measure), Some(measure), "{name} {overrides:?}");
+        let integrals = found.integrals[0].clone().unwrap_or_else(|open| panic!("{name}: {open}"));
+        assert_eq!((integrals.count, integrals.trivial, integrals.settled), (linear, 0, true), "{name} {overrides:?}");
+    }
+}
+
+#[test]
+fn what_has_no_answer_says_why() {
+    for (name, open) in
+        [("turntable", Open::NotHomogeneous), ("pursuit", Open::Time), ("sledge-with-friction", Open::Forces)]
+    {
+        let found = asked(name, &[], 1);
+        assert_eq!(found.measure, Measure::Open(open.clone()));
+        assert_eq!(found.integrals, [Err(open)]);
+    }
+    assert_eq!(volume(&asked("rattleback", &[], 0).measure), Some(Volume::NoneByRanks));
+}
