@@ -7,12 +7,15 @@ use serde_json::{Map, Value, json};
 use super::{Outcome, Row, Word};
 use pages::Table;
 
-/// `< 1e-12`: the smallest power of ten above the difference.
+/// `< 1e-12`: the smallest power of ten above the difference, and no less than a tenth of the tolerance;
+/// where a note says that this is what the referee is unsure by, the tolerance: the rest is of a machine.
 fn bound(row: &Row) -> String {
+    let allowed = row.tolerance.log10().round() as i32;
+    let least = if row.who == "IDAS" && !row.note.is_empty() { allowed } else { allowed - 1 };
     match row.largest {
         None => "–".into(),
         Some(0.0) => "0".into(),
-        Some(x) => format!("< 1e{:+03}", (x.log10().floor() as i32 + 1).max(row.tolerance.log10().round() as i32 - 1)),
+        Some(x) => format!("< 1e{:+03}", (x.log10().floor() as i32 + 1).max(least)),
     }
 }
 
