@@ -4,6 +4,7 @@ import subprocess
 import tomllib
 
 import numpy as np
+from scipy.spatial.transform import Rotation
 
 import turntable
 
@@ -18,20 +19,13 @@ SETTINGS = {
 }
 
 
-def matrix(w, x, y, z):
-    return np.array([
-        [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
-        [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
-        [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)]])
-
-
 def motion(ball, dt, steps, every):
     call = ["cargo", "run", "--release", "--quiet", "--package", "engine", "--bin", "turntable", "--"]
     call += [repr(dt), str(steps), str(every), str(SETTINGS["contacts"]), *(f"{name}={value}" for name, value in ball.changes.items())]
     lines = subprocess.run(call, check=True, capture_output=True, text=True, cwd=ROOT).stdout.splitlines()
     for line in lines:
         n = np.array([float(word) for word in line.split()])
-        yield n[0], n[1:4], matrix(*n[4:8]), n[8:11], n[11:14]
+        yield n[0], n[1:4], Rotation.from_quat(n[4:8], scalar_first=True).as_matrix(), n[8:11], n[11:14]
 
 
 if __name__ == "__main__":

@@ -10,6 +10,7 @@ mod compare_command;
 mod connect_command;
 mod ensemble_command;
 mod explore_command;
+mod grid;
 mod integrals_command;
 mod judge_command;
 mod linearize_command;
@@ -56,7 +57,7 @@ fn run(cli: Cli) -> Result<Answer> {
             String::from_utf8(text)?
         }
         Command::Man { command } => manual(command.as_deref())?,
-        Command::Integrals(arguments) => return integrals_command::run(&arguments),
+        Command::Integrals(arguments) => return integrals_command::run(&arguments, quiet),
         Command::Judge(arguments) => return judge_command::run(&arguments),
         Command::Prove(arguments) => return prove_command::run(&arguments),
         Command::Connect(arguments) => return connect_command::run(&arguments),

@@ -1,14 +1,14 @@
 //! `deltaq prove`.
 
 use anyhow::Result;
-use deltaq::{PlainScene, certificate, holds_beside_numbers, membership};
-use serde_json::{Map, Value, json};
+use deltaq::{certificate, holds_beside_numbers, membership};
+use serde_json::json;
 
 use crate::cli::ProveArguments;
 use pages::{membership::value as membership_value, membership_sentence};
 use program::TextOrJson;
 use program::write_one;
-use program::{Answer, pretty, sorted};
+use program::{Answer, pretty};
 
 /// Writes the certificate; where there is none, says what is known instead.
 ///
@@ -23,27 +23,8 @@ pub fn run(arguments: &ProveArguments) -> Result<Answer> {
         Ok(certificate) => {
             holds_beside_numbers(&scene)?;
             let order = certificate.order;
-            let plain = sorted(plain(certificate.scene));
-            let digest = digest(&plain);
-            let (exponents, circle, neper) = certificate.exponents;
-            let value = json!({
-                "scene": plain,
-                "digest": digest,
-                "almost_every_start": almost_every,
-                "prime": certificate.prime,
-                "unity": certificate.unity,
-                "exponents": { "order": exponents, "e^i": circle, "e": neper },
-                "roots": named(certificate.roots),
-                "order": order,
-                "rows": certificate.rows,
-                "minor": certificate.minor,
-                "divided_by": named(certificate.divided_by),
-                "set": named(given.set.overrides.iter().map(|(name, x)| (name.clone(), x.to_string()))),
-                "completed": certificate.completed,
-                "motion": named(certificate.motion),
-                "reactions": certificate.reactions,
-            });
-            let text = pretty("certificate", &value);
+            let set: Vec<_> = given.set.overrides.iter().map(|(name, x)| (name.clone(), x.to_string())).collect();
+            let text = pretty("certificate", &certificate.value(&set));
             if to_terminal {
                 return Ok(text.into());
             }
@@ -80,28 +61,4 @@ pub fn run(arguments: &ProveArguments) -> Result<Answer> {
         Some(Err(error)) => format!("Whether some μ₀ gives Chetaev's motion is undecided: {error}."),
     };
     Ok(Answer { text, complaint: Some(format!("no certificate for {}: {reason}. {sentence}", scene.name)) })
-}
-
-fn named(pairs: impl IntoIterator<Item = (String, impl Into<Value>)>) -> Map<String, Value> {
-    pairs.into_iter().map(|(name, x)| (name, x.into())).collect()
-}
-
-fn plain(scene: PlainScene) -> Value {
-    json!({
-        "coordinates": scene.coordinates,
-        "parameters": named(scene.parameters),
-        "lagrangian": scene.lagrangian,
-        "constraints": scene.constraints,
-        "forces": named(scene.forces),
-        "time": scene.time,
-        "positions": named(scene.positions),
-        "velocities": named(scene.velocities),
-    })
-}
-
-/// SHA-256 of the plain scene as JSON without spaces.
-fn digest(plain: &Value) -> String {
-    hmac_sha256::Hash::hash(plain.to_string().as_bytes())
-        .iter()
-        .fold("sha256:".to_owned(), |text, byte| format!("{text}{byte:02x}"))
 }

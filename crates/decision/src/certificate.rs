@@ -2,11 +2,13 @@
 
 use std::collections::BTreeSet;
 
-use crate::exact::{Exact, FIELDS, Jet, Modular, PARTS, TRIED, in_field, inverse};
+use serde_json::{Map, Value, json};
+
+use crate::exact::{Echelon, Exact, FIELDS, Jet, Modular, PARTS, TRIED, in_field, inverse};
 use crate::family::{CostateRate, inputs};
-use crate::plain_scene::PlainScene;
+use crate::plain_scene::{PlainScene, named};
 use crate::program::Program;
-use crate::proof::{Echelon, Question};
+use crate::proof::Question;
 use crate::random_start::at_random;
 use crate::series::{SeriesStart, order};
 use crate::start::ExactStart;
@@ -22,15 +24,8 @@ pub struct Certificate {
     pub scene: PlainScene,
     /// Whether it is any start, and none but those of the scene are claimed of almost every one.
     pub almost_every_start: bool,
-    /// `p`.
-    pub prime: u64,
-    /// `M` and the image of `e^{2πi/M}`.
-    pub unity: (u64, u64),
-    /// A prime `r`, and images of `e^i` and `e` of this order: those of `e^{ia}` and `e^a` for a fraction
-    /// `a`.
-    pub exponents: (u64, u64, u64),
-    /// Images of the roots of primes that are used.
-    pub roots: Vec<(String, u64)>,
+    /// What numbers go to.
+    pub images: Images,
     /// `K`.
     pub order: usize,
     /// Rows of `[S | −b]`, each as a power of `s` and the number of a coordinate, from 0.
@@ -45,6 +40,76 @@ pub struct Certificate {
     pub motion: Vec<(String, Vec<u64>)>,
     /// Coefficients `0 … K` of the h reactions `λ`.
     pub reactions: Vec<Vec<u64>>,
+}
+
+/// What numbers go to in the field of a certificate.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Images {
+    /// `p`.
+    pub prime: u64,
+    /// `M` and the image of `e^{2πi/M}`.
+    pub unity: (u64, u64),
+    /// A prime `r`, and images of `e^i` and `e` of this order: those of `e^{ia}` and `e^a` for a fraction
+    /// `a`.
+    pub exponents: (u64, u64, u64),
+    /// Images of the roots of primes that are used.
+    pub roots: Vec<(String, u64)>,
+}
+
+impl Images {
+    /// Those that formulas of the system take at `point`, in the field of the computation.
+    ///
+    /// # Errors
+    /// A symbol that is none of the system's, in words.
+    pub fn at(start: &ExactStart, point: &SeriesStart<Modular>) -> Result<Self, String> {
+        let (system, n) = (&start.system, point.positions.len());
+        let written = [&[system.lagrangian][..], &system.constraints, &system.forces, &start.written].concat();
+        let under_roots: Vec<_> = system.graph.under_roots(&written).into_iter().collect();
+        let program = Program::new(&system.graph, &inputs(system, &[]), &under_roots);
+        let program = program.map_err(|fault| fault.to_string())?;
+        let rest = vec![Jet::constant(Modular::ZERO, None); n];
+        let numbers = [&point.parameters[..], &[point.time], &point.positions, &point.velocities, &rest].concat();
+        let mut evaluator = program.evaluator::<Jet<Modular>>();
+        Ok(Images {
+            prime: Modular::prime(),
+            unity: (2 * PARTS as u64, Modular::root_of_unity(1).value()),
+            exponents: Modular::exponents(),
+            roots: roots(evaluator.run(&numbers).iter().filter_map(Jet::exact)),
+        })
+    }
+
+    /// Fields of a certificate.
+    pub fn fields(&self) -> Map<String, Value> {
+        let (order, circle, neper) = self.exponents;
+        let of = |name: &str, value: Value| (name.to_owned(), value);
+        Map::from_iter([
+            of("prime", self.prime.into()),
+            of("unity", json!(self.unity)),
+            of("exponents", json!({ "order": order, "e^i": circle, "e": neper })),
+            of("roots", named(&self.roots).into()),
+        ])
+    }
+}
+
+impl Certificate {
+    /// As its schema describes it; `set` are the numbers that were set, as they were written.
+    pub fn value(&self, set: &[(String, String)]) -> Value {
+        let mut value = json!({
+            "scene": self.scene.value(),
+            "digest": self.scene.digest(),
+            "almost_every_start": self.almost_every_start,
+            "order": self.order,
+            "rows": self.rows,
+            "minor": self.minor,
+            "divided_by": named(&self.divided_by),
+            "set": named(set),
+            "completed": self.completed,
+            "motion": named(&self.motion),
+            "reactions": self.reactions,
+        });
+        value.as_object_mut().into_iter().for_each(|value| value.extend(self.images.fields()));
+        value
+    }
 }
 
 /// Of random starts.
@@ -167,19 +232,11 @@ impl Question<'_> {
         divided_by.extend(self.divisors.iter().cloned().zip(divisors.iter().map(|x| x.value())));
         let coordinates = curve.inputs.len() - 3 * n;
         let jet = |i: usize| (0..last + 3).map(|k| curve.inputs[coordinates + i].coefficient(k).value()).collect();
-        let all = [&[system.lagrangian][..], &system.constraints, &system.forces, &start.written].concat();
-        let under_roots: Vec<_> = g.under_roots(&all).into_iter().collect();
-        let program = Program::new(g, &inputs(system, &[]), &under_roots).map_err(|fault| fault.to_string())?;
-        let mut radicands = program.evaluator::<Jet<Modular>>();
-        let radicands = radicands.run(&curve.inputs).iter().filter_map(Jet::exact);
         let scene = PlainScene::new(start, exact, open, at_random)?;
         Ok(Certificate {
             scene,
             almost_every_start: false,
-            prime: Modular::prime(),
-            unity: (2 * PARTS as u64, Modular::root_of_unity(1).value()),
-            exponents: Modular::exponents(),
-            roots: roots(radicands),
+            images: Images::at(start, exact)?,
             order: last,
             rows,
             minor: minor.value(),

@@ -90,14 +90,14 @@ mod sizes;
 mod start;
 mod transport;
 
-pub use certificate::Certificate;
+pub use certificate::{Certificate, Images};
 pub use curve::{Curve, Dynamics, Flow, Known, Point};
 pub use decide::{AffineSet, Decision, DecisionSettings, Verdict, decide, decide_flow};
 pub use error::DecisionError;
 pub use exact::Flaw;
 pub use family::Family;
 pub use leading::LeadingDifference;
-pub use plain_scene::PlainScene;
+pub use plain_scene::{PlainScene, named};
 pub use program::{Evaluator, Program};
 pub use proof::{Finding, NoConstants, Proof, Question};
 pub use random_start::at_random;

@@ -5,7 +5,7 @@ use mechanics::{State, System};
 
 use crate::DecisionError;
 use crate::curve::{Dynamics, Flow};
-use crate::exact::{Coefficient, FIELDS, Jet, Modular, ORDERS, in_field};
+use crate::exact::{self, Coefficient, Echelon, FIELDS, Jet, Modular, ORDERS};
 use crate::family::{Family, inputs};
 use crate::program::Program;
 use crate::random_start::at_random;
@@ -66,27 +66,6 @@ pub struct Proof {
     pub one_branch: bool,
     /// Velocities given as decimals that miss the constraints by round-off, solved from these here.
     pub completed: Vec<String>,
-}
-
-/// Rows that are independent modulo `p`, each with its pivot.
-#[derive(Default)]
-pub(crate) struct Echelon(pub(crate) Vec<(usize, Vec<Modular>)>);
-
-impl Echelon {
-    /// Whether `row` is independent of the rows so far.
-    pub(crate) fn add(&mut self, mut row: Vec<Modular>) -> bool {
-        for (pivot, other) in &self.0 {
-            let factor = row[*pivot];
-            if !factor.is_zero() {
-                row.iter_mut().zip(other).for_each(|(x, &y)| *x = *x - factor * y);
-            }
-        }
-        let pivot = row.iter().position(|x| !x.is_zero());
-        let Some((pivot, over)) = pivot.and_then(|pivot| Some((pivot, row[pivot].inverse()?))) else { return false };
-        row.iter_mut().for_each(|x| *x = *x * over);
-        self.0.push((pivot, row));
-        true
-    }
 }
 
 /// Ranks of `O` and `[O | o]` up to each order.
@@ -258,18 +237,8 @@ fn is_generic(ranks: &Ranks, generic: &Finding) -> bool {
     matches!(generic, Finding::Contained { rank, .. } if *rank == ranks.last())
 }
 
-/// Ranks that two fields agree on, each with a seed; a minor that is not zero needs one field only.
-fn agreed(mut ranks: impl FnMut(u64) -> Result<Ranks, String>) -> Result<Ranks, String> {
-    let mut found: Vec<Ranks> = Vec::new();
-    let mut fault = None;
-    for (field, seed) in FIELDS.iter().zip(SEEDS) {
-        match in_field(field, || ranks(seed)) {
-            Ok(ranks) if found.contains(&ranks) || ranks.refuted().is_some_and(|none| none.full_rank) => {
-                return Ok(ranks);
-            }
-            Ok(ranks) => found.push(ranks),
-            Err(reason) => fault = fault.or(Some(reason)),
-        }
-    }
-    Err(fault.unwrap_or_else(|| "no two fields agree on the ranks".into()))
+/// Ranks that two fields agree on; a minor that is not zero needs one field only.
+fn agreed(ranks: impl FnMut(u64) -> Result<Ranks, String>) -> Result<Ranks, String> {
+    exact::agreed(SEEDS, ranks, |ranks| ranks.refuted().is_some_and(|none| none.full_rank))
+        .map_err(|fault| fault.unwrap_or_else(|| "no two fields agree on the ranks".into()))
 }

@@ -6,11 +6,11 @@ use mechanics::{State, System};
 use symbolic::{Expr, Symbol};
 
 use crate::DecisionError;
-use crate::exact::{Exact, FIELDS, Jet, Modular, in_field};
+use crate::exact::{Echelon, Exact, FIELDS, Jet, Modular, in_field};
 use crate::family::{CostateRate, Family, inputs};
 use crate::identity::is_identity;
 use crate::program::Program;
-use crate::proof::{Echelon, Question};
+use crate::proof::Question;
 use crate::random_start::at_random;
 use crate::start::ExactStart;
 

@@ -6,14 +6,13 @@
 //! is one, but for an accident. What is printed has coefficients that are fractions, and is tried at random
 //! points of another field.
 
-use decision::exact::{Exact, FIELDS, Jet, Modular, in_field};
+use decision::exact::{Echelon, Exact, FIELDS, Jet, Modular, in_field};
 use decision::{Dynamics, ExactStart, Program};
 use equations::Equations;
 use mechanics::System;
 use symbolic::{Expr, Symbol};
 
 use crate::Open;
-use crate::flag::Rows;
 use crate::killing::{nullspace, velocity_monomials};
 use crate::local::draws;
 
@@ -40,6 +39,8 @@ pub struct Printed {
     pub expression: Expr,
     /// It, in the names of the scene.
     pub text: String,
+    /// Its terms, likewise.
+    pub terms: Vec<String>,
     /// Degree in the velocities.
     pub degree: usize,
     /// Whether all its terms are linear in the velocities.
@@ -48,6 +49,13 @@ pub struct Printed {
     pub is_energy: bool,
     /// Whether it is the energy and something of a lower degree: a moving energy.
     pub is_moving_energy: bool,
+}
+
+impl Printed {
+    /// The sum of its terms without their signs.
+    pub(crate) fn without_signs(&self) -> String {
+        self.terms.iter().map(|term| format!("sqrt(({term})^2)")).collect::<Vec<_>>().join(" + ")
+    }
 }
 
 /// What was found in an ansatz.
@@ -97,7 +105,8 @@ pub fn ansatz(
 /// Which of these functions of `(q, v, t)` are constant along almost every motion: their rates are zero at
 /// random points of two fields. One that is not zero proves the contrary.
 ///
-/// # Errors As [`ansatz`].
+/// # Errors
+/// As [`ansatz`].
 pub fn constants(
     system: &System,
     equations: &Equations,
@@ -186,19 +195,19 @@ impl<'a> Sample<'a> {
 
 fn found(system: &System, functions: &[Function], (values, rates): &Columns) -> Result<Ansatz, Open> {
     let points = values.first().map_or(0, Vec::len);
-    let mut independent = Rows::default();
+    let mut independent = Echelon::default();
     independent.add(vec![Modular::one(); points]);
     let kept: Vec<usize> = (0..functions.len()).filter(|&i| independent.add(values[i].clone())).collect();
     let columns: Vec<Vec<Modular>> = kept.iter().map(|&i| rates[i].clone()).collect();
     // leading are the last functions: those before are simpler
-    let mut integrals = Rows::default();
+    let mut integrals = Echelon::default();
     for mut x in nullspace(&columns, 0).1 {
         x.reverse();
         integrals.add(x);
     }
     let mut integrals = reduced(integrals);
     integrals.reverse();
-    let mut known = Rows::default();
+    let mut known = Echelon::default();
     known.add(vec![Modular::one(); points]);
     let mut of_degree: Vec<(usize, Vec<Modular>)> = Vec::new();
     let (mut printed, mut unprinted) = (Vec::new(), 0);
@@ -250,6 +259,7 @@ fn written(system: &System, functions: &[Function], coefficients: &[(usize, Exac
     let lower = energy && others.clone().all(|&(i, _)| functions[i].degree < 2);
     Printed {
         text: g.plain(expression),
+        terms: terms.iter().map(|&term| g.plain(term)).collect(),
         expression,
         is_linear: coefficients.iter().all(|&(i, _)| functions[i].degree == 1),
         degree,
@@ -259,7 +269,7 @@ fn written(system: &System, functions: &[Function], coefficients: &[(usize, Exac
 }
 
 /// The reduced echelon form, leading places first.
-fn reduced(rows: Rows) -> Vec<Vec<Modular>> {
+fn reduced(rows: Echelon) -> Vec<Vec<Modular>> {
     let mut rows = rows.0;
     rows.sort_by_key(|(pivot, _)| *pivot);
     for i in (0..rows.len()).rev() {

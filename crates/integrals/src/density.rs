@@ -10,7 +10,7 @@ use decision::{ExactStart, SeriesStart};
 use symbolic::{Fraction, Scalar};
 
 use crate::Open;
-use crate::flag::with_rates;
+use crate::flag::fields_with_rates;
 use crate::killing::nullspace;
 use crate::local::{Reversible, at_random, draws, straight};
 use crate::ring::{Rays, Ring};
@@ -79,7 +79,7 @@ fn logarithms(system: &Reversible, point: &SeriesStart<Modular>, seed: u64) -> R
     let local = system.at(point, &ring, &rays, &straight(&ring, system.coordinates, &system.present))?;
     let angles: Vec<[Modular; 2]> =
         system.present.iter().map(|&i| slopes(&point.positions[i])).collect::<Option<_>>().ok_or(Open::Accident)?;
-    let rows = with_rates(&ring, &local).into_iter().map(|x| {
+    let rows = fields_with_rates(&ring, &local).into_iter().map(|x| {
         let pairs = local.inverse.iter().flatten().zip(local.metric.iter().flatten());
         let of_metric = pairs.fold(Modular::ZERO, |sum, (over, g)| sum + over[0] * ring.along(&x.components, g)[0]);
         let of_angles =

@@ -11,7 +11,7 @@
 //! From `Yσ = τ_Y`, `Zσ = τ_Z` follows `[Y, Z]σ = Y(τ_Z) − Z(τ_Y)`.
 
 use decision::SeriesStart;
-use decision::exact::Modular;
+use decision::exact::{Echelon, Modular};
 
 use crate::Open;
 use crate::local::{Local, Reversible, draws, row_times, straight};
@@ -26,35 +26,21 @@ pub(crate) struct Field {
     pub(crate) components: Vec<Series>,
     pub(crate) rate: Series,
     pub(crate) weight: usize,
+    /// Its place among all fields that were looked at, those of `ker A` first.
+    place: usize,
 }
 
 /// Brackets that are independent at a random point, and the ranks there.
 pub(crate) struct Flag {
     pub(crate) ring: Ring,
+    /// Places of the free velocities.
+    pub(crate) free: Vec<usize>,
     pub(crate) fields: Vec<Field>,
-    /// Rank of all brackets beside their rates `τ`; more than there are fields: no measure.
-    pub(crate) with_rates: usize,
-}
-
-/// Rows that are independent modulo `p`, each with its pivot.
-#[derive(Default)]
-pub(crate) struct Rows(pub(crate) Vec<(usize, Vec<Modular>)>);
-
-impl Rows {
-    /// Whether `row` is independent of the rows so far.
-    pub(crate) fn add(&mut self, mut row: Vec<Modular>) -> bool {
-        for (pivot, other) in &self.0 {
-            let factor = row[*pivot];
-            if !factor.is_zero() {
-                row[*pivot..].iter_mut().zip(&other[*pivot..]).for_each(|(x, &y)| *x = *x - factor * y);
-            }
-        }
-        let pivot = row.iter().position(|x| !x.is_zero());
-        let Some((pivot, over)) = pivot.and_then(|pivot| Some((pivot, row[pivot].inverse()?))) else { return false };
-        row.iter_mut().for_each(|x| *x = *x * over);
-        self.0.push((pivot, row));
-        true
-    }
+    /// Brackets that were looked at, as two places; they have the places after the `m` fields of `ker A`.
+    pub(crate) brackets: Vec<[usize; 2]>,
+    /// Fields that are independent beside their rates `τ`, as places and `(Y, τ)` at the point; more than
+    /// there are `fields`: no measure.
+    pub(crate) with_rates: Vec<(usize, Vec<Modular>)>,
 }
 
 impl Flag {
@@ -69,9 +55,10 @@ impl Flag {
         let ring = Ring::new(&weights, system.present.clone(), order);
         let rays = Rays::new(&ring, &mut draws(seed)).ok_or(Open::Accident)?;
         let local = system.at(point, &ring, &rays, &straight(&ring, n, &system.present))?;
-        let basis = with_rates(&ring, &local);
-        let (mut span, mut beside) = (Rows::default(), Rows::default());
+        let basis = fields_with_rates(&ring, &local);
+        let (mut span, mut beside) = (Echelon::default(), Echelon::default());
         let mut fields: Vec<Field> = Vec::new();
+        let (mut brackets, mut with_rates) = (Vec::new(), Vec::new());
         let mut candidates = basis.clone();
         for weight in 2.. {
             let begin = fields.len();
@@ -79,7 +66,9 @@ impl Flag {
                 let mut row: Vec<Modular> = field.components.iter().map(|x| x[0]).collect();
                 let grows = span.add(row.clone());
                 row.push(field.rate[0]);
-                beside.add(row);
+                if beside.add(row.clone()) {
+                    with_rates.push((field.place, row));
+                }
                 if grows {
                     fields.push(field);
                 }
@@ -88,34 +77,38 @@ impl Flag {
                 break;
             }
             let last = &fields[begin..];
-            let with = |x: &Field| last.iter().map(|y| bracket(&ring, x, y, weight)).collect::<Vec<_>>();
-            candidates = basis.iter().flat_map(with).collect();
+            candidates = Vec::new();
+            for (x, y) in basis.iter().flat_map(|x| last.iter().map(move |y| (x, y))) {
+                let place = basis.len() + brackets.len();
+                brackets.push([x.place, y.place]);
+                candidates.push(bracket(&ring, x, y, weight, place));
+            }
         }
-        Ok(Flag { fields, with_rates: beside.0.len(), ring })
+        Ok(Flag { free: local.free, fields, brackets, with_rates, ring })
     }
 }
 
-fn bracket(ring: &Ring, y: &Field, z: &Field, weight: usize) -> Field {
+fn bracket(ring: &Ring, y: &Field, z: &Field, weight: usize, place: usize) -> Field {
     let components = ring.bracket(&y.components, &z.components);
     let rate = minus(&ring.along(&y.components, &z.rate), &ring.along(&z.components, &y.rate));
-    Field { components, rate, weight }
+    Field { components, rate, weight, place }
 }
 
 /// The fields `X_b` with their rates `−θ_b`.
-pub(crate) fn with_rates(ring: &Ring, local: &Local) -> Vec<Field> {
+pub(crate) fn fields_with_rates(ring: &Ring, local: &Local) -> Vec<Field> {
     let reciprocal: Vec<Vec<Series>> = local.inverse.iter().map(|over| combined(ring, &local.basis, over)).collect();
     // M times Σ_d g^{ad} N_d: what C^a is taken with
     let covectors: Vec<Vec<Series>> = reciprocal.iter().map(|x| row_times(ring, &local.mass, x)).collect();
-    let of = |x: &Vec<Series>| {
+    let of = |(place, x): (usize, &Vec<Series>)| {
         let divergence = ring.divergence(x);
         let traces = local.basis.iter().zip(&covectors).map(|(a, covector)| {
             let commutator = ring.bracket(x, a);
             ring.dot(commutator.iter().zip(covector))
         });
         let rate = traces.fold(minus(&ring.zero(), &divergence), |sum, trace| minus(&sum, &trace));
-        Field { components: x.clone(), rate, weight: 1 }
+        Field { components: x.clone(), rate, weight: 1, place }
     };
-    local.basis.iter().map(of).collect()
+    local.basis.iter().enumerate().map(of).collect()
 }
 
 /// `Σ_d c_d N_d`.

@@ -16,12 +16,16 @@
 //! coefficients and the combinations of what is left. What is left is an upper bound: a coefficient matrix
 //! of full rank mod p has that rank. Where nothing new is free and nothing falls away over `step + 1`
 //! weights, as many as the relations between brackets reach, all of it is.
+//!
+//! An integral without terms up to a weight begins with new coefficients that are free there. Their
+//! equations are those of the nilpotent approximation, whose fields commute with those of the other side,
+//! derivatives along which lower weights by one: where none are free, none are at a higher weight.
 
 use decision::SeriesStart;
-use decision::exact::Modular;
+use decision::exact::{Echelon, Modular};
 
 use crate::Open;
-use crate::flag::{Flag, MOST, Rows};
+use crate::flag::{Flag, MOST};
 use crate::local::{Local, Reversible, draws, over_factorial, row_times};
 use crate::ring::{Rays, Ring, Series, count, minus};
 
@@ -31,6 +35,8 @@ pub(crate) type Integral = Vec<Series>;
 /// A system in privileged coordinates at a point.
 pub(crate) struct Killing {
     pub(crate) ring: Ring,
+    /// `q − q₀` in these coordinates.
+    pub(crate) chart: Vec<Series>,
     step: usize,
     fields: Vec<Vec<Series>>,
     local: Local,
@@ -93,7 +99,7 @@ impl Killing {
         let over = ring.inverse(&jacobian).ok_or(Open::Accident)?;
         let fields: Vec<Vec<Series>> = local.basis.iter().map(|x| row_times(&ring, &over, x)).collect();
         let (gamma, force) = accelerations(&ring, &local, &fields);
-        Ok(Killing { ring, step, fields, local, gamma, force })
+        Ok(Killing { ring, chart, step, fields, local, gamma, force })
     }
 
     /// `(E, coefficient)` of the terms of `Ḟ` that `k_I` enters without a derivative.
@@ -132,7 +138,7 @@ impl Killing {
             (0..monomials.len()).map(|j| ring.constant(if i == j { Modular::one() } else { Modular::ZERO })).collect()
         };
         let mut integrals: Vec<Integral> = (0..monomials.len()).map(unit).collect();
-        let mut quiet = 0;
+        let (mut quiet, mut free) = (0, 0);
         for weight in 1..=ring.order {
             let below = ring.of_weight(weight - 1);
             let size = below.len();
@@ -162,15 +168,19 @@ impl Killing {
                 columns.push(column);
             }
             if columns.len() > MOST {
-                return Err(Open::Unsettled { most: integrals.len(), order: weight - 1 });
+                return Err(Open::Columns { order: weight, most: MOST });
             }
             let before = integrals.len();
-            let (free, kernel) = nullspace(&columns, fresh.len());
+            let (now_free, kernel) = nullspace(&columns, fresh.len());
+            free = now_free;
             integrals = kernel.iter().map(|x| self.combined(&integrals, &fresh, x)).collect();
             quiet = if free == 0 && integrals.len() == before { quiet + 1 } else { 0 };
             if integrals.is_empty() || (until_settled && quiet > self.step) {
                 return Ok(Kernel { monomials, integrals, settled: true, order: weight });
             }
+        }
+        if free > 0 {
+            return Err(Open::Free { order: ring.order, free });
         }
         Ok(Kernel { monomials, integrals, settled: quiet > self.step, order: ring.order })
     }
@@ -238,7 +248,7 @@ impl Killing {
 
 /// Rank of integrals up to a weight.
 pub(crate) fn rank(ring: &Ring, integrals: &[Integral], order: usize) -> usize {
-    let mut rows = Rows::default();
+    let mut rows = Echelon::default();
     let last = ring.of_weight(order).end;
     integrals.iter().filter(|x| rows.add(x.iter().flat_map(|k| k[..last].to_vec()).collect())).count()
 }
@@ -315,7 +325,7 @@ fn accelerations(ring: &Ring, local: &Local, fields: &[Vec<Series>]) -> (Vec<Vec
 pub(crate) fn nullspace(columns: &[Vec<Modular>], fresh: usize) -> (usize, Vec<Vec<Modular>>) {
     let height = columns.first().map_or(0, Vec::len);
     let width = columns.len();
-    let mut rows = Rows::default();
+    let mut rows = Echelon::default();
     for i in 0..height {
         if rows.0.len() == width {
             break;

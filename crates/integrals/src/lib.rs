@@ -32,6 +32,8 @@
 //! arXiv:2404.14156.
 
 mod ansatz;
+mod answer;
+mod certificate;
 mod density;
 mod flag;
 mod killing;
@@ -39,8 +41,11 @@ mod local;
 mod open;
 mod reversible;
 mod ring;
+mod words;
 
 pub use ansatz::{Ansatz, Printed, ansatz, constants};
+pub use answer::{Integrals, NoAnswer};
+pub use certificate::Certificate;
 pub use density::Density;
 pub use open::Open;
 pub use reversible::{Found, Measure, Reversed, reversible};

@@ -56,13 +56,21 @@ pub enum Open {
     /// Two fields disagree, or random numbers are dependent.
     #[error("random points of two fields do not agree")]
     Accident,
-    /// The number falls still, or has not been the same for long enough.
-    #[error("at most {most}: the number is not settled at order {order}, the highest that was looked at")]
-    Unsettled {
-        /// An upper bound, which is proved.
-        most: usize,
-        /// The order.
+    /// A step would have too many unknowns.
+    #[error("the equations of order {order} have more than {most} unknowns")]
+    Columns {
+        /// The weight.
         order: usize,
+        /// Most that are taken.
+        most: usize,
+    },
+    /// Coefficients are free at the last weight: what is left bounds nothing.
+    #[error("{free} coefficients are free still at order {order}, the highest that was looked at: there is no bound")]
+    Free {
+        /// The weight.
+        order: usize,
+        /// How many.
+        free: usize,
     },
     /// Two roads do not agree: a fault of the program.
     #[error("a contradiction, please report it: {0}")]
@@ -70,4 +78,11 @@ pub enum Open {
     /// Something else, in words.
     #[error("{0}")]
     Other(String),
+}
+
+impl Open {
+    /// Why two fields agree on nothing.
+    pub(crate) fn or_accident(fault: Option<Open>) -> Open {
+        fault.unwrap_or(Open::Accident)
+    }
 }

@@ -1,7 +1,7 @@
 //! What is asked of a system without time, of homogeneous constraints and a potential.
 
 use decision::ExactStart;
-use decision::exact::{FIELDS, in_field};
+use decision::exact::{FIELDS, agreed};
 use mechanics::System;
 
 use crate::Open;
@@ -69,25 +69,6 @@ pub struct Reversed {
     pub integrals: Vec<Result<Found, Open>>,
 }
 
-/// What two fields agree on, each with a seed; `enough` of it needs one field only.
-fn agreed<T: PartialEq>(
-    mut compute: impl FnMut(u64) -> Result<T, Open>,
-    enough: impl Fn(&T) -> bool,
-) -> Result<T, Open> {
-    let mut found: Vec<T> = Vec::new();
-    let mut fault = None;
-    for (field, seed) in FIELDS.iter().zip(SEEDS) {
-        match in_field(field, || compute(seed)) {
-            Ok(x) if enough(&x) || found.contains(&x) => return Ok(x),
-            Ok(x) => found.push(x),
-            // random numbers do not help against these
-            Err(open @ (Open::Size { .. } | Open::Integrable { .. })) => return Err(open),
-            Err(open) => fault = fault.or(Some(open)),
-        }
-    }
-    Err(fault.unwrap_or(Open::Accident))
-}
-
 /// Whether Chetaev's motion has an invariant measure.
 ///
 /// # Errors
@@ -97,10 +78,10 @@ fn decide_measure(system: &Reversible, start: &ExactStart) -> Result<Measure, Op
     let ranks = |seed| {
         at_random(start, seed, |point| {
             let flag = Flag::new(system, point, seed)?;
-            Ok((flag.fields.len(), flag.with_rates))
+            Ok((flag.fields.len(), flag.with_rates.len()))
         })
     };
-    let (rank, with_rates) = agreed(ranks, |&(_, with_rates)| with_rates == n + 1)?;
+    let (rank, with_rates) = agreed(SEEDS, ranks, |&(_, with_rates)| with_rates == n + 1).map_err(Open::or_accident)?;
     if with_rates > rank {
         return Ok(Measure::None { proved: with_rates == n + 1 });
     }
@@ -124,6 +105,7 @@ fn decide_integrals(system: &Reversible, start: &ExactStart, degree: usize) -> R
     let mut last = Err(Open::Accident);
     for extra in ORDERS {
         let found = agreed(
+            SEEDS,
             |seed| {
                 at_random(start, seed, |point| {
                     let flag = Flag::new(system, point, seed)?;
@@ -132,7 +114,8 @@ fn decide_integrals(system: &Reversible, start: &ExactStart, degree: usize) -> R
                 })
             },
             Found::none_proved,
-        );
+        )
+        .map_err(Open::or_accident);
         match found {
             Ok(found) if found.settled || found.none_proved() => return Ok(found),
             Ok(found) => last = Ok(found),

@@ -97,7 +97,7 @@ impl Output {
 /// An object as JSON for readers, with an end of line; first its file of `docs/schemas`, and the version.
 /// Coordinates are in the order of the scene, verdicts and proofs by name.
 pub fn pretty(kind: &str, object: &Value) -> String {
-    if matches!(kind, "verdicts" | "certificate") {
+    if matches!(kind, "verdicts" | "certificate" | "integrals-certificate") {
         return printed(kind, &sorted(object.clone()));
     }
     printed(kind, object)

@@ -19,10 +19,10 @@ CONSTANT = ["disc"]
 
 
 def density(scene):
-    """What is said: names of the free velocities, exponent of det(g), exponents of |sin| and |cos| by coordinate."""
+    """What is said: names of the free velocities, exponents of |det(g)| and of |sin| and |cos| by coordinate."""
     said = subprocess.run([PROGRAM, "integrals", scene, "--degree", "1", "--format", "json"], check=True, capture_output=True, text=True)
     text = json.loads(said.stdout)["measure"]["density"]
-    factors = {name: Fraction(power or 1) for name, power in re.findall(r"(det\(g\)|\|\w+\(\w+\)\|)(?:\^\(([^)]*)\))?", text.split(" dq ds")[0])}
+    factors = {name: Fraction(power or 1) for name, power in re.findall(r"(\|\w+\(\w+\)\|)(?:\^\(([^)]*)\))?", text.split(" dq ds")[0])}
     return re.search(r"s = \(([^)]*)\)", text)[1].split(", "), factors
 
 
@@ -51,7 +51,7 @@ class Motion:
 
     def density(self, q, factors):
         basis = self.basis(q)
-        value = np.linalg.det(basis.T @ self.system.mass(0.0, q, np.zeros(len(q))) @ basis) ** float(factors.get("det(g)", 0))
+        value = np.linalg.det(basis.T @ self.system.mass(0.0, q, np.zeros(len(q))) @ basis) ** float(factors.get("|det(g)|", 0))
         for name, power in factors.items():
             if found := re.match(r"\|(sin|cos)\((\w+)\)\|", name):
                 value *= abs(getattr(np, found[1])(q[self.names.index(found[2])])) ** float(power)
@@ -84,5 +84,5 @@ def test_the_flow_keeps_the_density_that_is_written(scene):
         q, s = start + 0.3 * random.uniform(-1, 1, len(start)), random.uniform(-1, 1, len(free))
         assert abs(motion.divergence(q, s, factors)) < 1e-8
         # another power of the metric is not kept where that varies
-        off.append(abs(motion.divergence(q, s, factors | {"det(g)": factors.get("det(g)", 0) + 1})))
+        off.append(abs(motion.divergence(q, s, factors | {"|det(g)|": factors.get("|det(g)|", 0) + 1})))
     assert max(off) > 1e-3 or scene in CONSTANT, off

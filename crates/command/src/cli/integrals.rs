@@ -7,6 +7,7 @@ use equations::Formulation;
 use program::TextOrJson;
 
 use super::SceneArguments;
+use super::range::{Range, range};
 
 /// `deltaq integrals`.
 #[derive(Args, Debug)]
@@ -22,6 +23,13 @@ pub struct IntegralsArguments {
     /// Coordinates that the functions of the ansatz contain; those in L and in the constraints if left out.
     #[arg(long = "in", value_name = "NAME,…", value_delimiter = ',')]
     pub names: Vec<String>,
+    /// Vary a number: a row per value, as CSV, of measure and numbers of integrals; again for more numbers.
+    #[arg(long, value_name = "NAME=FROM:TO:COUNT", value_parser = range,
+          conflicts_with_all = ["certificates", "format", "names", "formulation"])]
+    pub sweep: Vec<Range>,
+    /// Folder for certificates of what is proved or written down, a file for each, which others can check.
+    #[arg(long, value_name = "FOLDER")]
+    pub certificates: Option<PathBuf>,
     /// Output format.
     #[arg(long, value_enum, default_value_t = TextOrJson::Text)]
     pub format: TextOrJson,

@@ -72,3 +72,24 @@ pub fn in_field<T>(field: &'static Field, compute: impl FnOnce() -> T) -> T {
     let _back = Back(FIELD.replace(field));
     compute()
 }
+
+/// What `compute` finds alike in two fields, in each with one of the `seeds`; what is `enough` needs one only.
+///
+/// # Errors
+/// The first fault of `compute`; `None` where it has none, and no two fields agree.
+pub fn agreed<T: PartialEq, E>(
+    seeds: [u64; FIELDS.len()],
+    mut compute: impl FnMut(u64) -> Result<T, E>,
+    enough: impl Fn(&T) -> bool,
+) -> Result<T, Option<E>> {
+    let mut found: Vec<T> = Vec::new();
+    let mut fault = None;
+    for (field, seed) in FIELDS.iter().zip(seeds) {
+        match in_field(field, || compute(seed)) {
+            Ok(x) if enough(&x) || found.contains(&x) => return Ok(x),
+            Ok(x) => found.push(x),
+            Err(error) => fault = fault.or(Some(error)),
+        }
+    }
+    Err(fault)
+}

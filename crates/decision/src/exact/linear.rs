@@ -1,6 +1,6 @@
-//! Small linear systems over any coefficients.
+//! Small linear systems over any coefficients, and rows modulo a prime.
 
-use super::Coefficient;
+use super::{Coefficient, Modular};
 
 /// The inverse of a square matrix, and its determinant; `None` where it is singular.
 pub fn inverse<C: Coefficient>(matrix: &[C], size: usize, one: C) -> Option<(Vec<C>, C)> {
@@ -67,5 +67,26 @@ pub(crate) fn subtract_product<C: Coefficient>(
                 }
             }
         }
+    }
+}
+
+/// Rows that are independent modulo `p`, each with its pivot: what comes first in it is 1, and stands there.
+#[derive(Default)]
+pub struct Echelon(pub Vec<(usize, Vec<Modular>)>);
+
+impl Echelon {
+    /// Takes `row` in where it is independent of the rows so far, and says whether it is.
+    pub fn add(&mut self, mut row: Vec<Modular>) -> bool {
+        for (pivot, other) in &self.0 {
+            let factor = row[*pivot];
+            if !factor.is_zero() {
+                row[*pivot..].iter_mut().zip(&other[*pivot..]).for_each(|(x, &y)| *x = *x - factor * y);
+            }
+        }
+        let pivot = row.iter().position(|x| !x.is_zero());
+        let Some((pivot, over)) = pivot.and_then(|pivot| Some((pivot, row[pivot].inverse()?))) else { return false };
+        row.iter_mut().for_each(|x| *x = *x * over);
+        self.0.push((pivot, row));
+        true
     }
 }

@@ -9,9 +9,9 @@ mod small_fraction;
 
 use symbolic::{Bounded, Scalar};
 
-pub use field::{FIELDS, Field, in_field};
+pub use field::{FIELDS, Field, agreed, in_field};
 pub use jet::{Jet, ORDERS};
-pub use linear::inverse;
+pub use linear::{Echelon, inverse};
 pub(crate) use linear::{solve, subtract_product};
 pub use modular::Modular;
 pub(crate) use modular::TRIED;

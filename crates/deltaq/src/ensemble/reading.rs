@@ -113,7 +113,7 @@ impl Reader<'_> {
     }
 
     fn at(&mut self, run: &MemberRun, i: usize, t: f64, y: &[f64]) -> Result<Outputs, SolveError> {
-        run.unknowns.get(i).into_iter().for_each(|unknowns| self.compiled.set_guess(unknowns));
+        guess(&mut self.compiled, run, i);
         outputs(&mut self.compiled, t, y)
     }
 
@@ -181,12 +181,16 @@ impl Reader<'_> {
     }
 }
 
-/// Equations of the instant that have several roots start from that of the motion at an instant, or of its
-/// start.
+/// Equations of the instant that have several roots start from that of the motion at an instant.
+fn guess(compiled: &mut Compiled, run: &MemberRun, i: usize) {
+    run.unknowns.get(i).into_iter().for_each(|unknowns| compiled.set_guess(unknowns));
+}
+
+/// As [`guess`] at an instant, or at the start.
 fn set_root(compiled: &mut Compiled, member: &EnsembleMember, run: &MemberRun, instant: Option<usize>) {
     match instant {
         None => member.set(compiled),
-        Some(i) => run.unknowns.get(i).into_iter().for_each(|unknowns| compiled.set_guess(unknowns)),
+        Some(i) => guess(compiled, run, i),
     }
 }
 

@@ -120,3 +120,4 @@ for _class, _module in ((Motion, "motion"), (Ensemble, "ensemble"), (Comparison,
             setattr(_class, f"to_{_kind}", _function)
 
 setattr(System, "prove", _proof.prove)
+setattr(System, "integrals", _proof.integrals)

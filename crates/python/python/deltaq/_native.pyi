@@ -257,7 +257,21 @@ class System:
         >>> sledge.prove().certificate["order"] >= 1
         True
         """
-    def _certificate(self, almost_every_start: bool) -> tuple[dict[str, Any] | None, str | None]: ...
+    def integrals(self, formulation: str = "chetaev", degree: int = 2, names: Iterable[str] = ()) -> dict[str, Any]:
+        """Which invariant measure and first integrals there are: printed, counted, or proved to be none.
+
+        formulation: its own equations are looked at in the ansatz; measures and numbers of integrals are answered for
+        "chetaev" alone.
+        degree: the highest one in the velocities, from 1 to 3.
+        names: coordinates that the functions of the ansatz contain; those in L and in the constraints if left out.
+
+        As `deltaq integrals --format json` and its schema. Numbers count as they were written.
+
+        >>> sledge.integrals(degree=1)["polynomials"][0]["answer"]
+        'local'
+        """
+    def _certificate(self, almost_every_start: bool) -> tuple[str | None, str | None]: ...
+    def _integrals(self, formulation: str, degree: int, names: list[str]) -> str: ...
     def connect(
         self,
         to: Mapping[str, float],

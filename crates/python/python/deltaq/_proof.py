@@ -1,8 +1,8 @@
-"""Certificates that no multipliers make the vakonomic motion Chetaev's, as `deltaq prove` writes them."""
+"""Certificates as `deltaq prove` writes them; invariant measures and first integrals as `deltaq integrals` answers."""
 
-import hashlib
 import json
 import os
+from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -36,9 +36,28 @@ def prove(self: System, almost_every_start: bool = False) -> Proof:
     >>> sledge.prove().certificate["order"] >= 1
     True
     """
-    fields, because = self._certificate(almost_every_start)
-    if fields is not None:
-        plain = json.dumps(fields["scene"], sort_keys=True, separators=(",", ":"), ensure_ascii=False)
-        fields["digest"] = f"sha256:{hashlib.sha256(plain.encode()).hexdigest()}"
-        fields = {"schema": _SCHEMA} | json.loads(json.dumps(fields, sort_keys=True))
-    return Proof(fields, because)
+    text, because = self._certificate(almost_every_start)
+    return Proof(None if text is None else {"schema": _SCHEMA} | _sorted(json.loads(text)), because)
+
+
+def _sorted(value: Any) -> Any:
+    """By name, as deltaq prints what is in it."""
+    return json.loads(json.dumps(value, sort_keys=True))
+
+
+def integrals(self: System, formulation: str = "chetaev", degree: int = 2, names: Iterable[str] = ()) -> dict[str, Any]:
+    """Which invariant measure and first integrals there are: printed, counted, or proved to be none.
+
+    formulation: its own equations are looked at in the ansatz; measures and numbers of integrals are answered for
+    "chetaev" alone.
+    degree: the highest one in the velocities, from 1 to 3.
+    names: coordinates that the functions of the ansatz contain; those in L and in the constraints if left out.
+
+    As `deltaq integrals --format json` and its schema. Numbers count as they were written.
+
+    >>> sledge.integrals(degree=1)["polynomials"][0]["answer"]
+    'local'
+    """
+    if not 1 <= degree <= 3:
+        raise ValueError(f"degree: {degree} is not from 1 to 3")
+    return {"schema": "deltaq/integrals/1"} | json.loads(self._integrals(formulation, degree, list(names)))

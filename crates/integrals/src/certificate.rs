@@ -1,0 +1,178 @@
+//! What somebody else needs to check an answer: `validation/proof/verify.py` reads it.
+
+use decision::exact::{FIELDS, Modular, in_field, inverse};
+use decision::{ExactStart, Images, PlainScene, SeriesStart, named};
+use deltaq::CHETAEV;
+use mechanics::System;
+use serde_json::{Map, Value, json};
+use symbolic::Fraction;
+
+use crate::flag::Flag;
+use crate::killing::Killing;
+use crate::local::{Reversible, at_random};
+use crate::{Density, Found, Integrals, Measure, NoAnswer, Open, words};
+
+/// Of the random points.
+const SEED: u64 = 0x17e6_0005;
+
+/// A certificate by the name of what it is about, or why there is none.
+pub type Certificate = (String, Result<Value, Open>);
+
+/// What certificates of a scene share.
+struct Question<'a> {
+    system: &'a System,
+    start: ExactStart,
+    set: &'a [(String, String)],
+}
+
+impl Integrals {
+    /// Certificates of what is proved, bounded or written down about Chetaev's motion; `set` are the numbers
+    /// that were set, as they were written.
+    ///
+    /// # Errors
+    /// [`NoAnswer::Start`].
+    pub fn certificates(&self, set: &[(String, String)]) -> Result<Vec<Certificate>, NoAnswer> {
+        let mut all = Vec::new();
+        if self.formulation != CHETAEV.name {
+            return Ok(all);
+        }
+        let system = &self.scene.system;
+        let start = ExactStart::new(system, &self.scene.start, &self.scene.completion, None)?;
+        let question = Question { system, start, set };
+        if let (Some(found), Ok(reversible)) = (&self.reversed, Reversible::new(system)) {
+            match &found.measure {
+                Measure::None { proved: true } => all.push(("measure".into(), question.no_measure(&reversible))),
+                Measure::Local { density: Some(density) } => {
+                    all.push(("measure".into(), question.of("measure", |_| Ok(question.density(density)))));
+                }
+                _ => {}
+            }
+            for found in found.integrals.iter().flatten().filter(|found| found.none_proved() || found.settled) {
+                all.push((words::degree(found.degree - 1).into(), question.bound(&reversible, found)));
+            }
+        }
+        for (i, printed) in self.ansatz.iter().flat_map(|found| &found.printed).enumerate() {
+            let text = || Map::from_iter([("integral".into(), printed.text.clone().into())]);
+            all.push((format!("integral-{}", i + 1), question.of("integral", |_| Ok(text()))));
+        }
+        Ok(all)
+    }
+}
+
+impl Question<'_> {
+    /// A certificate whose own fields are computed at a random point, of the first field where they can be.
+    fn of(
+        &self,
+        kind: &str,
+        compute: impl Fn(&SeriesStart<Modular>) -> Result<Map<String, Value>, Open>,
+    ) -> Result<Value, Open> {
+        let at = |point: &SeriesStart<Modular>| {
+            let scene = PlainScene::at_random_point(&self.start, point).map_err(Open::Other)?;
+            let mut value = Images::at(&self.start, point).map_err(Open::Other)?.fields();
+            value.extend(compute(point)?);
+            let common = [
+                ("kind", kind.into()),
+                ("digest", scene.digest().into()),
+                ("scene", scene.value()),
+                ("set", named(self.set).into()),
+            ];
+            value.extend(common.map(|(name, field): (_, Value)| (name.to_owned(), field)));
+            Ok(Value::from(value))
+        };
+        let in_one = |field| in_field(field, || at_random(&self.start, SEED, at));
+        let first = in_one(&FIELDS[0]);
+        first.or_else(|open| FIELDS[1..].iter().find_map(|field| in_one(field).ok()).ok_or(open))
+    }
+
+    fn velocities(&self, places: &[usize]) -> Value {
+        places.iter().map(|&i| format!("{}'", self.system.coordinates[i].name)).collect::<Vec<_>>().into()
+    }
+
+    fn no_measure(&self, reversible: &Reversible) -> Result<Value, Open> {
+        self.of("no measure", |point| {
+            let flag = Flag::new(reversible, point, SEED)?;
+            let size = self.system.dimension() + 1;
+            let (places, rows): (Vec<usize>, Vec<Vec<Modular>>) = flag.with_rates.iter().cloned().unzip();
+            let minor = if rows.len() == size { inverse(&rows.concat(), size, Modular::one()) } else { None };
+            let (_, minor) = minor.ok_or(Open::Accident)?;
+            let (brackets, places) = needed(flag.free.len(), &flag.brackets, &places);
+            Ok(fields(json!({
+                "free": self.velocities(&flag.free),
+                "brackets": brackets,
+                "rows": places,
+                "minor": minor.value(),
+            })))
+        })
+    }
+
+    fn density(&self, density: &Density) -> Map<String, Value> {
+        let text = |x: &Fraction| x.to_string();
+        let angle = |(i, [sine, cosine]): &(usize, [Fraction; 2])| {
+            (self.system.coordinates[*i].name.clone(), json!([text(sine), text(cosine)]))
+        };
+        let angles: Map<String, Value> = density.of_angles.iter().map(angle).collect();
+        fields(json!({
+            "free": self.velocities(&density.free),
+            "density": { "metric": text(&density.of_metric), "angles": angles },
+        }))
+    }
+
+    fn bound(&self, reversible: &Reversible, found: &Found) -> Result<Value, Open> {
+        self.of("bound", |point| {
+            let flag = Flag::new(reversible, point, SEED)?;
+            let killing = Killing::new(reversible, &flag, point, found.order, SEED)?;
+            let kernel = killing.kernel(found.degree, true)?;
+            let ring = &killing.ring;
+            let series = killing.chart.iter().zip(&point.positions).map(|(chart, q)| {
+                let terms = ring
+                    .monomials
+                    .iter()
+                    .zip(chart)
+                    .enumerate()
+                    .map(|(place, (exponents, &x))| (exponents, if place == 0 { q.coefficient(0) } else { x }));
+                let terms = terms.filter(|(_, x)| !x.is_zero()).map(|(exponents, x)| json!([exponents, x.value()]));
+                Value::from(terms.collect::<Vec<_>>())
+            });
+            let names = self.system.coordinates.iter().map(|c| c.name.clone());
+            let chart: Map<String, Value> = names.zip(series).collect();
+            Ok(fields(json!({
+                "degree": found.degree,
+                "free": self.velocities(&flag.free),
+                "weights": ring.weights,
+                "order": kernel.order,
+                "chart": chart,
+                "bound": kernel.integrals.len(),
+            })))
+        })
+    }
+}
+
+fn fields(value: Value) -> Map<String, Value> {
+    match value {
+        Value::Object(fields) => fields,
+        _ => Map::new(),
+    }
+}
+
+/// The brackets that `rows` are made of, and their new places, `m` fields coming first.
+fn needed(m: usize, brackets: &[[usize; 2]], rows: &[usize]) -> (Vec<[usize; 2]>, Vec<usize>) {
+    let mut used = vec![false; m + brackets.len()];
+    rows.iter().for_each(|&place| used[place] = true);
+    for (k, bracket) in brackets.iter().enumerate().rev() {
+        if used[m + k] {
+            bracket.iter().for_each(|&place| used[place] = true);
+        }
+    }
+    let mut count = m;
+    let places: Vec<usize> = (0..used.len())
+        .map(|place| match place < m {
+            true => place,
+            false => {
+                count += usize::from(used[place]);
+                count - 1
+            }
+        })
+        .collect();
+    let kept = brackets.iter().enumerate().filter(|(k, _)| used[m + k]);
+    (kept.map(|(_, bracket)| bracket.map(|place| places[place])).collect(), rows.iter().map(|&i| places[i]).collect())
+}

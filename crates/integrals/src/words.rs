@@ -1,0 +1,214 @@
+//! Answers in words and as one JSON value.
+
+use std::fmt::{self, Display, Formatter};
+
+use mechanics::System;
+use serde_json::{Value, json};
+
+use crate::{Density, Found, Integrals, Measure, Open, Printed, Reversed};
+
+/// What integrals of degree `below + 1` are called.
+pub(crate) fn degree(below: usize) -> &'static str {
+    ["linear", "quadratic", "cubic"].get(below).unwrap_or(&"higher")
+}
+
+impl Display for Integrals {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        writeln!(f, "{}: {}", self.scene.name, self.formulation)?;
+        if let Some(found) = &self.reversed {
+            writeln!(
+                f,
+                "near almost every point; a measure is smooth and positive there, periods of angles are not asked for"
+            )?;
+            writeln!(f, "{:<14}{}", "measure", measure_words(&self.scene.system, &found.measure))?;
+            for (i, found) in found.integrals.iter().enumerate() {
+                writeln!(f, "{:<14}{}", degree(i), count_words(found))?;
+            }
+        }
+        match &self.ansatz {
+            Err(open) => writeln!(f, "{:<14}open ({open})", "ansatz")?,
+            Ok(found) => {
+                let names = if found.names.is_empty() { "no coordinate".into() } else { found.names.join(", ") };
+                writeln!(
+                    f,
+                    "{:<14}{} functions, in {names} to degree {}: {} constant combinations, {} without the products",
+                    "ansatz",
+                    found.functions,
+                    found.spatial,
+                    found.dimension,
+                    found.printed.len() + found.unprinted,
+                )?;
+                for (i, integral) in found.printed.iter().enumerate() {
+                    let drift = match &self.drifts {
+                        Ok(drifts) => format!("drift {:.0e}", drifts[i]),
+                        Err(why) => format!("no motion to try it on: {why}"),
+                    };
+                    writeln!(f, "{:<14}{} = const ({drift})", kind(integral), integral.text)?;
+                }
+                if found.unprinted > 0 {
+                    writeln!(f, "{:<14}{} with coefficients that are no moderate fractions", "", found.unprinted)?;
+                }
+            }
+        }
+        match &self.invariants {
+            Err(open) => writeln!(f, "{:<14}of the scene: open ({open})", "invariants")?,
+            Ok(invariants) => {
+                for (name, held) in invariants {
+                    let words = if *held { "constant, at random points of two fields" } else { "not constant: proved" };
+                    writeln!(f, "{:<14}`{name}` of the scene: {words}", "invariant")?;
+                }
+            }
+        }
+        Ok(())
+    }
+}
+
+fn kind(integral: &Printed) -> &'static str {
+    match integral {
+        _ if integral.is_energy => "energy",
+        _ if integral.is_moving_energy => "moving energy",
+        _ => "integral",
+    }
+}
+
+fn measure_words(system: &System, measure: &Measure) -> String {
+    match measure {
+        Measure::None { proved: true } => "none: proved".into(),
+        Measure::None { proved: false } => "none, by ranks modulo two primes: no proof".into(),
+        Measure::Local { density: None } => "one, locally, not printed in this ansatz".into(),
+        Measure::Local { density: Some(density) } => format!("{}, verified", density_words(system, density)),
+        Measure::Open(open) => format!("open ({open})"),
+    }
+}
+
+/// The density in the names of the scene.
+fn density_words(system: &System, density: &Density) -> String {
+    let power = |base: String, exponent: String| match &exponent[..] {
+        "0" => None,
+        "1" => Some(base),
+        _ => Some(format!("{base}^({exponent})")),
+    };
+    let mut factors: Vec<String> = power("|det(g)|".into(), density.of_metric.to_string()).into_iter().collect();
+    for (i, exponents) in &density.of_angles {
+        for (function, exponent) in ["sin", "cos"].into_iter().zip(exponents) {
+            factors.extend(power(format!("|{function}({})|", system.coordinates[*i].name), exponent.to_string()));
+        }
+    }
+    let free: Vec<String> = density.free.iter().map(|&i| format!("{}'", system.coordinates[i].name)).collect();
+    let volume = "dq ds";
+    let product = if factors.is_empty() { volume.into() } else { format!("{} {volume}", factors.join(" ")) };
+    format!("{product}, s = ({}), T = g_ab s^a s^b/2 on the constraints", free.join(", "))
+}
+
+fn count_words(found: &Result<Found, Open>) -> String {
+    match found {
+        Err(open) => format!("open ({open})"),
+        Ok(found) if found.none_proved() && found.trivial == 0 => "none: proved".into(),
+        Ok(found) if found.none_proved() => {
+            format!("none but {} of energy, constants and products: proved", found.trivial)
+        }
+        Ok(found) if found.settled => format!("{} local ones{}", found.further(), beside(found)),
+        Ok(found) => format!(
+            "open (at most {} local ones{}: proved; not settled at order {})",
+            found.further(),
+            beside(found),
+            found.order
+        ),
+    }
+}
+
+fn beside(found: &Found) -> String {
+    if found.trivial == 0 {
+        String::new()
+    } else {
+        format!(" beside {} of energy, constants and products", found.trivial)
+    }
+}
+
+impl Reversed {
+    /// A word on measures, one per degree on integrals (`none`, their number, `<=` a bound of it, `open`), and
+    /// why anything is open.
+    pub fn cells(&self) -> (Vec<String>, String) {
+        let mut why = Vec::new();
+        let mut open = |open: &Open| {
+            why.push(open.to_string());
+            "open".to_owned()
+        };
+        let mut cells = vec![match &self.measure {
+            Measure::None { proved: true } => "none".into(),
+            Measure::None { proved: false } => "none by ranks".into(),
+            Measure::Local { .. } => "some".into(),
+            Measure::Open(reason) => open(reason),
+        }];
+        cells.extend(self.integrals.iter().map(|found| match found {
+            Ok(found) if found.none_proved() => "none".into(),
+            Ok(found) if found.settled => found.further().to_string(),
+            Ok(found) => format!("<={}", found.further()),
+            Err(reason) => open(reason),
+        }));
+        why.dedup();
+        (cells, why.join("; "))
+    }
+}
+
+impl Integrals {
+    /// As the schema of `deltaq integrals --format json` describes it.
+    pub fn value(&self) -> Value {
+        let system = &self.scene.system;
+        let measure = self.reversed.as_ref().map(|found| match &found.measure {
+            Measure::None { proved } => json!({ "answer": "none", "proved": proved }),
+            Measure::Local { density } => {
+                json!({ "answer": "local", "density": density.as_ref().map(|density| density_words(system, density)) })
+            }
+            Measure::Open(open) => json!({ "answer": "open", "reason": open.to_string() }),
+        });
+        let count = |(i, found): (usize, &Result<Found, Open>)| match found {
+            Err(open) => json!({ "degree": i + 1, "answer": "open", "reason": open.to_string() }),
+            Ok(found) => json!({
+                "degree": found.degree,
+                "answer": if found.none_proved() { "none" } else if found.settled { "local" } else { "open" },
+                "at_most": found.count,
+                "trivial": found.trivial,
+                "order": found.order,
+            }),
+        };
+        let counts =
+            self.reversed.as_ref().map(|found| found.integrals.iter().enumerate().map(count).collect::<Vec<_>>());
+        let ansatz = match &self.ansatz {
+            Err(open) => json!({ "reason": open.to_string() }),
+            Ok(found) => {
+                let printed = found.printed.iter().enumerate().map(|(i, integral)| {
+                    let mut value = json!({
+                        "kind": kind(integral), "degree": integral.degree, "expression": integral.text,
+                    });
+                    match &self.drifts {
+                        Ok(drifts) => value["drift"] = json!(drifts[i]),
+                        Err(why) => value["no_motion"] = json!(why),
+                    }
+                    value
+                });
+                json!({
+                    "functions": found.functions,
+                    "coordinates": found.names,
+                    "spatial_degree": found.spatial,
+                    "dimension": found.dimension,
+                    "printed": printed.collect::<Vec<_>>(),
+                    "unprinted": found.unprinted,
+                })
+            }
+        };
+        let invariant = |(name, held): &(String, bool)| json!({ "name": name, "constant": held });
+        let invariants = match &self.invariants {
+            Ok(invariants) => json!(invariants.iter().map(invariant).collect::<Vec<_>>()),
+            Err(open) => json!({ "reason": open.to_string() }),
+        };
+        json!({
+            "scene": self.scene.name,
+            "formulation": self.formulation,
+            "measure": measure,
+            "polynomials": counts,
+            "ansatz": ansatz,
+            "invariants": invariants,
+        })
+    }
+}
