@@ -44,6 +44,8 @@ pub struct SeriesStart<C> {
 pub struct CurveSeries<C> {
     /// Parameters, `t`, `q`, `v`, `a`: what a family asks for.
     pub inputs: Vec<Jet<C>>,
+    /// All states, in the order of the equations.
+    pub states: Vec<Jet<C>>,
     /// The unknowns of an instant, order by order.
     pub(crate) unknowns: Vec<Vec<C>>,
     /// Determinant of the equations of the first instant.
@@ -168,6 +170,7 @@ impl Dynamics {
             inputs.extend(point);
             return Ok(CurveSeries {
                 inputs,
+                states: states.iter().zip(&exact).map(|(y, exact)| Jet::series(y, *exact)).collect(),
                 determinant: solve.determinant,
                 unknowns: solve.solved.clone(),
                 at_rest: states.iter().all(|y| y[1..].iter().take(1).all(|rate| rate.weight() == 0.0)),

@@ -8,30 +8,17 @@
 
 use decision::exact::{Echelon, Exact, FIELDS, Jet, Modular, in_field};
 use decision::{Dynamics, ExactStart, Program};
-use equations::Equations;
+use equations::{Equations, Role};
 use mechanics::System;
 use symbolic::{Expr, Symbol};
 
 use crate::Open;
-use crate::killing::{nullspace, velocity_monomials};
+use crate::functions::{Function, chosen, functions};
+use crate::killing::nullspace;
 use crate::local::draws;
 
-/// Most functions.
-const FUNCTIONS: usize = 420;
 /// Points beyond as many as there are functions.
 const MORE: usize = 8;
-/// The highest degree in coordinates, or in sines and cosines of one.
-const SPATIAL: usize = 4;
-
-/// A function of the ansatz.
-#[derive(Clone, Debug)]
-struct Function {
-    expression: Expr,
-    /// Degree in the velocities.
-    degree: usize,
-    is_energy: bool,
-}
-
 /// An integral that can be written down.
 #[derive(Clone, Debug)]
 pub struct Printed {
@@ -75,7 +62,8 @@ pub struct Ansatz {
     pub spatial: usize,
 }
 
-/// Integrals of `equations`, derived for `system`, up to `degree` in the velocities; functions contain the
+/// Integrals of `equations`, derived for `system`, up to `degree` in the velocities, to which multipliers
+/// that are states are counted: the vakonomic motion is one in `(q, v, μ)`. Functions contain the
 /// coordinates `names`, or those that `L` and `f` contain where there are none.
 ///
 /// # Errors
@@ -89,7 +77,9 @@ pub fn ansatz(
 ) -> Result<Ansatz, Open> {
     let system = &System { graph: equations.graph.clone(), ..system.clone() };
     let places = chosen(system, names)?;
-    let (spatial, functions) = functions(system, &places, degree);
+    let states = equations.states.iter().filter(|y| y.role == Role::Multiplier);
+    let multipliers: Vec<Symbol> = states.map(|y| y.symbol).collect();
+    let (spatial, functions) = functions(system, &multipliers, &places, degree);
     let expressions: Vec<Expr> = functions.iter().map(|f| f.expression).collect();
     let mut sample = Sample::new(system, equations, start, &expressions)?;
     let points = functions.len() + MORE;
@@ -140,6 +130,8 @@ struct Sample<'a> {
     dynamics: Dynamics,
     program: Program,
     start: &'a ExactStart,
+    /// Symbols of multipliers, and their places among the states.
+    multipliers: Vec<(Symbol, usize)>,
     constants: usize,
     inputs: usize,
 }
@@ -151,7 +143,10 @@ impl<'a> Sample<'a> {
     fn new(system: &System, equations: &Equations, start: &'a ExactStart, functions: &[Expr]) -> Result<Self, Open> {
         let dynamics = Dynamics::new(system, equations).map_err(|fault| Open::Other(fault.to_string()))?;
         let program = Program::new(&system.graph, &[], &[]).map_err(|fault| Open::Other(fault.to_string()))?;
-        let mut sample = Sample { dynamics, program, start, constants: equations.constant_symbols().len(), inputs: 0 };
+        let states = equations.states.iter().enumerate().filter(|(_, y)| y.role == Role::Multiplier);
+        let multipliers = states.map(|(i, y)| (y.symbol, i)).collect();
+        let constants = equations.constant_symbols().len();
+        let mut sample = Sample { dynamics, program, start, multipliers, constants, inputs: 0 };
         sample.ask(system, functions)?;
         Ok(sample)
     }
@@ -162,6 +157,7 @@ impl<'a> Sample<'a> {
         inputs.push(system.time);
         inputs.extend(system.positions().into_iter().chain(system.velocities()));
         self.inputs = inputs.len();
+        inputs.extend(self.multipliers.iter().map(|(mu, _)| *mu));
         let program = Program::new(&system.graph, &inputs, functions);
         self.program = program.map_err(|fault| Open::Other(fault.to_string()))?;
         Ok(())
@@ -175,7 +171,9 @@ impl<'a> Sample<'a> {
             let constants: Vec<Jet<Modular>> = (0..self.constants).map(|_| Jet::constant(draw(), None)).collect();
             let along = decision::at_random(self.start, seed << 32 | point, |at| {
                 let curve = self.dynamics.series(&at, &constants, 3).map_err(|fault| fault.to_string())?;
-                let along = evaluator.run(&curve.inputs[..self.inputs]);
+                let mut inputs = curve.inputs[..self.inputs].to_vec();
+                inputs.extend(self.multipliers.iter().map(|&(_, i)| curve.states[i]));
+                let along = evaluator.run(&inputs);
                 match along.iter().find_map(Jet::flaw) {
                     Some(flaw) => Err(flaw.to_string()),
                     None => Ok(along.iter().map(|x| [x.coefficient(0), x.coefficient(1)]).collect::<Vec<_>>()),
@@ -282,117 +280,4 @@ fn reduced(rows: Echelon) -> Vec<Vec<Modular>> {
         }
     }
     rows.into_iter().map(|(_, row)| row).collect()
-}
-
-fn chosen(system: &System, names: &[String]) -> Result<Vec<usize>, Open> {
-    if names.is_empty() {
-        let written = system.written();
-        let present = |i: &usize| written.iter().any(|&e| system.graph.depends_on(e, system.coordinates[*i].position));
-        return Ok((0..system.dimension()).filter(present).collect());
-    }
-    let place = |name: &String| {
-        let place = system.coordinates.iter().position(|c| c.name == *name);
-        place.ok_or_else(|| {
-            let all: Vec<&str> = system.coordinates.iter().map(|c| &c.name[..]).collect();
-            Open::Name { name: name.clone(), all: all.join(", ") }
-        })
-    };
-    names.iter().map(place).collect()
-}
-
-/// Monomials in velocities times monomials in coordinates, or in sines and cosines of angles, simple ones
-/// first; with the energy and the momenta. Their degree in coordinates is as high as few functions allow.
-fn functions(system: &System, places: &[usize], degree: usize) -> (usize, Vec<Function>) {
-    let g = &system.graph;
-    let v = g.variables(&system.velocities());
-    let fast = velocity_monomials(v.len(), degree);
-    let mut fast: Vec<Vec<usize>> =
-        fast.into_iter().chain(degree.checked_sub(1).map_or(Vec::new(), |d| velocity_monomials(v.len(), d))).collect();
-    fast.sort_by_key(Vec::len);
-    let mut spatial = 0;
-    let mut slow = vec![(0, g.one())];
-    for most in 1..=SPATIAL {
-        let more = spatial_monomials(system, places, most);
-        if more.len() * fast.len() > FUNCTIONS {
-            break;
-        }
-        (spatial, slow) = (most, more);
-    }
-    slow.sort_by_key(|(d, _)| *d);
-    let mut all: Vec<Function> = Vec::new();
-    let push = |all: &mut Vec<Function>, expression: Expr, degree: usize, is_energy: bool| {
-        if g.as_number(expression).is_none() {
-            all.push(Function { expression, degree, is_energy });
-        }
-    };
-    for d in 0..=degree {
-        if d == 2 {
-            push(&mut all, energy(system), 2, true);
-        }
-        for (_, place) in &slow {
-            for monomial in fast.iter().filter(|m| m.len() == d) {
-                let factors: Vec<Expr> = monomial.iter().map(|&c| v[c]).chain([*place]).collect();
-                push(&mut all, g.product(&factors), d, false);
-            }
-        }
-        if d == 1 {
-            for momentum in g.gradient(system.lagrangian, &system.velocities()) {
-                push(&mut all, momentum, 1, false);
-            }
-        }
-    }
-    (spatial, all)
-}
-
-/// The energy, without its terms that cancel where `L` is quadratic in the velocities: `L − 2 L(v = 0)`.
-fn energy(system: &System) -> Expr {
-    let (g, v) = (&system.graph, system.velocities());
-    let at_rest = g.substitute(system.lagrangian, &v.iter().map(|&v| (v, g.zero())).collect());
-    let short = g.sub(system.lagrangian, g.mul(g.integer(2), at_rest));
-    let energy = system.energy();
-    if g.vanishes_exactly(g.sub(short, energy)) { short } else { energy }
-}
-
-fn spatial_monomials(system: &System, places: &[usize], most: usize) -> Vec<(usize, Expr)> {
-    let g = &system.graph;
-    let mut all = vec![(0, g.one())];
-    for &i in places {
-        let q = g.variable(system.coordinates[i].position);
-        let own: Vec<(usize, Expr)> = if is_angle(system, i) {
-            let (sine, cosine) = (g.call(symbolic::Function::Sin, q), g.call(symbolic::Function::Cos, q));
-            let powers = (0..=most).map(|k| (k, g.powi(cosine, k as i32)));
-            // sin² = 1 − cos²
-            powers.clone().chain(powers.map(|(k, power)| (k + 1, g.mul(sine, power)))).collect()
-        } else {
-            (0..=most).map(|k| (k, g.powi(q, k as i32))).collect()
-        };
-        all = all
-            .iter()
-            .flat_map(|&(d, e)| own.iter().map(move |&(k, x)| (d + k, e, x)))
-            .filter(|(d, ..)| *d <= most)
-            .map(|(d, e, x)| (d, g.mul(e, x)))
-            .collect();
-    }
-    all
-}
-
-/// Whether `L` and `f` stay when a coordinate grows by 2π, which is seen in doubles: only what the ansatz
-/// contains depends on it. One that they do not contain is an angle if its unit says so.
-fn is_angle(system: &System, place: usize) -> bool {
-    let (g, coordinate) = (&system.graph, &system.coordinates[place]);
-    let written = system.written();
-    if !written.iter().any(|&e| g.depends_on(e, coordinate.position)) {
-        return coordinate.unit == "rad";
-    }
-    let mut random = symbolic::SplitMix::new(7);
-    let mut values = system.parameter_values();
-    for symbol in system.positions().into_iter().chain(system.velocities()).chain([system.time]) {
-        values.insert(symbol, random.unit());
-    }
-    let before: Vec<f64> = written.iter().filter_map(|&e| g.evaluate(e, &values).ok()).collect();
-    if let Some(q) = values.get_mut(&coordinate.position) {
-        *q += std::f64::consts::TAU;
-    }
-    let after: Vec<f64> = written.iter().filter_map(|&e| g.evaluate(e, &values).ok()).collect();
-    before.iter().zip(&after).all(|(a, b)| (a - b).abs() <= 1e-9 * (1.0 + a.abs()))
 }

@@ -4,6 +4,7 @@ use std::iter::zip;
 
 use decision::{DecisionError, ExactStart};
 use deltaq::{CHETAEV, Choice, Contradicted, Settings, SolveError, derive, solve_choice};
+use equations::Role;
 use mechanics::{System, Watched};
 use scene::Scene;
 use symbolic::{Expr, Symbol};
@@ -103,18 +104,27 @@ fn drifts(scene: &Scene, choice: &Choice, printed: &[Printed]) -> Result<Vec<f64
     if printed.is_empty() {
         return Ok(Vec::new());
     }
-    let (system, g) = (&scene.system, &scene.system.graph);
+    let system = &scene.system;
     let settings = Settings { tolerance: TOLERANCE, ..Settings::default() };
     let mut motion = solve_choice(scene, choice, &settings).map_err(|fault| fault.to_string())?;
+    let g = motion.equations.graph.clone();
+    let known = |name: &str| g.find_symbol(name).map(|symbol| g.variable(symbol));
     let texts = printed.iter().map(|p| [p.text.clone(), p.without_signs()]);
-    let read = |text: String| system.expression(&text).map_err(|fault| fault.to_string());
+    let read = |text: String| g.parse(&text, &known, &[]).map_err(|fault| fault.to_string());
     let pairs: Vec<[Expr; 2]> =
         texts.map(|[own, size]| Ok([read(own)?, read(size)?])).collect::<Result<_, String>>()?;
-    let symbols: Vec<Symbol> = system.positions().into_iter().chain(system.velocities()).chain([system.time]).collect();
+    let states = motion.equations.states.iter().filter(|y| y.role == Role::Multiplier).map(|y| y.symbol);
+    let symbols: Vec<Symbol> =
+        system.positions().into_iter().chain(system.velocities()).chain([system.time]).chain(states).collect();
     let (from, to, mut values) = (motion.start(), motion.end(), system.parameter_values());
     let mut at = |t: f64| -> Result<Vec<[f64; 2]>, String> {
         let now = motion.at(t).map_err(|fault| fault.to_string())?;
-        values.extend(symbols.iter().copied().zip(now.coordinates.into_iter().chain(now.velocities).chain([t])));
+        values.extend(
+            symbols
+                .iter()
+                .copied()
+                .zip(now.coordinates.into_iter().chain(now.velocities).chain([t]).chain(now.multipliers)),
+        );
         let value = |e: Expr| g.evaluate(e, &values).map_err(|fault| fault.to_string());
         pairs.iter().map(|&[own, size]| Ok([value(own)?, value(size)?])).collect()
     };

@@ -36,6 +36,7 @@ mod answer;
 mod certificate;
 mod density;
 mod flag;
+mod functions;
 mod killing;
 mod local;
 mod open;

@@ -126,8 +126,8 @@ fn beside(found: &Found) -> String {
 }
 
 impl Reversed {
-    /// A word on measures, one per degree on integrals (`none`, their number, `<=` a bound of it, `open`), and
-    /// why anything is open.
+    /// A word on measures, one per degree on integrals (`none`, their number, `<=` a bound of it, `open`),
+    /// and why anything is open.
     pub fn cells(&self) -> (Vec<String>, String) {
         let mut why = Vec::new();
         let mut open = |open: &Open| {

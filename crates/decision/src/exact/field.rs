@@ -73,7 +73,8 @@ pub fn in_field<T>(field: &'static Field, compute: impl FnOnce() -> T) -> T {
     compute()
 }
 
-/// What `compute` finds alike in two fields, in each with one of the `seeds`; what is `enough` needs one only.
+/// What `compute` finds alike in two fields, in each with one of the `seeds`; what is `enough` needs one
+/// only.
 ///
 /// # Errors
 /// The first fault of `compute`; `None` where it has none, and no two fields agree.
