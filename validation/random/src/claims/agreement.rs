@@ -9,6 +9,7 @@ use nalgebra::{DMatrix, DVector};
 use symbolic::Symbol;
 
 use super::CheckError;
+use super::growth::is_certain;
 use crate::case::Which;
 use crate::derived::{equations, free_constants};
 use crate::realization::{augmented_start, momenta, numbers};
@@ -85,16 +86,13 @@ fn divergence(case: &mut Case, first: Which, second: Which, names: &Divergence) 
         let limit = |t: f64| gap.limit_at(t);
         let (mut metric, mut other) = (case.metric.clone(), case.motion(second).clone());
         if let Some(growth) = growth(&mut other, case.motion(first), &mut metric, &limit)?
-            && growth.uncertainty < CERTAIN_EXPONENT
+            && is_certain(&growth)
         {
             case.found.observe(1, names.grows, growth.exponent);
         }
     }
     Ok(())
 }
-
-/// Exponents that are less certain are not counted.
-const CERTAIN_EXPONENT: f64 = 0.1;
 
 /// Every parameter is a coordinate.
 fn is_chart(removal: &Removal) -> bool {
@@ -199,18 +197,9 @@ pub(super) fn sanity(case: &mut Case) -> Result<(), CheckError> {
     // only memory variables with a costate of their own have a free P
     let free: Vec<usize> = equations.free_constants.iter().filter_map(|c| c.memory).collect();
     let columns: Vec<usize> = free.iter().filter_map(|&k| removal.memory[k].coordinate).collect();
-    let right = -(&phi * &momenta);
-    let size = momenta.norm().max(1.0);
-    let own = phi.select_columns(&columns);
-    let solution = match columns.is_empty() {
-        true => DVector::zeros(0),
-        false => SingularValues::of(&own).solve(&right, 1e-12),
-    };
-    if (own * &solution - &right).norm() > SOLVABLE * size {
-        case.found.count(14, "p_u = 0 is within the free constants", false);
-        return Ok(());
-    }
-    case.found.count(14, "p_u = 0 is within the free constants", true);
+    let solution = solution(&phi.select_columns(&columns), &-(&phi * &momenta), momenta.norm().max(1.0));
+    case.found.count(14, "p_u = 0 is within the free constants", solution.is_some());
+    let Some(solution) = solution else { return Ok(()) };
     let mut costates = vec![0.0; removal.memory.len()];
     for (&k, &p) in free.iter().zip(solution.iter()) {
         costates[k] = p;
@@ -226,4 +215,43 @@ pub(super) fn sanity(case: &mut Case) -> Result<(), CheckError> {
     };
     case.found.count(14, what, differs);
     Ok(())
+}
+
+/// The shortest solution of `matrix x = right`, whose terms have this size; `None` where there is none.
+fn solution(matrix: &DMatrix<f64>, right: &DVector<f64>, size: f64) -> Option<DVector<f64>> {
+    let solution = match matrix.ncols() {
+        0 => DVector::zeros(0),
+        _ => SingularValues::of(matrix).solve(right, 1e-12),
+    };
+    ((matrix * &solution - right).norm() <= SOLVABLE * size).then_some(solution)
+}
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::{dmatrix, dvector};
+
+    use super::*;
+
+    /// `x = 2` and `0 = off`, whose terms have the size 2.
+    #[test]
+    fn equations_have_a_solution_up_to_a_thousand_millionth_of_their_terms() {
+        for (part, is_solvable) in [(0.3, true), (3.0, false)] {
+            let right = dvector![2.0, part * 2e-9];
+            let found = solution(&dmatrix![1.0; 0.0], &right, 2.0);
+            assert_eq!(found.is_some(), is_solvable, "{part}: {found:?}");
+            assert!(found.is_none_or(|x| (x[0] - 2.0).abs() < 1e-15));
+            let none = solution(&DMatrix::zeros(2, 0), &dvector![0.0, part * 2e-9], 2.0);
+            assert_eq!(none.map(|x| x.len()), is_solvable.then_some(0), "{part}");
+        }
+    }
+
+    /// `x = 1` and `s y = s`: that is an equation for y from `s` = 10⁻¹² on.
+    #[test]
+    fn directions_under_a_million_millionth_are_none() {
+        for (part, counts) in [(0.3, false), (3.0, true)] {
+            let found = solution(&dmatrix![1.0, 0.0; 0.0, part * 1e-12], &dvector![1.0, part * 1e-12], 1.0);
+            let y = found.map(|x| x[1]).unwrap_or_else(|| panic!("{part}"));
+            assert!((y - if counts { 1.0 } else { 0.0 }).abs() < 1e-9, "{part}: {y}");
+        }
+    }
 }

@@ -1,12 +1,12 @@
 //! T9: whether a motion is vakonomic for some multipliers: decided, proved, and fitted.
 
 use decision::{Finding, Verdict};
-use deltaq::{Answer, Membership, Pairing, Settings, VAKONOMIC, best_fit, choices, setting};
+use deltaq::{Answer, Gap, Membership, Pairing, Settings, VAKONOMIC, best_fit, choices, setting};
 
 use super::CheckError;
 use crate::case::Which;
 use crate::derived::equations;
-use crate::{Case, Kind};
+use crate::{Case, Findings, Kind};
 
 /// Decides whether the Chetaev motion is vakonomic; finds a vakonomic motion's multipliers from itself.
 pub(super) fn check(case: &mut Case) -> Result<(), CheckError> {
@@ -131,22 +131,48 @@ pub(super) fn fit(case: &mut Case) -> Result<(), CheckError> {
     let before = case.gap(Which::Chetaev, Which::Vakonomic)?;
     let after = deltaq::compare_motions(&mut chetaev, &mut fitted, &mut metric)?;
     if found.decision.verdict == Verdict::NotContained {
-        let apart = after.certain_from.is_some();
-        let visible = SEEN * found.decision.least * case.scene.duration.powf(1.5);
-        let claim = "a fit does not find what the decision denies";
-        match after.points.iter().all(|p| p.limit < visible) {
-            true => case.found.require(
-                9,
-                claim,
-                apart,
-                format!("gap {:.1e}, rho {:.1e}", after.largest, found.decision.least),
-            ),
-            false if apart => case.found.require(9, claim, true, ""),
-            false => case.found.undecided(9, claim, "the motions are too close to tell"),
-        }
+        let note = format!("gap {:.1e}, rho {:.1e}", after.largest, found.decision.least);
+        let visible = visible(found.decision.least, case.scene.duration);
+        denied(&mut case.found, &after, visible, note);
         if before.largest > 0.0 {
             case.found.observe(9, "gap after the best fit over gap before", after.largest / before.largest);
         }
     }
     Ok(())
+}
+
+/// The least that mismatch `least` makes over this duration.
+fn visible(least: f64, duration: f64) -> f64 {
+    SEEN * least * duration.powf(1.5)
+}
+
+/// A fit has to leave a gap, where one that is `visible` would be seen.
+fn denied(found: &mut Findings, after: &Gap, visible: f64, note: String) {
+    let (claim, apart) = ("a fit does not find what the decision denies", after.certain_from.is_some());
+    if apart || after.points.iter().all(|p| p.limit < visible) {
+        found.require(9, claim, apart, note);
+    } else {
+        found.undecided(9, claim, "the motions are too close to tell");
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Word, draw_recipe};
+
+    /// A mismatch of 2 over a time of 4 makes 16, of which a thousandth has to be seen.
+    #[test]
+    fn a_fit_is_denied_where_a_thousandth_of_the_gap_would_be_seen() {
+        let mut case = Case::new(draw_recipe(1, 0, &[Kind::Linear]), "fits").unwrap_or_else(|e| panic!("{e}"));
+        let mut none = case.gap(Which::Chetaev, Which::Chetaev).expect("a gap");
+        for (part, close) in [(0.3, Word::Fails), (3.0, Word::Undecided)] {
+            none.points.iter_mut().for_each(|p| p.limit = part * 1.6e-2);
+            for (certain_from, word) in [(Some(1.0), Word::Holds), (None, close)] {
+                let (mut found, after) = (Findings::default(), Gap { certain_from, ..none.clone() });
+                denied(&mut found, &after, visible(2.0, 4.0), String::new());
+                assert_eq!(found.word(9), Some(word), "{part}, {certain_from:?}");
+            }
+        }
+    }
 }

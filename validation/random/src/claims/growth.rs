@@ -1,10 +1,10 @@
 //! T5: how the divergence begins.
 
-use deltaq::{Pairing, choices, growth};
+use deltaq::{Growth, LeadingTerm, Pairing, choices, growth};
 
 use super::CheckError;
-use crate::Case;
 use crate::case::Which;
+use crate::{Case, Findings};
 
 /// Deviation of the measured exponent from the predicted one, beyond its doubt.
 const EXPONENT: f64 = 1e-2;
@@ -13,7 +13,8 @@ const EXPONENT: f64 = 1e-2;
 /// left out, and is no bound. Exponents are whole numbers: one that is wrong is off by more.
 const CHANGES: f64 = 3.0;
 
-/// An exponent that is less certain than this is not judged, nor is a coefficient with that relative doubt.
+/// An exponent that is less certain than this is neither judged nor counted, nor is a coefficient with that
+/// relative doubt.
 const UNCERTAIN: f64 = 0.1;
 
 /// Relative deviation of the measured leading coefficient from the predicted one, beyond its doubt.
@@ -42,38 +43,111 @@ pub(super) fn check(case: &mut Case) -> Result<(), CheckError> {
     let without = multipliers.iter().all(|&mu| mu == 0.0);
     let gap = case.gap(Which::Chetaev, Which::Vakonomic)?;
     let limit = |t: f64| gap.limit_at(t);
+    let measured = growth(&mut case.vakonomic, &mut case.chetaev, &mut case.metric, &limit)?;
+    judge(&mut case.found, measured.as_ref(), &predicted, without);
+    Ok(())
+}
+
+/// Whether a growth tells its exponent.
+pub(super) fn is_certain(growth: &Growth) -> bool {
+    growth.uncertainty <= UNCERTAIN
+}
+
+/// Holds a growth, if one was seen, against the predicted one, whose multipliers are zero if it is `without`.
+fn judge(found: &mut Findings, measured: Option<&Growth>, predicted: &LeadingTerm, without: bool) {
     let claim = "the leading divergence is the predicted one";
-    match growth(&mut case.vakonomic, &mut case.chetaev, &mut case.metric, &limit)? {
-        None => case.found.undecided(5, claim, "the gap does not stand out from the errors near the start"),
-        Some(measured) if measured.to > WITHIN * predicted.reach || predicted.from > WITHIN * measured.from => {
-            let leading = format!("leading from {:.1e} until {:.1e}", predicted.from, predicted.reach);
-            let note = format!("seen from t = {:.1e}, and {leading}", measured.from);
-            case.found.undecided(5, claim, note);
+    let Some(measured) = measured else {
+        return found.undecided(5, claim, "the gap does not stand out from the errors near the start");
+    };
+    if measured.to > WITHIN * predicted.reach || predicted.from > WITHIN * measured.from {
+        let leading = format!("leading from {:.1e} until {:.1e}", predicted.from, predicted.reach);
+        return found.undecided(5, claim, format!("seen from t = {:.1e}, and {leading}", measured.from));
+    }
+    if !is_certain(measured) {
+        return found.undecided(5, claim, format!("the exponent is uncertain by {:.1e}", measured.uncertainty));
+    }
+    let off = (measured.exponent - f64::from(predicted.exponent)).abs();
+    found.bound(5, "exponent of the leading divergence", off, EXPONENT + CHANGES * measured.uncertainty);
+    let claim = "coefficient of the leading divergence";
+    match measured.coefficient_uncertainty {
+        doubt if doubt > UNCERTAIN => found.undecided(5, claim, format!("measured with a doubt of {doubt:.1e}")),
+        doubt => found.bound(5, claim, measured.deviation_from(predicted), COEFFICIENT + CHANGES * doubt),
+    }
+    match (predicted.exponent, without) {
+        (2, _) => found.observe(5, "growth exponent, mu0 not zero", measured.exponent),
+        (3, true) => found.observe(5, "growth exponent, mu0 = 0", measured.exponent),
+        _ => {}
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Word;
+
+    /// Parts of a limit.
+    const SIDES: [f64; 2] = [0.3, 3.0];
+
+    const PREDICTED: LeadingTerm =
+        LeadingTerm { exponent: 2, coefficient: Vec::new(), length: 1.0, from: 1e-4, reach: 1.0, proved: true };
+
+    /// `t²`, seen from 10⁻² to 10⁻¹.
+    fn seen() -> Growth {
+        let (exponent, coefficient, length, from, to) = (2.0, vec![1.0], 1.0, 1e-2, 1e-1);
+        Growth { exponent, uncertainty: 0.0, coefficient, coefficient_uncertainty: 0.0, length, from, to }
+    }
+
+    /// What is said of `t²` where this was measured, on exponent and coefficient or on both together.
+    fn said(measured: &Growth) -> Vec<Word> {
+        let mut found = Findings::default();
+        let predicted = LeadingTerm { coefficient: vec![1.0], ..PREDICTED };
+        judge(&mut found, Some(measured), &predicted, false);
+        // an exponent is counted where it is judged
+        let judged = found.findings.iter().filter(|f| f.claim.starts_with("exponent")).count();
+        assert_eq!(found.observations.len(), judged, "{found:?}");
+        found.findings.iter().map(|finding| finding.word).collect()
+    }
+
+    fn word(is_over: bool, over: Word) -> Word {
+        if is_over { over } else { Word::Holds }
+    }
+
+    #[test]
+    fn exponents_and_coefficients_may_be_off_by_a_hundredth_and_three_times_their_doubt() {
+        for (part, doubt) in SIDES.into_iter().flat_map(|part| [0.0, 0.05].map(|doubt| (part, doubt))) {
+            let off = part * (0.01 + 3.0 * doubt);
+            let found = said(&Growth { exponent: 2.0 - off, uncertainty: doubt, ..seen() });
+            assert_eq!(found, [word(part > 1.0, Word::Fails), Word::Holds], "{part}, {doubt}");
+            let found = said(&Growth { coefficient: vec![1.0 + off], coefficient_uncertainty: doubt, ..seen() });
+            assert_eq!(found, [Word::Holds, word(part > 1.0, Word::Fails)], "{part}, {doubt}");
         }
-        Some(measured) if measured.uncertainty > UNCERTAIN => {
-            case.found.undecided(5, claim, format!("the exponent is uncertain by {:.1e}", measured.uncertainty));
+    }
+
+    #[test]
+    fn what_is_uncertain_by_a_tenth_is_not_judged() {
+        for part in SIDES {
+            let exponent = said(&Growth { uncertainty: 0.1 * part, ..seen() });
+            assert_eq!(exponent.contains(&Word::Undecided), part > 1.0, "{part}: {exponent:?}");
+            assert_eq!(exponent.len(), if part > 1.0 { 1 } else { 2 });
+            let coefficient = said(&Growth { coefficient_uncertainty: 0.1 * part, ..seen() });
+            assert_eq!(coefficient, [Word::Holds, word(part > 1.0, Word::Undecided)], "{part}");
         }
-        Some(measured) => {
-            let exponent = (measured.exponent - f64::from(predicted.exponent)).abs();
-            case.found.bound(
-                5,
-                "exponent of the leading divergence",
-                exponent,
-                EXPONENT + CHANGES * measured.uncertainty,
-            );
-            let claim = "coefficient of the leading divergence";
-            match measured.coefficient_uncertainty {
-                doubt if doubt > UNCERTAIN => {
-                    case.found.undecided(5, claim, format!("measured with a doubt of {doubt:.1e}"));
-                }
-                doubt => case.found.bound(5, claim, measured.deviation_from(&predicted), COEFFICIENT + CHANGES * doubt),
-            }
-            match (predicted.exponent, without) {
-                (2, _) => case.found.observe(5, "growth exponent, mu0 not zero", measured.exponent),
-                (3, true) => case.found.observe(5, "growth exponent, mu0 = 0", measured.exponent),
-                _ => {}
+    }
+
+    #[test]
+    fn it_is_measured_within_half_of_where_the_term_leads() {
+        for part in SIDES {
+            for measured in [Growth { to: part * 0.5, ..seen() }, Growth { from: 2e-4 / part, ..seen() }] {
+                let found = said(&measured);
+                assert_eq!(found == [Word::Undecided], part > 1.0, "{part}: {found:?}");
             }
         }
     }
-    Ok(())
+
+    #[test]
+    fn what_does_not_stand_out_is_undecided() {
+        let mut found = Findings::default();
+        judge(&mut found, None, &PREDICTED, false);
+        assert_eq!(found.word(5), Some(Word::Undecided));
+    }
 }
