@@ -3,10 +3,13 @@
 //! All that compiles is compiled in the release profile: integration needs the optimisation, the reports are
 //! written by a release build, and so the dependencies are built once.
 
-use std::process::ExitCode;
+use std::fs::File;
+use std::process::{Command, ExitCode, Stdio};
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::Instant;
 
-use anyhow::Result;
+use anyhow::{Context, Result};
 
 use crate::tools::{Outcome, build, cargo, outside, succeed, target};
 use crate::{dependencies, explore, lint, python, sources};
@@ -20,7 +23,10 @@ pub(crate) struct Check {
     run: fn() -> Result<Outcome>,
 }
 
-/// All checks, cheap ones first: name, what it is about, what mends it.
+/// The last check that runs alone: all after it need what the build has made, and run in pairs.
+const LAST_ALONE: &str = "lint";
+
+/// All checks, cheap ones first, and of those in pairs long ones: name, what it is about, what mends it.
 pub(crate) fn all() -> Vec<Check> {
     let check = |name, about, mend, run: fn() -> Result<Outcome>| Check { name, about, mend, run };
     vec![
@@ -56,6 +62,24 @@ pub(crate) fn all() -> Vec<Check> {
             tests,
         ),
         check(
+            "page",
+            "the page to explore scenes works in a browser and says what the native program says",
+            "cargo xtask explore, then commit reports/explore.html; pictures are in target/explore/pictures",
+            explore::check,
+        ),
+        check(
+            "reports",
+            "the committed reports are those a fresh run writes",
+            "cargo run --release, then look at what changed and commit it",
+            reports,
+        ),
+        check(
+            "python",
+            "the Python module does what its tests say",
+            "pip install ./crates/python, then pytest in that folder; it needs Python 3.11 or newer with venv",
+            python::check,
+        ),
+        check(
             "doctests",
             "examples in the documentation",
             "cargo test --release --doc --package PACKAGE, with the name from above",
@@ -73,66 +97,129 @@ pub(crate) fn all() -> Vec<Check> {
             "name version and path of what it is built on in the table of the workspace (cargo package --workspace)",
             dependencies::package,
         ),
-        check(
-            "python",
-            "the Python module does what its tests say",
-            "pip install ./crates/python, then pytest in that folder; it needs Python 3.11 or newer with venv",
-            python::check,
-        ),
-        check(
-            "page",
-            "the page to explore scenes works in a browser and says what the native program says",
-            "cargo xtask explore, then commit reports/explore.html; pictures are in target/explore/pictures",
-            explore::check,
-        ),
-        check(
-            "reports",
-            "the committed reports are those a fresh run writes",
-            "cargo run --release, then look at what changed and commit it",
-            reports,
-        ),
     ]
 }
 
-/// Run checks in order up to the first that fails.
+/// Runs checks in order up to the first that fails; those after [`LAST_ALONE`] in pairs.
 pub(crate) fn run(checks: &[Check]) -> ExitCode {
     let start = Instant::now();
     if checks.iter().any(|check| ["deny", "python"].contains(&check.name)) {
         // beside the checks before these; who asks for it waits, and hears of it if it failed
         std::thread::spawn(python::environment);
     }
-    let (mut passed, mut not_run) = (0, Vec::new());
-    for check in checks {
+    let alone = checks.iter().position(|check| check.name == LAST_ALONE).map_or(checks.len(), |last| last + 1);
+    let mut ended = Vec::new();
+    for check in &checks[..alone] {
         println!("── {}: {}", check.name, check.about);
         let start = Instant::now();
         let outcome = (check.run)();
-        let seconds = start.elapsed().as_secs_f64();
-        match outcome {
-            Ok(Outcome::Passed(note)) => {
-                passed += 1;
-                println!("   {} passed in {seconds:.1} s{note}\n", check.name);
-            }
-            Ok(Outcome::NotRun(lacking)) => {
-                println!("   {} NOT RUN: {lacking}\n", check.name);
-                not_run.push(format!("{}: {lacking}", check.name));
-            }
-            Err(error) => {
-                println!("   {} FAILED after {seconds:.1} s: {error:#}\n   to mend: {}\n", check.name, check.mend);
-                println!("{passed} passed, 1 failed");
-                return ExitCode::FAILURE;
-            }
+        ended.push(told(check, &outcome, start.elapsed().as_secs_f64()));
+        if outcome.is_err() {
+            break;
         }
     }
-    println!("all in {:.1} s", start.elapsed().as_secs_f64());
-    println!("{}", counted(passed, &not_run));
-    ExitCode::SUCCESS
+    if ended.iter().all(|end| *end != End::Failed) {
+        ended.extend(side_by_side(&checks[alone..]));
+    }
+    println!("all in {:.1} s\n{}", start.elapsed().as_secs_f64(), counted(&ended));
+    if ended.contains(&End::Failed) { ExitCode::FAILURE } else { ExitCode::SUCCESS }
+}
+
+/// How a check ended.
+#[derive(Clone, Debug, PartialEq)]
+enum End {
+    Passed,
+    /// And what is lacking.
+    NotRun(String),
+    Failed,
+}
+
+/// Says how a check ended.
+fn told(check: &Check, outcome: &Result<Outcome>, seconds: f64) -> End {
+    let name = check.name;
+    match outcome {
+        Ok(Outcome::Passed(note)) => {
+            println!("   {name} passed in {seconds:.1} s{note}\n");
+            End::Passed
+        }
+        Ok(Outcome::NotRun(lacking)) => {
+            println!("   {name}{NOT_RUN}{lacking}\n");
+            End::NotRun(format!("{name}: {lacking}"))
+        }
+        Err(error) => {
+            println!("   {name} FAILED after {seconds:.1} s: {error:#}\n   to mend: {}\n", check.mend);
+            End::Failed
+        }
+    }
+}
+
+const NOT_RUN: &str = " NOT RUN: ";
+
+/// Two checks at a time, as some of them wait for a browser or an interpreter. Each is another call of this
+/// program, so that what it says comes whole, at its end. After a failure none is begun.
+fn side_by_side(checks: &[Check]) -> Vec<End> {
+    let (next, ended) = (AtomicUsize::new(0), Mutex::new(Vec::new()));
+    let work = || {
+        while let Some(check) = checks.get(next.fetch_add(1, Ordering::Relaxed)) {
+            if lock(&ended).contains(&End::Failed) {
+                break;
+            }
+            println!("── {} begins", check.name);
+            let (said, end) = kept(check);
+            let mut ended = lock(&ended);
+            println!("{said}");
+            ended.push(end);
+        }
+    };
+    std::thread::scope(|scope| {
+        scope.spawn(work);
+        scope.spawn(work);
+    });
+    ended.into_inner().unwrap_or_else(PoisonError::into_inner)
+}
+
+fn lock(ended: &Mutex<Vec<End>>) -> MutexGuard<'_, Vec<End>> {
+    ended.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// Runs a check by another call of this program: all that it says but the sums at its end, and how it ended.
+fn kept(check: &Check) -> (String, End) {
+    let ran = || -> Result<(String, bool)> {
+        let file = target()?.join("checks").join(check.name).with_extension("txt");
+        std::fs::create_dir_all(file.parent().context("a file without a folder")?)?;
+        let out = File::create(&file).with_context(|| file.display().to_string())?;
+        let mut call = Command::new(std::env::current_exe()?);
+        let status = call.arg(check.name).stdin(Stdio::null()).stderr(out.try_clone()?).stdout(out).status()?;
+        Ok((std::fs::read_to_string(&file)?, status.success()))
+    };
+    match ran() {
+        Ok((said, success)) => {
+            let words = said.rsplit_once("\nall in ").map_or(&said[..], |(words, _)| words);
+            (words.to_owned(), end_of(check.name, words, success))
+        }
+        Err(error) => (format!("   {} FAILED: {error:#}\n", check.name), End::Failed),
+    }
+}
+
+/// How a check ended, by what its call said and whether that succeeded.
+fn end_of(name: &str, said: &str, success: bool) -> End {
+    let start = format!("   {name}{NOT_RUN}");
+    match said.lines().find_map(|line| line.strip_prefix(&start[..])) {
+        _ if !success => End::Failed,
+        Some(lacking) => End::NotRun(format!("{name}: {lacking}")),
+        None => End::Passed,
+    }
 }
 
 /// The last line: what was not run is no pass.
-fn counted(passed: usize, not_run: &[String]) -> String {
-    match not_run {
-        [] => format!("{passed} passed, 0 failed"),
-        lacking => format!("{passed} passed, 0 failed, {} not run ({})", lacking.len(), lacking.join("; ")),
+fn counted(ended: &[End]) -> String {
+    let count = |end: End| ended.iter().filter(|other| **other == end).count();
+    let lacking: Vec<&str> =
+        ended.iter().filter_map(|end| if let End::NotRun(what) = end { Some(&what[..]) } else { None }).collect();
+    let sums = format!("{} passed, {} failed", count(End::Passed), count(End::Failed));
+    match &lacking[..] {
+        [] => sums,
+        lacking => format!("{sums}, {} not run ({})", lacking.len(), lacking.join("; ")),
     }
 }
 
@@ -183,8 +270,12 @@ mod tests {
 
     #[test]
     fn what_is_not_run_is_no_pass() {
-        assert_eq!(counted(12, &[]), "12 passed, 0 failed");
-        let lacking = ["page: there is no browser".to_owned()];
-        assert_eq!(counted(11, &lacking), "11 passed, 0 failed, 1 not run (page: there is no browser)");
+        let lacking = "page: there is no browser";
+        assert_eq!(counted(&[End::Passed, End::Passed]), "2 passed, 0 failed");
+        let ended = [End::Passed, End::NotRun(lacking.into()), End::Failed];
+        assert_eq!(counted(&ended), format!("1 passed, 1 failed, 1 not run ({lacking})"));
+        assert_eq!(end_of("page", "── page: a\n   page NOT RUN: there is no browser\n", true), ended[1]);
+        assert_eq!(end_of("page", "── page: a\n   page passed in 1.0 s\n", true), End::Passed);
+        assert_eq!(end_of("page", "── page: a\n", false), End::Failed);
     }
 }

@@ -50,20 +50,20 @@ pub(crate) fn write() -> Result<Outcome> {
     Ok(Outcome::Passed(String::new()))
 }
 
-/// Seconds.
-const FIVE_MINUTES: u32 = 300;
+/// Rounds, each of every slider up and down: some five minutes.
+const ROUNDS: u32 = 150;
 
-/// Moves the sliders of a fresh page for the number of seconds given, or five minutes; an error if it grows.
+/// Moves the sliders of a fresh page in the number of rounds given, or [`ROUNDS`]; an error if it grows.
 pub(crate) fn growth(words: &[&str]) -> Result<Outcome> {
-    let seconds = match words.first() {
-        Some(seconds) => seconds.parse().context("growth takes a number of seconds")?,
-        None => FIVE_MINUTES,
+    let rounds = match words.first() {
+        Some(rounds) => rounds.parse().context("growth takes a number of rounds")?,
+        None => ROUNDS,
     };
     match tools()? {
         Err(lacking) => bail!("the page cannot be tried: {lacking}"),
         Ok(browser) => {
             let (page, _) = fresh(&digest()?)?;
-            Ok(Outcome::Passed(format!(", {}", tried(&browser, &page, &seconds.max(1).to_string())?)))
+            Ok(Outcome::Passed(format!(", {}", tried(&browser, &page, &rounds.max(1).to_string())?)))
         }
     }
 }

@@ -29,7 +29,11 @@ const CHORES: [Chore; 6] = [
         site::build()
     }),
     ("explore", "builds the page to explore scenes, writes reports/explore.html", |_| explore::write()),
-    ("growth", "moves sliders of a fresh page for five minutes, or SECONDS, and fails if it grows", explore::growth),
+    (
+        "growth",
+        "moves sliders of a fresh page for some five minutes, or in ROUNDS, and fails if it grows",
+        explore::growth,
+    ),
     ("engine", "runs the physics engine, writes reports/engine.md", |_| checks::engine()),
     (
         "peers",
@@ -77,7 +81,10 @@ fn root() -> PathBuf {
 }
 
 fn list(checks: &[checks::Check]) {
-    println!("cargo xtask CHORE\n\n  {:<10} every check below, in this order", "test");
+    println!(
+        "cargo xtask CHORE\n\n  {:<10} every check below, in this order; those after `lint` two at a time",
+        "test"
+    );
     for check in checks {
         println!("  {:<10} {}", check.name, check.about);
     }
