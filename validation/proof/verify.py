@@ -18,7 +18,7 @@ is found exactly where all numbers are fractions, else mod p and in decimals; an
 coefficients of L, f and Q along a random curve mod p. From a start drawn at random follows the same for almost every start on that piece of
 f = 0, if this is a connected analytic manifold, as the minor is analytic on it."""
 
-import hashlib, json, math, operator, re, secrets, sys, tomllib
+import hashlib, json, math, operator, os, re, secrets, sys, tomllib
 from fractions import Fraction
 from functools import reduce
 from itertools import product
@@ -564,82 +564,115 @@ def near(scene, texts):
 
 # Reading ----------------------------------------------------------------------------------------------------------------------------------
 
-def checked(proof):
-    """The certificate, where every field is of its kind."""
-    global P, I, R, E, E_I, UNITY, ROOTS
-    whole, word, truth = lambda x: type(x) is int and 0 <= x < 2**64, lambda x: type(x) is str, lambda x: type(x) is bool
-    many, named = lambda kind: lambda x: type(x) is list and all(map(kind, x)), lambda kind: lambda x: type(x) is dict and all(map(kind, x.values()))
-    pair, exactly = lambda x: many(whole)(x) and len(x) == 2, lambda kinds: lambda x: (
-        type(x) is dict and x.keys() == kinds.keys() and all(kind(x[key]) for key, kind in kinds.items())
-    )
-    scene = {"coordinates": many(word), "constraints": many(word), "lagrangian": word, "time": word}
-    scene |= {name: named(word) for name in ("parameters", "forces", "positions", "velocities")}
-    fields = {
-        "schema": word, "scene": exactly(scene), "digest": word, "almost_every_start": truth, "prime": whole, "unity": pair,
-        "exponents": exactly({"order": whole, "e^i": whole, "e": whole}), "roots": named(whole), "order": lambda x: whole(x) and x < 200,
-        "rows": many(pair), "minor": whole, "divided_by": named(whole), "set": named(word), "completed": many(word),
-        "motion": named(many(whole)), "reactions": many(many(whole)),
-    }
-    readable(type(proof) is dict and proof.get("schema") == "deltaq/certificate/2", "the schema")
+WHOLE, WORD, TRUTH = lambda x: type(x) is int and 0 <= x < 2**64, lambda x: type(x) is str, lambda x: type(x) is bool
+MANY, NAMED = lambda kind: lambda x: type(x) is list and all(map(kind, x)), lambda kind: lambda x: type(x) is dict and all(map(kind, x.values()))
+PAIR = lambda x: MANY(WHOLE)(x) and len(x) == 2
+EXACTLY = lambda kinds: lambda x: type(x) is dict and x.keys() == kinds.keys() and all(kind(x[key]) for key, kind in kinds.items())
+SCENE = {"coordinates": MANY(WORD), "constraints": MANY(WORD), "lagrangian": WORD, "time": WORD}
+SCENE |= {name: NAMED(WORD) for name in ("parameters", "forces", "positions", "velocities")}
+COMMON = {"schema": WORD, "scene": EXACTLY(SCENE), "digest": WORD, "prime": WHOLE, "unity": PAIR, "roots": NAMED(WHOLE), "set": NAMED(WORD)}
+COMMON |= {"exponents": EXACTLY({"order": WHOLE, "e^i": WHOLE, "e": WHOLE})}
+
+def of_kind(proof, kinds):
+    """The certificate, where every field is of its kind; its scene and its images are looked at, and the images taken."""
+    fields = COMMON | kinds
     for name, kind in fields.items():
         readable(kind(proof.get(name)), f"the field {name}")
     readable(proof.keys() == fields.keys(), f"the fields {proof.keys() - fields.keys()}")
     plain, names = proof["scene"], set(proof["scene"]["coordinates"])
     rates = {x + "'" for x in names}
-    demand(proof["motion"].keys() == names == plain["positions"].keys() and len(names) == len(plain["coordinates"]), "the coordinates")
+    demand(names == plain["positions"].keys() and len(names) == len(plain["coordinates"]), "the coordinates")
+    demand(all(re.fullmatch(r"[A-Za-z_]\w*", x, re.ASCII) for x in [*names, *plain["parameters"]]), "the name of a coordinate or parameter")
     demand(plain["forces"].keys() <= names, "a force on no coordinate")
     demand(plain["velocities"].keys() <= rates, "a velocity of no coordinate")
-    demand(not plain["parameters"].keys() & (names | rates | {"t", "pi"}), "a name that is used twice")
+    demand(not names & {"t", "pi"} and not plain["parameters"].keys() & (names | {"t", "pi"}), "a name that is used twice")
     digest = hashlib.sha256(json.dumps(plain, separators=(",", ":"), ensure_ascii=False).encode()).hexdigest()
     demand(proof["digest"] == "sha256:" + digest, "the digest of the scene")
-    P, UNITY, ROOTS, (M, z), exponents = proof["prime"], proof["unity"], proof["roots"], proof["unity"], proof["exponents"]
-    R, E_I, E = exponents["order"], exponents["e^i"], exponents["e"]
-    demand(is_prime(P) and P > max(2**50, proof["order"] + 2), "p is no prime over 2^50")
+    p, (M, z), exponents = proof["prime"], proof["unity"], proof["exponents"]
+    order = exponents["order"]
+    demand(is_prime(p) and p > max(2**50, proof.get("order", 0) + 2), "p is no prime over 2^50")
     readable(0 < M < 2**32, "M")
     small = [l for l in range(2, 2**16) if M % l == 0 and is_prime(l)]
     large = [M // d for d in range(1, 2**16) if M % d == 0 and is_prime(M // d)]
-    demand(M % 4 == 0 and pow(z, M, P) == 1 and all(pow(z, M // l, P) != 1 for l in small + large), "the image of e^(2 pi i/M)")
-    demand(R > 0 and pow(E_I, R, P) == pow(E, R, P) == 1, "the images of e^i and e")
+    demand(M % 4 == 0 and pow(z, M, p) == 1 and all(pow(z, M // l, p) != 1 for l in small + large), "the image of e^(2 pi i/M)")
+    demand(order > 0 and pow(exponents["e^i"], order, p) == pow(exponents["e"], order, p) == 1, "the images of e^i and e")
+    return map_to(p, [M, z], exponents, proof["roots"]) or proof
+
+def map_to(prime, unity, exponents, roots):
+    """Images mod p from here on."""
+    global P, I, R, E, E_I, UNITY, ROOTS
+    P, UNITY, ROOTS, R, E_I, E = prime, unity, roots, exponents["order"], exponents["e^i"], exponents["e"]
+    I = pow(unity[1], unity[0] // 4, P)
+
+def checked(proof):
+    """The certificate, where every field is of its kind."""
+    readable(type(proof) is dict and proof.get("schema") == "deltaq/certificate/2", "the schema")
+    order, rows = lambda x: WHOLE(x) and x < 200, MANY(PAIR)
+    kinds = {"almost_every_start": TRUTH, "order": order, "rows": rows, "minor": WHOLE, "divided_by": NAMED(WHOLE), "completed": MANY(WORD)}
+    of_kind(proof, kinds | {"motion": NAMED(MANY(WHOLE)), "reactions": MANY(MANY(WHOLE))})
+    names = set(proof["scene"]["coordinates"])
+    demand(proof["motion"].keys() == names, "the coordinates")
     demand(all(i < len(names) and k <= proof["order"] for k, i in proof["rows"]), "the rows")
     demand(all(x < P for c in [*proof["motion"].values(), *proof["reactions"]] for x in c), "a coefficient that is not under p")
-    I = pow(z, M // 4, P)
     return proof
 
-def main(*files):
+def answered(verified, *files):
+    """Prints what a script finds of a certificate, a line about the file among it, and returns the exit code."""
     sys.setrecursionlimit(20000)
-    held = "; no scene file was given to hold it against"
     try:
         readable(0 < len(files) < 3, "the arguments; python verify.py [SCENE.toml] CERTIFICATE.json")
         with open(files[-1]) as file:
-            proof = checked(json.load(file))
-        remark, table = verify(proof), None
+            proof = json.load(file)
+        lines, against = verified(proof)
+        held, table = "; no scene file was given to hold it against", None
         if files[1:]:
             with open(files[0], "rb") as file:
                 table = tomllib.load(file, parse_float=str)
             try:
-                held = f"; it is that of {files[0]}" + hold(table, proof)
+                held = f"; it is that of {files[0]}" + hold(table, against)
             except (Unreadable, KeyError, TypeError, AttributeError) as fault:
                 raise Unreadable(f"{files[0]}: {fault}; the certificate is verified for its own plain scene")
     except Forged as fault:
         return print(f"forged: {fault}") or 1
     except Unreadable as fault:
         return print(f"cannot read: {fault}") or 2
-    except (OSError, ValueError, KeyError, TypeError, AttributeError, RecursionError, OverflowError) as fault:
+    except (OSError, ValueError, LookupError, TypeError, AttributeError, RecursionError, OverflowError) as fault:
         return print(f"cannot read: {type(fault).__name__}: {fault}") or 2
-    scene = proof["scene"]
-    start = {"t": scene["time"]} | {x: scene["positions"][x] for x in scene["coordinates"]} | scene["velocities"]
-    open_ = [x + "'" for x in scene["coordinates"] if x + "'" not in scene["velocities"]]
-    everywhere = " and from almost every one on its piece of the constraints" if proof["almost_every_start"] else ""
-    of = f"(order {proof['order']}, minor {proof['minor']} mod {P})"
-    print(f"verified: no mu_0 makes Chetaev's motion from this start{everywhere} vakonomic {of}")
-    supplied = f"; from the constraints: {' '.join(open_)}" if open_ else ""
-    print("start:", ", ".join(f"{name} = {text}" for name, text in start.items()) + supplied + remark)
-    if proof["completed"]:
-        print(f"completed: {' '.join(proof['completed'])}, which decimals of the scene miss by round-off")
+    print("\n".join(lines))
     if proof["set"]:
         print("set:", ", ".join(f"{name} = {text}" for name, text in proof["set"].items()))
     print(f"scene: {proof['digest']}{held}")
     return 0
 
+def no_multipliers(proof):
+    """What is verified, in lines, and what the scene file is held against."""
+    remark = verify(checked(proof))
+    scene = proof["scene"]
+    start = {"t": scene["time"]} | {x: scene["positions"][x] for x in scene["coordinates"]} | scene["velocities"]
+    open_ = [x + "'" for x in scene["coordinates"] if x + "'" not in scene["velocities"]]
+    everywhere = " and from almost every one on its piece of the constraints" if proof["almost_every_start"] else ""
+    of = f"(order {proof['order']}, minor {proof['minor']} mod {P})"
+    lines = [f"verified: no mu_0 makes Chetaev's motion from this start{everywhere} vakonomic {of}"]
+    supplied = f"; from the constraints: {' '.join(open_)}" if open_ else ""
+    lines.append("start: " + ", ".join(f"{name} = {text}" for name, text in start.items()) + supplied + remark)
+    if proof["completed"]:
+        lines.append(f"completed: {' '.join(proof['completed'])}, which decimals of the scene miss by round-off")
+    return lines, proof
+
+def of_integrals(file):
+    """Whether a file is a certificate of `deltaq integrals`."""
+    try:
+        with open(file) as text:
+            return json.load(text)["schema"].startswith("deltaq/integrals-certificate/")
+    except (OSError, ValueError, LookupError, TypeError, AttributeError, RecursionError):
+        return False
+
+def main(*files):
+    if files and of_integrals(files[-1]):
+        sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+        return __import__("integrals").main(*files)
+    return answered(no_multipliers, *files)
+
 if __name__ == "__main__":
+    sys.modules["verify"] = sys.modules["__main__"]
     sys.exit(main(*sys.argv[1:]))
