@@ -13,11 +13,15 @@ const REPORTS: &str = concat!(env!("CARGO_TARGET_TMPDIR"), "/main-job");
 /// Reference motions.
 const TABLES: &str = concat!(env!("CARGO_TARGET_TMPDIR"), "/benchmark");
 
+/// A page on integrals.
+const INTEGRALS: &str = concat!(env!("CARGO_TARGET_TMPDIR"), "/integrals");
+
 /// One call of every command, and of none, but of `reports`, which is the whole main job.
-const ANSWERS: [&[&str]; 6] = [
+const ANSWERS: [&[&str]; 7] = [
     &["--scenes", "bowl", "--quiet", "--out", REPORTS],
     &["random", "--count", "1", "--quiet"],
     &["benchmark", "--systems", "particle", "--starts", "1", "--quiet", "--out", TABLES],
+    &["integrals", "--scenes", "particle", "--parts", "scenes", "--quiet", "--out", INTEGRALS],
     &["scaling", "--longest", "1", "--repeats", "1", "--quiet"],
     &["stability", "--case", "blow-up", "--quiet"],
     &["--help"],

@@ -4,7 +4,6 @@ use std::iter::zip;
 
 use decision::{DecisionError, ExactStart};
 use deltaq::{CHETAEV, Choice, Contradicted, Settings, SolveError, derive, solve_choice};
-use equations::Role;
 use mechanics::{System, Watched};
 use scene::Scene;
 use symbolic::{Expr, Symbol};
@@ -113,18 +112,14 @@ fn drifts(scene: &Scene, choice: &Choice, printed: &[Printed]) -> Result<Vec<f64
     let read = |text: String| g.parse(&text, &known, &[]).map_err(|fault| fault.to_string());
     let pairs: Vec<[Expr; 2]> =
         texts.map(|[own, size]| Ok([read(own)?, read(size)?])).collect::<Result<_, String>>()?;
-    let states = motion.equations.states.iter().filter(|y| y.role == Role::Multiplier).map(|y| y.symbol);
-    let symbols: Vec<Symbol> =
-        system.positions().into_iter().chain(system.velocities()).chain([system.time]).chain(states).collect();
+    let symbols: Vec<Symbol> = system.positions().into_iter().chain(system.velocities()).chain([system.time]).collect();
+    let multipliers: Vec<Option<Symbol>> =
+        motion.equations.multipliers.iter().map(|m| g.find_symbol(&m.name)).collect();
     let (from, to, mut values) = (motion.start(), motion.end(), system.parameter_values());
     let mut at = |t: f64| -> Result<Vec<[f64; 2]>, String> {
         let now = motion.at(t).map_err(|fault| fault.to_string())?;
-        values.extend(
-            symbols
-                .iter()
-                .copied()
-                .zip(now.coordinates.into_iter().chain(now.velocities).chain([t]).chain(now.multipliers)),
-        );
+        values.extend(zip(symbols.iter().copied(), now.coordinates.into_iter().chain(now.velocities).chain([t])));
+        values.extend(zip(&multipliers, now.multipliers).filter_map(|(mu, x)| Some(((*mu)?, x))));
         let value = |e: Expr| g.evaluate(e, &values).map_err(|fault| fault.to_string());
         pairs.iter().map(|&[own, size]| Ok([value(own)?, value(size)?])).collect()
     };

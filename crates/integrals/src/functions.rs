@@ -50,6 +50,13 @@ pub(crate) fn functions(
     // the motion with multipliers is that of L + μ·f, without constraints
     let coupled = multipliers.iter().zip(&system.constraints).map(|(&mu, &f)| g.mul(g.variable(mu), f));
     let free = coupled.fold(system.lagrangian, |sum, term| g.add(sum, term));
+    let rates = system.velocities();
+    // v·∂f/∂v = f: multipliers have no part in the energy
+    let homogeneous = system.constraints.iter().all(|&f| {
+        let along = g.dot(&g.variables(&rates), &g.gradient(f, &rates));
+        g.vanishes_exactly(g.sub(along, f))
+    });
+    let of_energy = if homogeneous { system.lagrangian } else { free };
     let fast = velocity_monomials(v.len(), degree);
     let mut fast: Vec<Vec<usize>> =
         fast.into_iter().chain(degree.checked_sub(1).map_or(Vec::new(), |d| velocity_monomials(v.len(), d))).collect();
@@ -72,7 +79,7 @@ pub(crate) fn functions(
     };
     for d in 0..=degree {
         if d == 2 {
-            push(&mut all, energy(g, free, &system.velocities()), 2, true);
+            push(&mut all, energy(g, of_energy, &rates), 2, true);
         }
         for (_, place) in &slow {
             for monomial in fast.iter().filter(|m| m.len() == d) {
@@ -81,7 +88,7 @@ pub(crate) fn functions(
             }
         }
         if d == 1 {
-            for momentum in g.gradient(free, &system.velocities()) {
+            for momentum in g.gradient(free, &rates) {
                 push(&mut all, momentum, 1, false);
             }
         }

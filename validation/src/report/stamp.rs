@@ -10,7 +10,7 @@ use anyhow::{Context, Result, bail};
 const BEGINS: &str = "Measured on ";
 
 /// Pages in the folder of reports, and the folders of sources that they speak of.
-const PAGES: [(&str, &[&str]); 8] = [
+const PAGES: [(&str, &[&str]); 9] = [
     ("judge.md", &["validation/judge", "crates/judge/src", "crates/first-order/src"]),
     ("engine.md", &["validation/engine/src", "crates/chetaev/src", "crates/integrate/src", "crates/deltaq/src"]),
     (
@@ -43,6 +43,7 @@ const PAGES: [(&str, &[&str]); 8] = [
             "crates/integrate/src",
         ],
     ),
+    ("integrals/integrals.md", &["crates/integrals/src", "crates/decision/src/exact", "validation/integrals"]),
     ("measured/machine-code.md", &["crates/symbolic/src"]),
     ("sweeps/sledge-sweep.md", &["crates/decision/src", "crates/integrate/src", "crates/deltaq/src"]),
     ("sweeps/turntable-sweep.md", &["crates/decision/src", "crates/integrate/src", "crates/deltaq/src"]),

@@ -17,8 +17,8 @@ pub struct IntegralsArguments {
     /// chetaev, or a formulation whose equations are looked at in the ansatz alone: vakonomic, kappa.
     #[arg(long, short, default_value = deltaq::CHETAEV.name, value_parser = deltaq::formulation)]
     pub formulation: &'static Formulation,
-    /// Highest degree in the velocities.
-    #[arg(long, default_value_t = 2, value_parser = clap::value_parser!(u8).range(1..=3))]
+    /// Highest degree in the velocities; 0 for measures alone.
+    #[arg(long, default_value_t = 2, value_parser = clap::value_parser!(u8).range(0..=3))]
     pub degree: u8,
     /// Coordinates that the functions of the ansatz contain; those in L and in the constraints if left out.
     #[arg(long = "in", value_name = "NAME,…", value_delimiter = ',')]

@@ -81,6 +81,8 @@ pub enum Command {
     Stability(StabilityArguments),
     /// Write the reference motions that other programs are held against.
     Benchmark(BenchmarkArguments),
+    /// Write the page on invariant measures and first integrals.
+    Integrals(IntegralsArguments),
     /// Run the main job in memory and compare its verdicts with those in the reports folder.
     Reports(ReportsArguments),
 }
@@ -156,6 +158,20 @@ pub struct BenchmarkArguments {
     /// Folder for the tables; `validation/benchmark` of the project's sources if left out.
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
+}
+
+/// `evidence integrals`.
+#[derive(Args, Debug)]
+pub struct IntegralsArguments {
+    /// Scenes, those of the catalogue's reports if left out.
+    #[arg(long, value_name = "NAME,…", value_delimiter = ',')]
+    pub scenes: Vec<String>,
+    /// Parts of the page, all if left out: scenes, literature, maps. The last two take minutes.
+    #[arg(long, value_name = "PART,…", value_delimiter = ',', value_parser = ["scenes", "literature", "maps"])]
+    pub parts: Vec<String>,
+    /// Folder for the page and its pictures.
+    #[arg(long, value_name = "DIR")]
+    pub out: PathBuf,
 }
 
 /// `evidence reports`.

@@ -1,0 +1,379 @@
+//! The page on measures and integrals: the catalogue, what is known from the literature, maps.
+
+use std::collections::BTreeMap;
+use std::fmt::Write;
+use std::path::Path;
+use std::time::Instant;
+
+use anyhow::{Context, Result};
+use decision::ExactStart;
+use deltaq::{CHETAEV, Choice, VAKONOMIC, default_constants};
+use equations::Formulation;
+use integrals::{Found, Integrals, Measure, Open, Reversed, reversible};
+use pages::Table;
+use pages::markdown::inert;
+use picture::{Axis, HeatMap};
+use program::{File, parallel};
+use scene::{Number, Scene};
+use serde::Deserialize;
+
+/// Coordinates up to which quadratic integrals are asked for: of more they take long.
+const QUADRATIC: usize = 4;
+
+/// What is known of a system.
+#[derive(Clone, Debug, Deserialize)]
+pub struct Entry {
+    /// What it is called here.
+    pub name: String,
+    /// A built-in scene, or a file beside the table.
+    pub scene: String,
+    /// Numbers that are set.
+    #[serde(default)]
+    pub set: BTreeMap<String, f64>,
+    /// What is known.
+    pub claim: String,
+    /// From where.
+    pub source: String,
+    /// Whether there is a measure: some, none, or open where the program does not decide.
+    pub measure: String,
+    /// Independent integrals linear in the velocities.
+    pub linear: Option<usize>,
+}
+
+#[derive(Deserialize)]
+struct Literature {
+    entry: Vec<Entry>,
+}
+
+/// `validation/integrals`.
+pub fn folder() -> &'static Path {
+    Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/integrals"))
+}
+
+/// The table of the literature.
+///
+/// # Errors
+/// A file that is not as it should be.
+pub fn literature() -> Result<Vec<Entry>> {
+    let path = folder().join("literature.toml");
+    let text = std::fs::read_to_string(&path).with_context(|| format!("cannot read {}", path.display()))?;
+    Ok(toml::from_str::<Literature>(&text).with_context(|| path.display().to_string())?.entry)
+}
+
+impl Entry {
+    /// Its scene, with its numbers.
+    ///
+    /// # Errors
+    /// A scene that is not there, or a number that is none.
+    pub fn scene(&self) -> Result<Scene> {
+        let set: Vec<(String, Number)> = self.set.iter().map(|(name, &x)| (name.clone(), Number::from(x))).collect();
+        let file = folder().join(&self.scene);
+        let name = if self.scene.ends_with(".toml") { file.display().to_string() } else { self.scene.clone() };
+        Ok(catalogue::find(&name, &set)?)
+    }
+
+    /// What the program says, and whether it is what is known; `None`: it leaves a question open.
+    ///
+    /// # Errors
+    /// As [`Entry::scene`].
+    pub fn compared(&self) -> Result<(Reversed, Option<bool>)> {
+        let found = decided(&self.scene()?, 1)?;
+        let measure = match &found.measure {
+            Measure::None { .. } => "none",
+            Measure::Local { .. } => "some",
+            Measure::Open(_) => "open",
+        };
+        let linear = found.integrals.first().and_then(|found| found.as_ref().ok()).filter(|found| settled(found));
+        let counts = self.linear.zip(linear).is_none_or(|(known, found)| known == found.count);
+        let agrees = match (measure, &self.measure[..]) {
+            ("open", _) => None,
+            (one, other) => Some(one == other && counts),
+        };
+        Ok((found, agrees))
+    }
+}
+
+fn settled(found: &Found) -> bool {
+    found.settled || found.none_proved()
+}
+
+fn decided(scene: &Scene, degree: usize) -> Result<Reversed> {
+    let start = ExactStart::new(&scene.system, &scene.start, &scene.completion, None)?;
+    Ok(reversible(&scene.system, &start, degree))
+}
+
+/// A map over two numbers of a scene: how many integrals are linear, and where there is a measure.
+struct Map {
+    name: &'static str,
+    scene: &'static str,
+    set: &'static [(&'static str, f64)],
+    x: (&'static str, f64, f64),
+    y: (&'static str, f64, f64),
+    says: &'static str,
+}
+
+/// Values of each of the two numbers of a map.
+const VALUES: usize = 21;
+
+const MAPS: [Map; 5] = [
+    Map {
+        name: "suslov",
+        scene: "suslov",
+        set: &[],
+        x: ("K", -0.05, 0.05),
+        y: ("I1", 0.05, 0.15),
+        says: "Suslov's body: a measure where the axis is a principal one, K = 0, and nowhere else",
+    },
+    Map {
+        name: "chaplygin-sphere",
+        scene: "chaplygin-sphere",
+        set: &[],
+        x: ("I2", 0.05, 0.15),
+        y: ("I3", 0.05, 0.15),
+        says: "Chaplygin's sphere, I1 = 0.1: two equal moments of inertia give it a fourth linear integral, three a seventh",
+    },
+    Map {
+        name: "chaplygin-top",
+        scene: "scenes/chaplygin-top.toml",
+        set: &[("c1", 0.0), ("c2", 0.0)],
+        x: ("c3", -0.1, 0.1),
+        y: ("I1", 0.08, 0.18),
+        says: "Ball whose mass centre is on a principal axis at c3, I2 = 0.13: a measure where c3 = 0 or I1 = I2",
+    },
+    Map {
+        name: "rubber-ball",
+        scene: "scenes/rubber-ball-off-centre.toml",
+        set: &[("c1", 0.0), ("c2", 0.0)],
+        x: ("c3", -0.1, 0.1),
+        y: ("I1", 0.08, 0.18),
+        says: "The same ball, rolling without spinning",
+    },
+    Map {
+        name: "two-wheeled-carriage",
+        scene: "two-wheeled-carriage",
+        set: &[],
+        x: ("l", -0.2, 0.2),
+        y: ("C", 0.0, 0.04),
+        says: "Two-wheeled carriage, mass centre at l/m before its axle, wheels of inertia C",
+    },
+];
+
+impl Map {
+    /// The picture, and how many points have a measure, how many none, and how many are open.
+    fn drawn(&self) -> Result<(String, [usize; 3])> {
+        let value = |(_, from, to): (&str, f64, f64), i: usize| -> f64 {
+            let x = from + (to - from) * i as f64 / (VALUES - 1) as f64;
+            format!("{x:.6}").parse().unwrap_or(x)
+        };
+        let points: Vec<(usize, usize)> = (0..VALUES).flat_map(|j| (0..VALUES).map(move |i| (i, j))).collect();
+        let entry = |i: usize, j: usize| {
+            let mut set: BTreeMap<String, f64> = self.set.iter().map(|&(name, x)| (name.into(), x)).collect();
+            set.extend([(self.x, i), (self.y, j)].map(|(of, i)| (of.0.into(), value(of, i))));
+            Entry {
+                name: self.name.into(),
+                scene: self.scene.into(),
+                set,
+                claim: String::new(),
+                source: String::new(),
+                measure: String::new(),
+                linear: None,
+            }
+        };
+        let found = parallel::map(&points, |&(i, j)| decided(&entry(i, j).scene()?, 1));
+        let found: Vec<Reversed> = found.into_iter().collect::<Result<_>>()?;
+        let linear = |found: &Reversed| {
+            let found = found.integrals.first()?.as_ref().ok().filter(|found| settled(found))?;
+            Some(found.count as f64)
+        };
+        let is = |wanted: fn(&Measure) -> bool| found.iter().filter(|found| wanted(&found.measure)).count();
+        let counts = [
+            is(|measure| matches!(measure, Measure::Local { .. })),
+            is(|measure| matches!(measure, Measure::None { .. })),
+            is(|measure| matches!(measure, Measure::Open(_))),
+        ];
+        let axis = |(name, from, to): (&str, f64, f64)| Axis { range: Some((from, to)), ..Axis::linear(name) };
+        let map = HeatMap {
+            title: self.says.into(),
+            x: axis(self.x),
+            y: axis(self.y),
+            columns: VALUES,
+            value: Axis::linear("integrals linear in the velocities"),
+            cells: found.iter().map(linear).collect(),
+            marked: found.iter().map(|found| matches!(found.measure, Measure::Local { .. })).collect(),
+            mark: "a measure".into(),
+        };
+        Ok((map.to_svg(), counts))
+    }
+}
+
+/// What a scene says of a formulation; reasons are collected.
+fn asked(scene: &Scene, formulation: &'static Formulation) -> Result<Integrals> {
+    let constants = default_constants(formulation, scene);
+    let choice = Choice { label: formulation.title.into(), formulation, removal: None, constants };
+    let degree = if scene.system.dimension() <= QUADRATIC { 2 } else { 1 };
+    Ok(Integrals::find(scene, &choice, degree, &[])?)
+}
+
+/// The page and its pictures, of the parts that are asked for; `done` is called with the name of each piece.
+///
+/// # Errors
+/// Answers that contradict each other, and files that cannot be read.
+pub fn files(scenes: &[&str], has: &dyn Fn(&str) -> bool, done: impl Fn(&str) + Sync) -> Result<Vec<File>> {
+    let (mut text, mut files) = (head(), Vec::new());
+    if has("scenes") {
+        let begun = Instant::now();
+        let answers = parallel::map(scenes, |&name| -> Result<_> {
+            let scene = catalogue::find(name, &[])?;
+            let of = |formulation| asked(&scene, formulation).with_context(|| name.to_owned());
+            let both = (of(CHETAEV)?, of(VAKONOMIC)?);
+            done(name);
+            Ok(both)
+        });
+        let answers = answers.into_iter().collect::<Result<Vec<_>>>()?;
+        let _ = write!(
+            text,
+            "\n## The catalogue\n\n{}\nBoth formulations of {} scenes took {:.0} s on {} threads.\n\n{}",
+            catalogue_table(&answers),
+            answers.len(),
+            begun.elapsed().as_secs_f64(),
+            parallel::threads(),
+            reasons(&answers)
+        );
+    }
+    if has("literature") {
+        text += &literature_text()?;
+    }
+    if has("maps") {
+        text += "\n## Maps\n\nColour: how many integrals are linear in the velocities. A dot: there is a measure.\n";
+        for map in &MAPS {
+            let begun = Instant::now();
+            let (svg, [some, none, open]) = map.drawn().context(map.name)?;
+            done(map.name);
+            let per_thousand = begun.elapsed().as_secs_f64() * 1000.0 / (VALUES * VALUES) as f64;
+            let path = format!("{}.svg", map.name);
+            let _ = writeln!(
+                text,
+                "\n![{}]({path})\n\n{}. Of {} points {some} have a measure, {none} have none, {open} are open; {per_thousand:.0} s per \
+                 thousand points.",
+                map.says,
+                map.says,
+                VALUES * VALUES
+            );
+            files.push(File { path: path.into(), text: svg });
+        }
+    }
+    files.insert(0, File { path: "integrals.md".into(), text });
+    Ok(files)
+}
+
+fn head() -> String {
+    "# Invariant measures and integrals\n\n\
+     Is there a measure that the flow keeps? How many integrals are linear or quadratic in the velocities? `deltaq integrals SCENE` \
+     answers for the numbers of a scene as they are written. **Near almost every point:** a measure is smooth and positive there, \
+     integrals have coefficients that are analytic there; both may have periods round angles and be singular elsewhere, and weaker \
+     measures may exist ([García-Naranjo, Ortega, Ureña 2024](https://arxiv.org/abs/2404.14156)).\n\n\
+     *None* is proved, by a minor that is not zero, and has a certificate (`--certificates`) that `validation/proof/verify.py` reads; \
+     a number is one by ranks at random points, and a bound from above that is proved.\n"
+        .into()
+}
+
+fn measure(found: &Measure) -> String {
+    match found {
+        Measure::None { proved: true } => "none".into(),
+        Measure::None { proved: false } => "none, by ranks".into(),
+        Measure::Local { density: Some(_) } => "written".into(),
+        Measure::Local { density: None } => "some".into(),
+        Measure::Open(_) => "open".into(),
+    }
+}
+
+fn count(found: Option<&Result<Found, Open>>) -> String {
+    match found {
+        None => String::new(),
+        Some(Err(_)) => "open".into(),
+        Some(Ok(found)) if found.none_proved() => "none".into(),
+        Some(Ok(found)) if found.settled => found.further().to_string(),
+        Some(Ok(found)) => format!("at most {}", found.further()),
+    }
+}
+
+fn printed(found: &Integrals) -> String {
+    match &found.ansatz {
+        Ok(ansatz) => format!("{} of {}", ansatz.printed.len(), ansatz.functions),
+        Err(_) => "open".into(),
+    }
+}
+
+fn catalogue_table(answers: &[(Integrals, Integrals)]) -> String {
+    let mut table = Table::new(["scene", "measure", "linear", "quadratic", ">printed", ">vakonomic"]);
+    for (chetaev, vakonomic) in answers {
+        let reversed = chetaev.reversed.as_ref();
+        let cell = |degree: usize| count(reversed.and_then(|found| found.integrals.get(degree)));
+        table.row(&[
+            &chetaev.scene.name,
+            &reversed.map_or(String::new(), |found| measure(&found.measure)),
+            &cell(0),
+            &cell(1),
+            &printed(chetaev),
+            &printed(vakonomic),
+        ]);
+    }
+    format!(
+        "*Linear*, *quadratic*: integrals of Chetaev's motion, those left out that the energy, constants and products make; of scenes \
+         with more than {QUADRATIC} coordinates the quadratic ones are not asked for. *Printed*: of how many functions, monomials in \
+         velocities times monomials in coordinates or their sines and cosines, combinations are constant, products left out; \
+         *vakonomic*: the same in (q, v, μ).\n\n{table}"
+    )
+}
+
+/// Why anything is open, reason by reason.
+fn reasons(answers: &[(Integrals, Integrals)]) -> String {
+    let mut known: Vec<(String, Vec<&str>)> = Vec::new();
+    for (chetaev, vakonomic) in answers {
+        let reversed = chetaev.reversed.iter();
+        let of_measure = reversed.clone().filter_map(|found| match &found.measure {
+            Measure::Open(open) => Some(open),
+            _ => None,
+        });
+        let of_counts = reversed.flat_map(|found| &found.integrals).filter_map(|found| found.as_ref().err());
+        let of_ansatz = chetaev.ansatz.as_ref().err().into_iter().chain(vakonomic.ansatz.as_ref().err());
+        let mut seen: Vec<String> = of_measure.chain(of_counts).chain(of_ansatz).map(Open::to_string).collect();
+        seen.dedup();
+        for reason in seen {
+            match known.iter_mut().find(|(other, _)| *other == reason) {
+                Some((_, names)) => names.push(&chetaev.scene.name),
+                None => known.push((reason, vec![&chetaev.scene.name])),
+            }
+        }
+    }
+    let line = |(reason, mut names): (String, Vec<&str>)| {
+        names.dedup();
+        format!("- {}: {}\n", inert(&reason), names.join(", "))
+    };
+    format!("Open, because\n\n{}", known.into_iter().map(line).collect::<String>())
+}
+
+fn literature_text() -> Result<String> {
+    let entries = literature()?;
+    let mut table = Table::new(["system", "known", "source", "found: measure", "linear", "agrees"]);
+    let found = parallel::map(&entries, Entry::compared);
+    let (mut agree, mut contradict) = (0, 0);
+    for (entry, found) in entries.iter().zip(found) {
+        let (found, agrees) = found.with_context(|| entry.name.clone())?;
+        let word = match agrees {
+            None => "not asked",
+            Some(true) => "yes",
+            Some(false) => "no",
+        };
+        agree += usize::from(agrees == Some(true));
+        contradict += usize::from(agrees == Some(false));
+        let linear = count(found.integrals.first());
+        table.row(&[&entry.name, &entry.claim, &entry.source, &measure(&found.measure), &linear, &word]);
+    }
+    Ok(format!(
+        "\n## The literature\n\n{agree} of {} entries agree, {contradict} contradict. The others are affine or have integrable \
+         constraints, and are not decided without an ansatz; what is printed of them is tried by `validation/integrals/referee.py`, \
+         which shares no code with the program.\n\n{table}",
+        entries.len()
+    ))
+}
