@@ -145,7 +145,8 @@ class System:
             none, first, second, both, other = ([x[place].plain().c[0] for place in (self.L, *self.f)] for x in values)
             square = both[0] + other[0] + 2 * (none[0] - first[0] - second[0])
             readable(square % verify.P == 0, "a Lagrangian that is not quadratic in v but for a function of q")
-            readable(not any((z - x - y) % verify.P for x, y, z in zip(first[1:], second[1:], both[1:])), "constraints not linear and homogeneous in v")
+            linear = all((z - x - y) % verify.P == 0 for x, y, z in zip(first[1:], second[1:], both[1:]))
+            readable(linear, "constraints that are not linear and homogeneous in v")
     def local(self, at, q, free):
         """M, V, Q and the columns of N as series along q."""
         M, A, n = [], [], len(self.names)

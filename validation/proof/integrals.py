@@ -95,7 +95,8 @@ def measure(proof):
         # tr g^-1 dg, and the same for sines and cosines
         g = [[dot(x, [dot(row, y) for row in M]) for y in along] for x in along]
         first = lambda x: x.c[1][1] if x.c[1] else 0
-        rates = solve([[Series([x.c[0]]) for x in row] for row in g], [[Series([first(x)]) for x in row] for row in g], "the metric on the free velocities")
+        still, moving = ([[Series([term(x)]) for x in row] for row in g] for term in (lambda x: x.c[0], first))
+        rates = solve(still, moving, "the metric on the free velocities")
         total = Series.of(metric) * sum(row[i].c[0] for i, row in enumerate(rates))
         values = system.run(at, q, [Series.of(0)] * len(system.names))
         for power, place in zip((y for pair in angles.values() for y in pair), system.texts):
@@ -106,9 +107,9 @@ def measure(proof):
         series = lambda rows: [[Series([x]) for x in row] for row in rows]
         slopes = solve(series([[row[i] for i in others] for row in A]), series([[row[i] for i in others] for row in B]), "the free velocities")
         demand((total - sum(row[i].c[0] for i, row in enumerate(slopes))) % verify.P == 0, "the measure is not invariant")
-    density = [*[f"|det g|^({metric})"] * bool(metric), *(f"|{word}({x})|^({y})" for x, pair in angles.items() for word, y in zip(("sin", "cos"), pair) if y)]
-    kinetic = ", ".join(proof["free"])
-    return [f"verified: the measure {' '.join([*density, 'dq ds'])}, s = ({kinetic}), g the metric of the kinetic energy in s, smooth and positive near "
+    powers = [("det g", metric), *((f"{word}({x})", y) for x, pair in angles.items() for word, y in zip(("sin", "cos"), pair))]
+    density = " ".join([*(f"|{word}|^({y})" for word, y in powers if y), "dq ds"])
+    return [f"verified: the measure {density}, s = ({', '.join(proof['free'])}), g the metric of the kinetic energy in s, smooth and positive near "
             f"almost every point, is invariant under Chetaev's motion ({POINTS} drawn points mod {verify.P})"]
 
 def growth(system, at, free, depth):
@@ -203,18 +204,21 @@ def bound(proof):
     found, loose = solutions(chart, fields, [dict(zip(squares, row)) for row in rates], degree, order)
     demand(not loose, "terms of the last weight are free")
     demand(len(found) == proof["bound"], f"the bound, which is {len(found)}")
-    words = f"at most {len(found)} linearly independent integrals are polynomials of degree {degree} in the velocities (terms of degree {degree}, {degree - 2}, ...)"
+    degrees = f"of degree {degree} in the velocities (terms of degree {', '.join(map(str, range(degree, -1, -2)))})"
+    words = f"at most {len(found)} linearly independent integrals are polynomials {degrees}"
     if degree == 1:
         words = f"{f'at most {len(found)} linearly independent integrals are' if found else 'no integral is'} linear in the velocities"
     if (degree, len(found)) == (2, 2) and not proof["scene"]["forces"]:
         words = "no integral but energy and constants is quadratic in the velocities (terms of degree 2, 0)"
-    return [f"verified: near almost every point {words}, with analytic functions of q, local ones included, of Chetaev's motion (order {order} mod {verify.P})"]
+    return [f"verified: near almost every point {words}, with analytic functions of q, local ones included, of Chetaev's motion "
+            f"(order {order} mod {verify.P})"]
 
 def integral(proof):
     system = System(proof["scene"], proof["integral"])
     names, values = system.names, []
     n, h = len(names), len(system.f)
-    readable(all(degree <= 1 for place in system.f for degree in [system.formulas.degrees(system.rates)[place]]), "constraints that are not affine in v")
+    degrees = system.formulas.degrees(system.rates)
+    readable(all(degrees[place] <= 1 for place in system.f), "constraints that are not affine in v")
     used = system.names_in(system.texts) - {*names, *system.rates, "t"}
     demand(used <= proof["scene"]["parameters"].keys(), "a name in the integral")
     own_images(proof)
@@ -239,7 +243,8 @@ def integral(proof):
         values.append(F.c[0])
     demand(len(set(values)) > 1, "the integral is a constant where f = 0")
     known = ", ".join(f"{name} = {proof['scene']['parameters'][name]}" for name in sorted(used))
-    return [f"verified: {proof['integral']}{' with ' * bool(known) + known} is constant along Chetaev's motions, near almost every point ({POINTS} drawn points mod {verify.P})"]
+    return [f"verified: {proof['integral']}{' with ' * bool(known) + known} is constant along Chetaev's motions, near almost every point "
+            f"({POINTS} drawn points mod {verify.P})"]
 
 CLAIMS = {
     "no measure": (no_measure, {"free": MANY(WORD), "brackets": MANY(PAIR), "rows": MANY(WHOLE), "minor": WHOLE}),

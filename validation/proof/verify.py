@@ -1,7 +1,7 @@
 """Verifies that no multipliers mu_0 make a Chetaev motion vakonomic: python verify.py [SCENE.toml] CERTIFICATE.json
 
 Plain Python, and nothing of the program that wrote the certificate (`deltaq prove SCENE --out CERTIFICATE.json`). It ends with 0: verified;
-with 1: forged, something that was read is not so; with 2: cannot read, and what.
+with 1: forged, something that was read is not so; with 2: cannot read, and what. Certificates of `deltaq integrals` are those of integrals.py.
 
 Theorem. Let L, f, Q of the certificate's plain scene be analytic at its start (q, v, t), with f = 0 there, h constraints, A = f_v, and let the
 bordered matrix [L_vv, -A'; A, 0] be regular. Then there is one Chetaev motion, E := d/dt L_v - L_q - Q = A' lambda with f = 0. It is
@@ -582,7 +582,7 @@ def of_kind(proof, kinds):
     plain, names = proof["scene"], set(proof["scene"]["coordinates"])
     rates = {x + "'" for x in names}
     demand(names == plain["positions"].keys() and len(names) == len(plain["coordinates"]), "the coordinates")
-    demand(all(re.fullmatch(r"[A-Za-z_]\w*", x, re.ASCII) for x in [*names, *plain["parameters"]]), "the name of a coordinate or parameter")
+    readable(all(re.fullmatch(r"[A-Za-z_]\w*", x, re.ASCII) for x in [*names, *plain["parameters"]]), "the name of a coordinate or parameter")
     demand(plain["forces"].keys() <= names, "a force on no coordinate")
     demand(plain["velocities"].keys() <= rates, "a velocity of no coordinate")
     demand(not names & {"t", "pi"} and not plain["parameters"].keys() & (names | {"t", "pi"}), "a name that is used twice")
