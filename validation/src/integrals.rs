@@ -113,7 +113,7 @@ struct Map {
 }
 
 /// Values of each of the two numbers of a map.
-const VALUES: usize = 21;
+const VALUES: usize = 13;
 
 const MAPS: [Map; 5] = [
     Map {
@@ -149,12 +149,12 @@ const MAPS: [Map; 5] = [
         says: "The same ball, rolling without spinning",
     },
     Map {
-        name: "two-wheeled-carriage",
-        scene: "two-wheeled-carriage",
-        set: &[],
-        x: ("l", -0.2, 0.2),
-        y: ("C", 0.0, 0.04),
-        says: "Two-wheeled carriage, mass centre at l/m before its axle, wheels of inertia C",
+        name: "ellipsoid-of-revolution",
+        scene: "rattleback",
+        set: &[("K", 0.0), ("a1", 0.2), ("a2", 0.2), ("a3", 0.1), ("I3", 0.016)],
+        x: ("I1", 0.004, 0.016),
+        y: ("I2", 0.004, 0.016),
+        says: "Ellipsoid of revolution with any moments of inertia about its axes: a measure where I1 = I2, and nowhere else",
     },
 ];
 
@@ -268,9 +268,10 @@ pub fn files(scenes: &[&str], has: &dyn Fn(&str) -> bool, done: impl Fn(&str) + 
 
 fn head() -> String {
     "# Invariant measures and integrals\n\n\
-     Is there a measure that the flow keeps? How many integrals are linear or quadratic in the velocities? `deltaq integrals SCENE` \
-     answers for the numbers of a scene as they are written. **Near almost every point:** a measure is smooth and positive there, \
-     integrals have coefficients that are analytic there; both may have periods round angles and be singular elsewhere, and weaker \
+     Is there a measure e^σ(q) dq dp that the flow keeps? How many integrals are linear or quadratic in the velocities? `deltaq integrals SCENE` \
+     answers for the numbers of a scene as they are written. **Near almost every place q:** σ is smooth there, and \
+     integrals have coefficients that are analytic there; both may have periods round angles and be singular elsewhere. \
+     Without a potential every measure that is smooth and positive near rest is of this kind; with one, densities may depend on p. Weaker \
      measures may exist ([García-Naranjo, Ortega, Ureña 2024](https://arxiv.org/abs/2404.14156)).\n\n\
      *None* is proved, by a minor that is not zero, and has a certificate (`--certificates`) that `validation/proof/verify.py` reads; \
      a number is one by ranks at random points, and a bound from above that is proved.\n"

@@ -8,6 +8,7 @@ mod casadi;
 mod changed_pages;
 mod control;
 mod headlines;
+mod integrals;
 #[path = "../../crates/command/tests/killed.rs"]
 mod killed;
 mod pages;

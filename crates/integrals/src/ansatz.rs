@@ -79,7 +79,7 @@ pub fn ansatz(
     let places = chosen(system, names)?;
     let states = equations.states.iter().filter(|y| y.role == Role::Multiplier);
     let multipliers: Vec<Symbol> = states.map(|y| y.symbol).collect();
-    let (spatial, functions) = functions(system, &multipliers, &places, degree);
+    let (spatial, functions) = functions(system, &multipliers, &places, !names.is_empty(), degree);
     let expressions: Vec<Expr> = functions.iter().map(|f| f.expression).collect();
     let mut sample = Sample::new(system, equations, start, &expressions)?;
     let points = functions.len() + MORE;

@@ -6,10 +6,10 @@ use symbolic::{Expr, Graph, Symbol};
 use crate::Open;
 use crate::killing::velocity_monomials;
 
-/// Most functions.
-const FUNCTIONS: usize = 420;
-/// The highest degree in coordinates, or in sines and cosines of one.
-const SPATIAL: usize = 4;
+/// Most functions, and the highest degree in coordinates, or in their sines and cosines: unasked, and where the
+/// coordinates are chosen.
+const UNASKED: (usize, usize) = (420, 4);
+const CHOSEN: (usize, usize) = (1000, 6);
 
 /// A function of the ansatz.
 #[derive(Clone, Debug)]
@@ -42,6 +42,7 @@ pub(crate) fn functions(
     system: &System,
     multipliers: &[Symbol],
     places: &[usize],
+    are_chosen: bool,
     degree: usize,
 ) -> (usize, Vec<Function>) {
     let g = &system.graph;
@@ -63,9 +64,10 @@ pub(crate) fn functions(
     fast.sort_by_key(Vec::len);
     let mut spatial = 0;
     let mut slow = vec![(0, g.one())];
-    for most in 1..=SPATIAL {
+    let (functions, highest) = if are_chosen { CHOSEN } else { UNASKED };
+    for most in 1..=highest {
         let more = spatial_monomials(system, places, most);
-        if more.len() * fast.len() > FUNCTIONS {
+        if more.len() * fast.len() > functions {
             break;
         }
         (spatial, slow) = (most, more);

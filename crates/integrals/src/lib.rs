@@ -20,8 +20,10 @@
 //!
 //! *Near almost every point*: `σ` and coefficients are smooth there, may have periods round angles and be
 //! singular elsewhere; the sleigh has two integrals linear in its velocities with coefficients like `cos(k
-//! φ)`, `k` no integer. A measure here is smooth and positive; for weaker ones see García-Naranjo, Ortega,
-//! Ureña 2024. Where something varies under a root, all this is said of the branch of the start.
+//! φ)`, `k` no integer. A measure here is `e^{σ(q)} dq dp`. Without a potential every measure that is smooth
+//! and positive near rest is one; with a potential a density may depend on `p`, and where the motion does
+//! not rest some always does nearby. For weaker ones see García-Naranjo, Ortega, Ureña 2024. Where something
+//! varies under a root, all this is said of the branch of the start.
 //!
 //! **In an ansatz** ([`ansatz`]): any equations, affine, nonlinear, with forces and time. Which
 //! combinations of given functions are constant on `{f = 0}`? What is found is written down in fractions,

@@ -18,7 +18,7 @@ impl Display for Integrals {
         if let Some(found) = &self.reversed {
             writeln!(
                 f,
-                "near almost every point; a measure is smooth and positive there, periods of angles are not asked for"
+                "near almost every place q; a measure is e^sigma(q) dq dp, sigma smooth there, its periods not asked for"
             )?;
             writeln!(f, "{:<14}{}", "measure", measure_words(&self.scene.system, &found.measure))?;
             for (i, found) in found.integrals.iter().enumerate() {

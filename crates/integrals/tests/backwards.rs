@@ -83,6 +83,21 @@ fn what_is_there_is_found_in_any_coordinates() {
     }
 }
 
+/// Quadratic integrals, those among them that linear ones and the energy make; the number is settled.
+#[test]
+fn what_is_quadratic_is_found_in_any_coordinates() {
+    let mut random = Random(SplitMix::new(47));
+    for round in 0..sample().div_ceil(3) {
+        for (name, count, trivial) in [("sleigh", 4, 4), ("particle", 11, 11), ("martinet", 11, 11), ("veselova", 5, 5)]
+        {
+            let system = in_random_coordinates(&built_in(name, &[]).system, &mut random);
+            let found = asked(&system, 2);
+            let integrals = found.integrals[1].as_ref().unwrap_or_else(|open| panic!("{name}: {open}"));
+            assert_eq!((integrals.count, integrals.trivial), (count, trivial), "{name}, round {round}: {integrals:?}");
+        }
+    }
+}
+
 #[test]
 fn what_is_perturbed_is_proved_to_have_none() {
     let mut random = Random(SplitMix::new(43));

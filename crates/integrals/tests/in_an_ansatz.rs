@@ -50,3 +50,49 @@ fn rolling_bodies_have_their_integrals() {
     let (texts, _, _) = printed("snakeboard", 1, &[]);
     assert_eq!(texts, ["theta' + psi'", "phi'"]);
 }
+
+/// Routh: `ω₃² (I₁ I₃ + m r·I r)` with the spin `ω₃` about the axis and `r` to the contact is constant; what is
+/// printed is made of it, of Jellett's integral squared and of the energy.
+#[test]
+fn the_square_of_rouths_second_integral_is_printed() {
+    let found = asked("routh-sphere", &[], 2, &["theta"]);
+    assert_eq!((found.printed.len(), found.dimension, found.unprinted), (3, 4, 0));
+    let system = built_in("routh-sphere", &[]).system;
+    let g = &system.graph;
+    let read = |text: &str| system.expression(text).unwrap_or_else(|e| panic!("{text}: {e}"));
+    // the contact is a cos(theta) + e from the mass centre along the axis, a sin(theta) across it
+    let spin = "phi' + psi'*cos(theta)";
+    let routh = format!("({spin})^2*(I1*I3 + m*(I1*(a*sin(theta))^2 + I3*(a*cos(theta) + e)^2))");
+    let energy = found.printed.iter().find(|p| p.is_energy).expect("the energy");
+    let mut others = found.printed.iter().filter(|p| !p.is_energy);
+    let (jellett, last) = (others.next().expect("linear"), others.next().expect("quadratic"));
+    let columns = [read(&routh), read(&format!("({})^2", jellett.text)), read(&energy.text), g.one(), read(&last.text)];
+    // on random states with the constraints they are dependent
+    let mut random = symbolic::SplitMix::new(5);
+    let mut rows: Vec<f64> = Vec::new();
+    for _ in 0..40 {
+        let mut values = system.parameter_values();
+        for symbol in system.positions().into_iter().chain(system.velocities()) {
+            values.insert(symbol, random.unit());
+        }
+        // x' - a*wy = 0 and y' + a*wx = 0
+        for (&f, v) in system.constraints.iter().zip(system.velocities()) {
+            let now = g.evaluate(f, &values).expect("a number");
+            *values.get_mut(&v).expect("a velocity") -= now;
+        }
+        rows.extend(columns.iter().map(|&e| g.evaluate(e, &values).expect("a number")));
+    }
+    let svd = nalgebra::DMatrix::from_row_slice(40, 5, &rows).svd(false, false).singular_values;
+    assert!(svd[4] < 1e-12 * svd[0] && svd[3] > 1e-5 * svd[0], "{svd}");
+}
+
+/// The vakonomic motion is Hamiltonian: cyclic coordinates have momenta `∂L/∂v + μ ∂f/∂v`, Chetaev's sleigh none.
+#[test]
+fn vakonomic_motions_have_momenta_with_multipliers() {
+    let scene = built_in("sleigh", &[]);
+    let equations = vakonomic::derive(&scene.system, &Derivation::default()).expect("equations");
+    let found = ansatz(&scene.system, &equations, &start(&scene), 2, &[]).unwrap_or_else(|open| panic!("{open}"));
+    let texts: Vec<&str> = found.printed.iter().map(|p| &p.text[..]).collect();
+    assert_eq!(texts[..2], ["y' + 0.4*phi'*cos(phi) + mu_1*cos(phi)", "0.4*phi'*sin(phi) - x' + mu_1*sin(phi)"]);
+    assert!(found.printed[2].is_energy && texts.len() == 3, "{texts:?}");
+}
