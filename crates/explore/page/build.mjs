@@ -32,13 +32,16 @@ const parts = ["uplot", "katex"].map((name) => {
   return `${name} ${version} (${license})\n\n${read(`node_modules/${name}/LICENSE`)}`;
 });
 
+const zipped = (bytes) => gzipSync(bytes, { level: 9 }).toString("base64");
+
 const pieces = {
   digest,
   style: await bundled("style.css", { format: undefined, external: [] }),
   licences: markup(parts.join("\n\n")),
   scenes: data(texts),
   worker: script(await bundled("worker.js")),
-  program: gzipSync(readFileSync(program), { level: 9 }).toString("base64"),
+  program: zipped(readFileSync(program)),
+  words: zipped(await bundled("words.js", { format: "esm" })),
   script: script(await bundled("main.js")),
 };
 const page = read("index.html").replace(/\{\{(\w+)\}\}/g, (_, name) => pieces[name]);

@@ -1,26 +1,11 @@
 // Sliders, each with a number that can be typed.
 
+import { readable, short } from "./names.js";
+
 const HEADINGS = {
   parameter: "Parameters", start: "Start", velocity: "Start velocities", multiplier: "Multipliers μ₀ (vakonomic, κ)",
   costate: "Costates P(t₀)", kappa: "Between Chetaev and vakonomic", run: "Run",
 };
-
-const short = (x) => String(Number(x.toPrecision(6)));
-
-const GREEK = { alpha: "α", beta: "β", gamma: "γ", delta: "δ", theta: "θ", kappa: "κ", lambda: "λ", mu: "μ", nu: "ν",
-  rho: "ρ", phi: "φ", chi: "χ", psi: "ψ", omega: "ω", Omega: "Ω", Gamma: "Γ", eta: "η", sigma: "σ", tau: "τ", xi: "ξ" };
-
-// A name as it is read: Greek letters, primes, an index below.
-export function readable(name) {
-  // a costate of one removal has that behind it
-  if (name.startsWith("P0_")) return `P<sub>${readable(name.slice(3).split("@")[0])}</sub>`;
-  const [, stem, index, primes] = /^(.*?)_?(\d*)('*)$/.exec(name);
-  const [head, ...rest] = stem.split("_");
-  const [, word, digits] = /^(\D*)(\d*)$/.exec(head) ?? [null, head, ""];
-  const numbers = digits && index ? `${digits},${index}` : digits + index;
-  const below = [numbers, ...rest.map((part) => GREEK[part] ?? part)].filter((part) => part !== "").join(" ");
-  return `${GREEK[word] ?? word}${below ? `<sub>${below}</sub>` : ""}${"′".repeat(primes.length)}`;
-}
 
 export class Controls {
   // `set` is told every change: numbers by name, or null for that of the text.

@@ -3,11 +3,19 @@
 // After so many milliseconds a question is given up for a newer one of its kind.
 const PATIENCE = 3000;
 
-// The program, compiled, from the base64 of its gzipped bytes.
-export async function compile(base64) {
-  const zipped = await (await fetch(`data:application/octet-stream;base64,${base64.trim()}`)).arrayBuffer();
-  const stream = new Blob([zipped]).stream().pipeThrough(new DecompressionStream("gzip"));
-  return WebAssembly.compile(await new Response(stream).arrayBuffer());
+// What was zipped into the page, from the base64 of its bytes.
+async function unzipped(base64, type) {
+  const { body } = await fetch(`data:application/octet-stream;base64,${base64.trim()}`);
+  return new Response(body.pipeThrough(new DecompressionStream("gzip")), { headers: { "content-type": type } });
+}
+
+// The program, compiled while it is unzipped.
+export const compile = async (base64) => WebAssembly.compileStreaming(unzipped(base64, "application/wasm"));
+
+// A module of the page that is not needed at first.
+export async function load(base64) {
+  const url = URL.createObjectURL(await (await unzipped(base64, "text/javascript")).blob());
+  return import(url);
 }
 
 export class Engine {
@@ -16,7 +24,6 @@ export class Engine {
     this.url = URL.createObjectURL(new Blob([source], { type: "text/javascript" }));
     this.count = 0;
     this.waiting = new Map();
-    this.spawn();
   }
 
   spawn() {
@@ -40,6 +47,8 @@ export class Engine {
     if (this.current || !this.waiting.size) return;
     const [kind, asked] = this.waiting.entries().next().value;
     this.waiting.delete(kind);
+    // not before it is needed: the first motion does not wait for a second worker
+    if (!this.worker) this.spawn();
     this.current = { ...asked, id: ++this.count, began: performance.now() };
     this.worker.postMessage({ id: this.count, question: JSON.stringify(asked.question) });
   }
@@ -56,7 +65,7 @@ export class Engine {
   stop() {
     if (!this.current) return;
     this.worker.terminate();
-    this.spawn();
+    this.worker = null;
     const { resolve } = this.current;
     this.current = null;
     resolve(null);

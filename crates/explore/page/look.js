@@ -28,10 +28,18 @@ const probe = document.createElement("i");
 probe.hidden = true;
 document.body.append(probe);
 
-// A colour of the page's own style, as a canvas takes it: one that depends on light and dark is resolved.
+const dark = matchMedia("(prefers-color-scheme: dark)");
+const inks = new Map();
+
+// A colour of the page's own style, as a canvas takes it: one that depends on light and dark is resolved, which takes
+// the browser as long as a part of a picture, so once for each look.
 export function ink(name) {
-  probe.style.color = `var(--${name})`;
-  return getComputedStyle(probe).color;
+  const key = `${name} ${dark.matches} ${document.documentElement.className}`;
+  if (!inks.has(key)) {
+    probe.style.color = `var(--${name})`;
+    inks.set(key, getComputedStyle(probe).color);
+  }
+  return inks.get(key);
 }
 
 // The swatch of a motion, as SVG.

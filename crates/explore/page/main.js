@@ -1,15 +1,23 @@
 // The page: what was chosen goes to the program, what it answers is shown.
 
+import { told } from "./arrows.js";
 import { Clock } from "./clock.js";
 import { Controls } from "./controls.js";
 import { Curves } from "./curves.js";
+import { Deciding } from "./deciding.js";
 import { Engine, compile } from "./engine.js";
-import { look, swatch } from "./look.js";
+import { Legend, shownOf } from "./legend.js";
+import { listen, undoing } from "./listen.js";
+import { Own } from "./own.js";
+import * as panels from "./panels.js";
+import { entitled, groups, nothing, say, something } from "./report.js";
 import { Samples } from "./samples.js";
 import { Stage } from "./stage.js";
-import { decode, encode, forget, remember, state, turn } from "./state.js";
+import { arrived, decode, forget, push, remember, settle, shownOnly, state, turn } from "./state.js";
+import * as store from "./store.js";
+import { Take } from "./take.js";
 import { Text } from "./text.js";
-import { equations, verdict } from "./words.js";
+import { SKATE, STEPS, Tour, stateOf } from "./tour.js";
 
 const element = (id) => document.getElementById(id);
 const json = (id) => JSON.parse(element(id).textContent);
@@ -18,40 +26,75 @@ const scenes = json("scenes");
 const chosen = json("chosen");
 const OWN = "own";
 // Rows of a motion at rest, and while a hand is on a slider.
-const STEPS = [480, 240];
+const SAMPLED = [480, 240];
+
+// Parameters that bring a motion of their own, which goes with them.
+const OF_LAWS = ["kappa", "slip", "epsilon"];
+// Who does not like things to move starts them himself.
+const still = matchMedia("(prefers-reduced-motion: reduce)");
 
 let scene; // what the program said of the text
-let motionsEngine, wordsEngine;
+let latest = []; // what it said of the motions last
+let motionsEngine, wordsEngine, deciding;
 
 const clock = new Clock(
   { button: element("play"), bar: element("bar"), reading: element("reading"), speed: element("speed") },
   (t) => {
     stage.draw(t);
     curves.at(t);
+    element("key").textContent = clock.samples?.contacts ? clock.samples.motions.map((motion) => told(motion, t)).join("\n") : state.forces ? "This scene has no bodies at which forces could be drawn." : "";
   },
 );
+const ownTexts = new Own(element("scene"));
 const stage = new Stage(element("stage"), element("note"));
 const curves = new Curves(element("plot"), element("curve"), (t) => {
   clock.pause();
   clock.go(t);
 });
 const controls = new Controls(element("numbers"), (numbers, moving) => set(numbers, moving));
-const text = new Text({ area: element("area"), marks: element("marks"), faults: element("faults") }, (typed) => {
+const motionsLegend = new Legend(element("legend"), (label, on) => {
+  state.on = state.on.filter((other) => other !== label).concat(on ? [label] : []);
+  state.off = state.off.filter((other) => other !== label).concat(on ? [] : [label]);
+  remember();
+  controls.shown(shown());
+  outdated();
+  motions(false, false);
+});
+const editor = new Text({ area: element("area"), marks: element("marks"), faults: element("faults") }, (typed) => {
   const write = () => Object.assign(state, { scene: OWN, text: typed });
   if (own()) write();
   else turn(write);
   keep();
   remember();
-  readScene(false);
+  undoing();
+  readScene(false).then(keep);
 });
 
-// The last text of one's own: it can be chosen again.
-let draft = null;
+const tour = new Tour(element("tour"), {
+  go: enter,
+  leave: () => openTab("numbers"),
+  write: () => openTab("text"),
+  set: (numbers, moving) => set(numbers, moving),
+  facts: () => ({ samples: clock.samples, decided: deciding.answer, set: state.set }),
+  guessed(answer) {
+    state.guess = answer;
+    const { name, start, inverse } = STEPS[state.step - 1].slider ?? {};
+    // what was computed before is no answer then
+    if (start !== undefined) set({ [name]: inverse ? 1 / start : start }, false);
+    showTour();
+    clock.go(clock.start);
+    remember();
+    run();
+  },
+});
 
 function keep() {
-  draft = state.text ?? draft;
-  element("scene").querySelector(`[value=${OWN}]`).hidden = draft === null;
-  element("scene").value = own() ? OWN : state.scene;
+  if (own() && (ownTexts.draft === null || state.text !== SKATE)) ownTexts.draft = state.text;
+  const select = element("scene");
+  select.querySelector(`[value=${OWN}]`).hidden = ownTexts.draft === null;
+  select.value = own() ? OWN : state.scene;
+  element("keep").hidden = !own();
+  element("keep").textContent = own() && scene && ownTexts.isKept(scene.title, state.text) ? "Forget this text" : "Keep in this browser";
 }
 
 const builtIn = (name) => scenes.find((scene) => scene.name === name);
@@ -60,39 +103,12 @@ const sceneText = () => state.text ?? builtIn(state.scene)?.text ?? "";
 
 const question = (ask, more = {}) => ({ ask, name: own() ? OWN : state.scene, text: sceneText(), set: state.set, ...more });
 
-// Labels of the motions that are shown: at first Chetaev, vakonomic, the first removal, κ.
-function shown() {
-  const first = new Set();
-  const standard = ({ formulation }) => {
-    const fresh = !first.has(formulation);
-    first.add(formulation);
-    return fresh && formulation !== "vakonomic-costate";
-  };
-  const isShown = (motion) => {
-    const normally = standard(motion);
-    return state.on.includes(motion.label) || (normally && !state.off.includes(motion.label));
-  };
-  return scene.motions.filter(isShown).map(({ label }) => label);
-}
-
-function say(message, bad = false) {
-  element("said").textContent = message;
-  element("said").classList.toggle("bad", bad);
-}
+const shown = () => shownOf(scene.motions, state);
 
 // What is shown in words belongs to what was asked before.
 function outdated() {
   asked += 1;
-  wordsEngine.stop();
-  element("deciding").hidden = true;
-  for (const id of ["verdict", "equations"]) {
-    element(id).replaceChildren();
-    element(id).setAttribute("aria-busy", "true");
-  }
-}
-
-function busy(id, is) {
-  element(id).setAttribute("aria-busy", String(is));
+  deciding.outdated();
 }
 
 // No motion is shown; with a reason there is none.
@@ -100,27 +116,8 @@ function empty(reason = null) {
   asked += 1;
   clearTimeout(resting);
   clock.pause();
-  for (const id of ["view", "graph"]) {
-    element(id).classList.add("void");
-    busy(id, reason === null);
-  }
-  for (const id of ["play", "bar"]) element(id).disabled = true;
-  element("refused").hidden = reason === null;
-  element("refused").textContent = reason ?? "";
-  element("busy").hidden = true;
-  if (reason === null) return;
-  for (const id of ["verdict", "equations"]) busy(id, false);
-  say(reason, true);
-}
-
-// Something is shown again.
-function filled() {
-  for (const id of ["view", "graph"]) {
-    element(id).classList.remove("void");
-    busy(id, false);
-  }
-  for (const id of ["play", "bar"]) element(id).disabled = false;
-  element("refused").hidden = true;
+  clock.samples = null;
+  nothing(reason);
 }
 
 // Reads the scene; with `anew` it is another one.
@@ -139,53 +136,21 @@ async function readScene(anew) {
   const { answer } = reply;
   if (answer.faults || answer.refused) {
     const faults = answer.faults ?? [{ line: 0, column: 0, length: 0, message: answer.refused }];
-    text.mark(faults, answer.message ?? answer.refused);
+    editor.mark(faults, answer.message ?? answer.refused);
     const [{ line, message }] = faults;
     return empty(line ? `line ${line}: ${message}` : message);
   }
-  text.mark([]);
+  editor.mark([]);
   scene = answer;
-  element("title").innerHTML = "<b></b> <small></small>";
-  element("title").firstChild.textContent = scene.title;
-  element("title").lastChild.textContent = scene.source;
-  element("title").title = scene.notes;
-  document.title = `${scene.title} – deltaq explore`;
+  entitled(scene);
   controls.build(scene.controls, state.set);
   legend();
   await motions(false, anew);
 }
 
 function legend(answers = []) {
-  const counts = {};
-  const on = shown();
-  const labels = scene.motions.map(({ label, formulation }) => {
-    const further = (counts[formulation] = (counts[formulation] ?? -1) + 1);
-    const row = document.createElement("label");
-    row.innerHTML = `<input type="checkbox">${swatch(look(formulation, further))}<span></span><small></small>`;
-    const [box, , name, remark] = row.children;
-    const answer = answers.find((answer) => answer.label === label);
-    box.checked = on.includes(label);
-    row.classList.toggle("off", !box.checked);
-    name.textContent = label;
-    row.title = answer?.refused ?? answer?.cause ?? "";
-    if (answer?.refused) remark.textContent = "no motion";
-    else if (answer && answer.status !== "completed") remark.textContent = `${answer.status}${answer.status === "stopped" ? ` at ${Number(answer.end.toPrecision(4))} s` : ""}`;
-    box.addEventListener("change", () => {
-      state.on = state.on.filter((other) => other !== label).concat(box.checked ? [label] : []);
-      state.off = state.off.filter((other) => other !== label).concat(box.checked ? [] : [label]);
-      remember();
-      row.classList.toggle("off", !box.checked);
-      controls.shown(shown());
-      outdated();
-      motions(false, false);
-    });
-    return row;
-  });
-  controls.shown(on);
-  // whoever has the focus on one of them keeps it
-  const focused = [...element("legend").querySelectorAll("input")].indexOf(document.activeElement);
-  element("legend").replaceChildren(...labels);
-  labels[focused]?.querySelector("input").focus();
+  controls.shown(shown());
+  motionsLegend.show(scene.motions, shown(), answers);
 }
 
 let resting;
@@ -197,7 +162,7 @@ async function motions(glance, anew) {
   const number = ++asked;
   const wait = setTimeout(() => (element("busy").hidden = false), 400);
   // what is new is first seen at a glance
-  const more = { motions: shown(), steps: STEPS[glance || anew ? 1 : 0], glance: glance || anew };
+  const more = { motions: shown(), steps: SAMPLED[glance || anew ? 1 : 0], glance: glance || anew, forces: state.forces };
   const reply = await motionsEngine.ask("motions", question("motions", more));
   clearTimeout(wait);
   if (!reply) return;
@@ -226,60 +191,60 @@ function draw(samples, anew) {
   stage.show(samples, anew);
   clock.span(samples.start, samples.end);
   curves.show(samples, state.curve);
-  filled();
+  something();
 }
 
 function show(reply, anew) {
   const { answer } = reply;
   if (answer.faults || answer.refused) return empty(answer.message ?? answer.refused);
   const samples = new Samples(reply, scene.coordinates);
+  latest = answer.motions;
+  // which way is down is not asked at a glance
+  samples.down ??= anew ? undefined : clock.samples?.down;
   if (answer.motions.length && answer.motions.every(({ refused }) => refused)) {
     empty(answer.motions.map(({ label, refused }) => `${label}: ${refused}`).join(" "));
   } else {
     draw(samples, anew);
   }
   if (anew || answer.motions.some(({ error }) => error !== null)) legend(answer.motions);
+  tour.update();
   // for tests and for who looks behind the page
-  window.explored = { answer, milliseconds: reply.milliseconds, drawn: ++drawn, samples, first: (first ??= performance.now()) };
+  window.explored = { answer, milliseconds: reply.milliseconds, drawn: ++drawn, samples, stage, first: (first ??= performance.now()) };
 }
 
 // What takes longer, in the other worker.
-async function decide() {
-  say("deciding …");
-  element("deciding").hidden = false;
-  const [more, number] = [{ motions: shown() }, asked];
-  const reply = await wordsEngine.ask("decision", question("decision", more));
-  if (number !== asked) return;
-  element("deciding").hidden = true;
-  busy("verdict", false);
-  const answer = reply?.answer ?? { refused: "The decision was stopped." };
-  element("verdict").innerHTML = verdict(answer.faults ? { refused: answer.message } : answer);
-  say(answer.refused ?? answer.message ?? answer.verdict, Boolean(answer.refused ?? answer.message));
-  window.decided = answer;
-  const written = await wordsEngine.ask("equations", question("equations", more));
-  if (number !== asked) return;
-  busy("equations", false);
-  if (written) element("equations").innerHTML = equations(written.answer.faults ? { refused: written.answer.message } : written.answer);
+function decide() {
+  const more = { motions: shown() };
+  deciding.decide((ask) => question(ask, more), { notes: scene.notes, motions: latest }, (answer) => {
+    window.decided = answer;
+    tour.update();
+  });
 }
 
-// Sets numbers by name; null takes that of the text.
+// Sets numbers by name; null takes that of the text. What a hand has done with a slider is one change, when it lets go.
 function set(numbers, moving) {
-  const before = JSON.stringify(state.set);
+  if (!inHand) settle();
+  inHand = moving;
+  const before = { ...state.set };
   for (const [name, value] of Object.entries(numbers)) {
     if (value === null) delete state.set[name];
     else state.set[name] = value;
   }
-  remember();
-  if (JSON.stringify(state.set) !== before) outdated();
-  // κ brings a motion of its own, which goes with it
-  const hasKappa = scene.motions.some(({ formulation }) => formulation === "kappa");
-  const isKappa = (name) => scene.controls.find((control) => control.name === name)?.kind === "kappa";
-  const turned = Object.entries(numbers).some(([name, value]) => isKappa(name) && hasKappa === (value === null));
-  if (turned) return kappa();
+  if (!moving) turned();
+  if (JSON.stringify(state.set) !== JSON.stringify(before)) outdated();
+  if (OF_LAWS.some((name) => name in state.set !== name in before)) return laws();
   motions(moving, false);
 }
 
-async function kappa() {
+let inHand = false;
+
+// Something was changed that can be undone.
+function turned() {
+  push();
+  undoing();
+}
+
+async function laws() {
   const reply = await motionsEngine.ask("scene", question("scene"));
   if (!reply) return;
   scene.motions = reply.answer.motions ?? scene.motions;
@@ -287,86 +252,64 @@ async function kappa() {
   motions(false, false);
 }
 
-function choose(name) {
-  turn(() => Object.assign(state, { scene: name, text: name === OWN ? draft : null, set: {}, on: [], off: [], time: 0 }));
-  keep();
+function choose(choice) {
+  const kept = ownTexts.text(choice);
+  const name = kept === null ? choice : OWN;
+  const text = kept ?? (choice === OWN ? ownTexts.draft : null);
+  if (state.tab === "tour") openTab("numbers");
+  turn(() => Object.assign(state, { scene: name, text, set: {}, on: [], off: [], time: 0 }));
   element("notice").hidden = true;
-  text.put(sceneText());
-  clock.t = 0;
-  readScene(true).then(play);
+  arrive();
 }
 
-function play() {
-  if (!element("play").disabled) clock.play();
+// Runs by itself, if that is wanted.
+function run() {
+  if (!still.matches && !element("play").disabled) clock.play();
 }
 
-function openTab(name, isChosen = true) {
+// Goes to a step of the tour.
+function enter(step) {
+  turn(() => Object.assign(state, stateOf(step)));
+  element("notice").hidden = true;
+  arrive();
+}
+
+// Before a question is answered, what answers it is not to be seen.
+const asks = () => state.tab === "tour" && state.guess < 0;
+
+function showTour() {
+  const { classList } = document.querySelector("main");
+  classList.toggle("touring", state.tab === "tour");
+  classList.toggle("asking", asks());
+  stage.veil(asks());
+  if (state.tab === "tour") tour.show(state.step, state.guess);
+}
+
+// Opens a panel that was chosen; the tour goes on where it was left.
+function openTab(name) {
+  const before = state.tab;
   state.tab = name;
-  if (isChosen) remember();
-  for (const tab of document.querySelectorAll("[role=tab]")) {
-    const open = tab.dataset.tab === name;
-    tab.setAttribute("aria-selected", open);
-    tab.tabIndex = open ? 0 : -1;
-    element(tab.dataset.tab).hidden = !open;
+  panels.open(name);
+  if (name === "tour") {
+    state.step ||= 1;
+    if (STEPS[state.step - 1].state.scene !== state.scene) return enter(state.step);
   }
+  if (before === "tour" && name !== "tour") {
+    store.keep("toured", true);
+    // numbers were moved there, too
+    if (scene) controls.build(scene.controls, state.set);
+    if (scene) controls.shown(shown());
+  }
+  showTour();
+  remember();
 }
 
-function keys(event) {
-  if (event.target.matches("input, select, textarea, button, summary") || event.ctrlKey || event.metaKey || event.altKey) return;
-  const far = event.shiftKey ? 10 : 1;
-  const actions = {
-    " ": () => element("play").click(), ArrowLeft: () => clock.step(-far), ArrowRight: () => clock.step(far),
-    Home: () => clock.step(-100), End: () => clock.step(100), "+": () => stage.magnify(1.25), "-": () => stage.magnify(0.8),
-    0: () => stage.reset(),
-  };
-  const tabs = [...document.querySelectorAll("[role=tab]")];
-  const action = actions[event.key] ?? (tabs[event.key - 1] && (() => openTab(tabs[event.key - 1].dataset.tab)));
-  if (!action) return;
-  event.preventDefault();
-  action();
-}
-
-function listen() {
-  element("scene").addEventListener("change", ({ target }) => choose(target.value));
-  element("curve").addEventListener("change", ({ target }) => {
-    state.curve = target.value;
-    remember();
-    curves.show(clock.samples, state.curve);
-  });
-  element("bar").addEventListener("change", () => {
-    state.time = clock.t;
-    remember();
-  });
-  element("stop").addEventListener("click", () => {
-    motionsEngine.stop();
-    element("busy").hidden = true;
-    say("stopped", true);
-  });
-  element("undecided").addEventListener("click", () => wordsEngine.stop());
-  for (const tab of document.querySelectorAll("[role=tab]")) tab.addEventListener("click", () => openTab(tab.dataset.tab));
-  element("link").addEventListener("click", async () => {
-    state.time = clock.t;
-    const link = `${location.href.split("#")[0]}#${encode()}`;
-    history.replaceState(null, "", link);
-    try {
-      await navigator.clipboard.writeText(link);
-      element("link").textContent = "Copied";
-    } catch {
-      element("link").textContent = "In the address bar";
-    }
-    setTimeout(() => (element("link").textContent = "Copy link"), 1500);
-  });
-  element("theme").addEventListener("click", () => {
-    const { classList } = document.documentElement;
-    const dark = classList.contains("dark") || (!classList.contains("light") && matchMedia("(prefers-color-scheme: dark)").matches);
-    classList.remove("light", "dark");
-    classList.add(dark ? "light" : "dark");
-    redraw();
-  });
-  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", redraw);
-  element("help").addEventListener("click", () => element("about").showModal());
-  document.addEventListener("keydown", keys);
-  addEventListener("hashchange", () => restore());
+// A link to what is seen now.
+function link() {
+  state.time = clock.t;
+  remember();
+  settle();
+  return location.href;
 }
 
 function redraw() {
@@ -375,37 +318,82 @@ function redraw() {
   curves.show(clock.samples, state.curve);
 }
 
-// Everything as the address says; without a word there, as the page was made.
+function showForces(is) {
+  state.forces = is;
+  remember();
+  motions(false, false);
+}
+
+function keepText() {
+  const isKept = ownTexts.isKept(scene.title, state.text);
+  if (!ownTexts.keep(scene.title, isKept ? null : state.text)) say("This browser keeps nothing.", true);
+  keep();
+}
+
+// Everything as the address says; without a word there, as the page was made, or the tour.
 async function restore() {
-  const otherwise = chosen ? { scene: chosen.text === null ? chosen.name : OWN, text: chosen.text, set: { ...chosen.set } } : {};
   forget();
-  let fault = decode(location.hash, otherwise);
+  arrived();
+  const [name, before] = [state.scene, sceneText()];
+  const made = () => chosen.state ?? { scene: chosen.text === null ? chosen.name : OWN, text: chosen.text, set: { ...chosen.set } };
+  const isFirst = !chosen && location.hash === "" && !store.kept("toured", false);
+  let fault = decode(location.hash, chosen ? structuredClone(made()) : isFirst ? stateOf(1) : {});
   if (!own() && !builtIn(state.scene)) {
     fault = `there is no scene ${state.scene} here`;
     state.scene = scenes[0].name;
   }
+  if (!panels.names.includes(state.tab)) state.tab = "numbers";
+  state.step = Math.min(STEPS.length, Math.max(state.tab === "tour" ? 1 : 0, Math.round(state.step)));
+  document.documentElement.classList.toggle("only-stage", shownOnly() === "stage");
   // it stays there, and the address as it is, until something is chosen
   element("notice").hidden = fault === null;
   element("notice").textContent = `The link cannot be read: ${fault}.`;
-  keep();
-  text.put(sceneText());
-  openTab(state.tab, false);
-  await readScene(true);
-  if (!state.time) play();
+  await arrive(scene && name === state.scene && before === sceneText());
 }
 
-async function begin() {
-  const option = ({ name, title }) => `<option value="${name}">${title}</option>`;
-  const groups = [...new Set(scenes.map(({ group }) => group))];
-  const list = (group) => scenes.filter((scene) => scene.group === group).map(option).join("");
-  const grouped = groups.map((group) => `<optgroup label="${group}">${list(group)}</optgroup>`);
-  element("scene").innerHTML = `${grouped.join("")}<option value="${OWN}" hidden>own text</option>`;
+// Shows what the state says; of the scene that is shown already, the time goes on.
+async function arrive(isSame = false) {
+  keep();
+  undoing();
+  editor.put(sceneText());
+  if (!isSame) clock.t = state.time;
+  element("forces").checked = state.forces;
+  panels.open(state.tab);
+  showTour();
+  await readScene(!isSame);
+  keep();
+  if (!isSame && !state.time && !asks()) run();
+}
+
+new Take(element("takes"), {
+  name: () => (own() ? "scene" : state.scene), scene: () => scene, samples: () => clock.samples, told: () => latest,
+  text: sceneText, set: () => state.set, state: () => ({ ...state, time: clock.t }), stage,
+  equations: async () => (await wordsEngine.ask("taken", question("equations", { motions: shown() })))?.answer,
+  written: async () => (await motionsEngine.ask("text", question("text")))?.answer.text,
+});
+
+// What buttons and keys do.
+function begin() {
+  listen({
+    choose, openTab, link, redraw, showForces, keepText, restore, clock, stage,
+    stop() {
+      motionsEngine.stop();
+      element("busy").hidden = true;
+      say("stopped", true);
+    },
+    stopDeciding: () => wordsEngine.stop(),
+  });
+}
+
+async function start() {
+  element("scene").prepend(...groups(scenes), new Option("own text", OWN));
   const source = element("worker").textContent;
   const module = await compile(element("program").textContent);
   motionsEngine = new Engine(module, source);
   wordsEngine = new Engine(module, source);
-  listen();
+  deciding = new Deciding(wordsEngine, element("words").textContent);
+  begin();
   await restore();
 }
 
-begin().catch((error) => say(`This browser cannot run the program: ${error.message}`, true));
+start().catch((error) => say(`This browser cannot run the program: ${error.message}`, true));

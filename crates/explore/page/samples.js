@@ -1,5 +1,6 @@
 // What the program answered about motions, with names for the places of the numbers.
 
+import { read } from "./arrows.js";
 import { look } from "./look.js";
 
 // A place and a rotation.
@@ -16,9 +17,9 @@ class Pose {
   }
 }
 
-// One motion: rows of t, coordinates, velocities, multipliers, invariants, observables, track and poses.
+// One motion: rows of t, coordinates, velocities, multipliers, invariants, observables, arrows, track and poses.
 class Motion {
-  constructor(answer, numbers, names, bodies, further) {
+  constructor(answer, numbers, names, bodies, further, contacts) {
     Object.assign(this, answer);
     this.numbers = numbers;
     this.bodies = bodies.filter((body) => body.moved);
@@ -30,7 +31,14 @@ class Motion {
     for (const [group, columns] of Object.entries(groups)) {
       this.columns[group] = Object.fromEntries(columns.map((name) => [name, place++]));
     }
-    this.trackPlace = place;
+    this.contacts = contacts;
+    this.arrowPlace = place;
+    this.trackPlace = place + (contacts ? 10 + 6 * contacts : 0);
+  }
+
+  // Velocity, reaction and virtual displacements in a row, where they were asked for.
+  arrows(row) {
+    return read((i) => this.value(row, this.arrowPlace + i), this.contacts);
   }
 
   value(row, column) {
@@ -100,9 +108,12 @@ export class Samples {
     Object.assign(this, { start: answer.start, end: answer.end, times: answer.times, bodies: answer.bodies, milliseconds });
     this.numbers = numbers;
     this.all = answer.motions;
+    this.contacts = answer.contacts ?? 0;
+    this.down = answer.down ?? undefined;
+    this.length = known.some(({ unit }) => unit === "m") ? "m" : "";
     this.motions = answer.motions.flatMap((motion) => {
       const further = (counts[motion.formulation] = (counts[motion.formulation] ?? -1) + 1);
-      return motion.refused ? [] : [new Motion(motion, numbers, names, answer.bodies, further)];
+      return motion.refused ? [] : [new Motion(motion, numbers, names, answer.bodies, further, answer.contacts ?? 0)];
     });
     this.still = answer.ground;
     this.gaps = answer.gaps.map((gap) => {

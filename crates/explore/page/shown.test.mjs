@@ -1,7 +1,5 @@
 // What the page shows is what was computed: numbers, verdicts, pictures, refusals, and the way back.
 
-import { createRequire } from "node:module";
-import { readFileSync } from "node:fs";
 import { join } from "node:path";
 
 const SIZES = [[1280, 600], [400, 800], [1366, 657]];
@@ -172,23 +170,42 @@ export async function badLinks({ open, link, must, choose, url }) {
   }
 }
 
-// axe-core finds nothing serious.
-export async function axe({ open, link, must, said }) {
-  const source = readFileSync(createRequire(import.meta.url).resolve("axe-core/axe.min.js"), "utf8");
-  let passes = 0;
-  for (const scheme of ["light", "dark"]) {
-    for (const [width, height] of SIZES) {
-      for (const tab of ["numbers", "verdict", "equations", "text"]) {
-        const page = await open(link({ scene: "sledge", tab, time: 1 }), { width, height, scheme });
-        await page.evaluate(source);
-        const found = await page.evaluate(() => axe.run());
-        passes += found.passes.length;
-        const bad = found.violations.filter(({ impact }) => impact === "serious" || impact === "critical");
-        for (const { id, nodes } of bad) must(false, `axe: ${id} at ${nodes.slice(0, 3).map(({ target }) => target)} (${tab}, ${scheme}, ${width} × ${height})`);
-        await page.close();
+// The table has every pair with the verdict that was decided, from when and by how much, in units; and one sentence of why.
+export async function table({ open, link, must, pictures }) {
+  for (const [state, verdicts] of [[{ scene: "sledge" }, ["different", "different", "different"]], [{ scene: "velocity-pendulum" }, ["same", "same", "same"]]]) {
+    const page = await open(link({ ...state, tab: "verdict" }));
+    const { pairs, sentence } = await page.evaluate(() => window.decided);
+    const seen = await page.evaluate(() => [...document.querySelectorAll("#verdict tbody tr")].map((row) => [...row.children].map(({ innerText }) => innerText)));
+    must(pairs.length === verdicts.length && seen.length === pairs.length, `${seen.length} rows of ${pairs.length} pairs`);
+    for (const [i, [names, verdict, from, by]] of seen.entries()) {
+      const pair = pairs[i];
+      must(pair.verdict === verdicts[i], `${state.scene}: ${names} is ${pair.verdict}`);
+      must(names === `${pair.first} – ${pair.second}`, `a row is called ${names}`);
+      must(verdict.includes(pair.verdict === "same" ? "the same" : pair.verdict), `${names} is said to be ${verdict}`);
+      if (pair.verdict === "different") {
+        must(Math.abs(parseFloat(from) / pair.visible - 1) < 0.01 && from.endsWith(" s"), `${names}: from ${from}, not ${pair.visible}`);
+        const largest = Math.max(...pair.coordinates.filter(({ unit }) => unit === "m").map(({ by }) => by));
+        const metres = /([\d.e-]+) m$/m.exec(by)?.[1];
+        must(Math.abs(metres / largest - 1) < 0.01, `${names}: by ${by}, not ${largest} m`);
+      } else {
+        must(from === "–" && by === "–", `${names}: ${from}, ${by} of motions that are the same`);
       }
     }
+    must(sentence.includes(verdicts[0] === "same" ? "are the same, because" : "part because"), `why: ${sentence}`);
+    must((await page.$eval("#verdict .sentence", ({ textContent }) => textContent)) === sentence, "the sentence is not shown");
+    must((await page.$eval("#said", ({ textContent }) => textContent)) === sentence, "the sentence is not below the picture");
+    await page.screenshot({ path: join(pictures, `table-${state.scene}.png`) });
+    await page.close();
   }
-  must(passes > 0, "axe looked at nothing");
-  said.push(`axe: ${passes} rules hold`);
+  // what was hidden in hints is text
+  const page = await open(link({ scene: "sledge", on: ["removed constraint (along-x)"], tab: "verdict" }));
+  const words = await page.$eval("#verdict", ({ innerText }) => innerText);
+  const { notes, causes } = await page.evaluate(() => ({
+    notes: JSON.parse(document.getElementById("scenes").textContent).find(({ name }) => name === "sledge").text.match(/^notes = "(.*)"$/m)[1],
+    causes: window.explored.answer.motions.map((motion) => motion.refused ?? motion.cause).filter(Boolean),
+  }));
+  must(causes.length > 0, "no motion ends early");
+  for (const text of [notes, ...causes]) must(words.includes(text), `is not to be read: ${text}`);
+  must(!(await page.$("#title[title], #legend [title]")), "something is said in a hint only");
+  await page.close();
 }

@@ -1,12 +1,16 @@
 // The bodies in motion on a canvas: outlines in axes of their own, places and rotations from the program.
 
+import * as arrows from "./arrows.js";
 import { ink } from "./look.js";
+import { Vector } from "./vector.js";
 
 // Azimuth and elevation of the eye for what is not in a plane, as in the reports.
 const OBLIQUE = [0.4, 0.5];
 // A motion widens the frame at most this many times.
 const WIDENED = 2;
 const MARGIN = 18;
+
+const still = matchMedia("(prefers-reduced-motion: reduce)");
 
 const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 
@@ -31,8 +35,15 @@ export class Stage {
     }
     this.bodies = samples.bodies;
     this.flat = this.isFlat();
+    this.largest = samples.contacts && arrows.sizes(samples.motions[0]);
     this.frame();
     if (anew || !this.window) this.window = this.target;
+    this.draw();
+  }
+
+  // Veiled, it shows where the bodies are and no way of them.
+  veil(is) {
+    this.veiled = is;
     this.draw();
   }
 
@@ -119,23 +130,37 @@ export class Stage {
     const ratio = devicePixelRatio;
     const [width, height] = [canvas.clientWidth * ratio, canvas.clientHeight * ratio].map(Math.round);
     if (canvas.width !== width || canvas.height !== height) [canvas.width, canvas.height] = [width, height];
-    const off = Math.max(...this.window.map((x, i) => Math.abs(x - this.target[i])));
+    const off = still.matches ? 0 : Math.max(...this.window.map((x, i) => Math.abs(x - this.target[i])));
     const eased = off > 1e-3 * Math.hypot(this.target[2] - this.target[0], this.target[3] - this.target[1]);
     this.window = eased ? this.window.map((x, i) => x + 0.25 * (this.target[i] - x)) : this.target;
-    const context = canvas.getContext("2d");
+    this.paint(canvas.getContext("2d"), canvas, ratio);
+    if (eased) requestAnimationFrame(() => this.draw());
+  }
+
+  paint(context, { width, height }, ratio) {
+    const { t, samples } = this;
     context.setTransform(1, 0, 0, 1, 0, 0);
     context.clearRect(0, 0, width, height);
     context.lineJoin = "round";
     const view = this.projection();
     const pen = { context, view, ratio };
     const [line, floor] = [ink("ground"), ink("floor")];
-    for (const [pose, body] of this.samples.ground(this.samples.rowAt(t))) draw(pen, pose, body, line, 1, floor);
-    for (const motion of this.samples.motions) this.trail(pen, motion, t);
-    for (const motion of this.samples.motions) {
+    for (const [pose, body] of samples.ground(samples.rowAt(t))) draw(pen, pose, body, line, 1, floor);
+    for (const motion of this.veiled ? [] : samples.motions) this.trail(pen, motion, t);
+    for (const motion of samples.motions) {
       const { colour, outline } = motion.look;
       for (const [pose, body] of [...motion.posesAt(t)].reverse()) draw(pen, pose, body, colour, outline, `${colour}2e`);
     }
-    if (eased) requestAnimationFrame(() => this.draw());
+    const side = Math.min(width, height);
+    for (const motion of samples.contacts ? samples.motions : []) arrows.forces(pen, motion, t, this.largest, side);
+    arrows.orientation(pen, { width, height }, { down: samples.down, flat: this.flat && !this.eye, unit: samples.length });
+  }
+
+  // What is seen, as SVG.
+  svg(title) {
+    const vector = new Vector(this.canvas.width, this.canvas.height, ink("page"));
+    this.paint(vector, this.canvas, devicePixelRatio);
+    return vector.svg(title);
   }
 
   // The whole path thin, what has been run of it strong.
@@ -181,7 +206,7 @@ export class Stage {
       fingers.set(event.pointerId, event);
       // one turns, two draw apart
       if (before) this.magnify(apart() / before);
-      else if (fingers.size === 1 && (!this.flat || this.eye)) this.turn(event.x - x, event.y - y);
+      else if (fingers.size === 1) this.turn(event.x - x, event.y - y);
     });
     for (const end of ["pointerup", "pointercancel"]) canvas.addEventListener(end, ({ pointerId }) => fingers.delete(pointerId));
     canvas.addEventListener("dblclick", () => this.reset());
@@ -191,7 +216,9 @@ export class Stage {
     }, { passive: false });
   }
 
+  // What is in a plane is seen from above.
   turn(dx, dy) {
+    if (this.flat && !this.eye) return;
     const [azimuth, elevation] = this.eye ?? OBLIQUE;
     this.eye = [azimuth - dx / 150, Math.min(Math.PI / 2, Math.max(-0.2, elevation + dy / 150))];
     this.frame();

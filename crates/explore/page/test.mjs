@@ -1,6 +1,6 @@
-// node test.mjs BROWSER DELTAQ PAGE PICTURES all|numbers|shown|SECONDS: the page in a browser without network, against
-// the native program; or its numbers only; or whether what is shown is what was computed; or whether it grows while
-// sliders are moved for so many seconds.
+// node test.mjs BROWSER DELTAQ PAGE PICTURES all|numbers|shown|CHECK|SECONDS: the page in a browser without network,
+// against the native program; or its numbers only; or whether what is shown is what was computed; or one of these
+// checks by name; or whether it grows while sliders are moved for this number of seconds.
 
 import { execFileSync, spawnSync } from "node:child_process";
 import { mkdirSync, mkdtempSync, rmSync, statSync } from "node:fs";
@@ -10,15 +10,20 @@ import { pathToFileURL } from "node:url";
 
 import puppeteer from "puppeteer-core";
 
+import * as access from "./access.test.mjs";
+import * as drawn from "./drawn.test.mjs";
 import { growth } from "./growth.test.mjs";
 import * as checks from "./shown.test.mjs";
+import * as takes from "./take.test.mjs";
+import { tasks } from "./tasks.test.mjs";
+import { tour } from "./tour.test.mjs";
 
 const [executablePath, deltaq, file, pictures, what] = process.argv.slice(2);
 // Milliseconds may be BUSY times as many, as other things may run beside; the figures are told.
 const BUSY = 3;
 // Seconds of slider moves within all checks.
 const SECONDS = 10;
-const LIMITS = { megabytes: 4, first: 1000, sledge: 10, updates: 60, cone: 50, difference: 1e-12 };
+const LIMITS = { megabytes: 2.2, first: 500, sledge: 10, updates: 60, cone: 50, difference: 1e-12 };
 const OWN = `title = "Skate"
 [coordinates]
 x = { unit = "m", start = 0 }
@@ -48,17 +53,18 @@ function must(holds, what) {
 
 const link = (state) => `${url}#${Buffer.from(JSON.stringify(state)).toString("base64url")}`;
 
-// A new page at an address, which has shown its motions in full, and what is decided.
-async function open(address, { width = 1280, height = 900, scheme = "light" } = {}) {
-  const page = await browser.newPage();
+// A new page at an address, which has shown its motions in full, and what is decided, or what it is waited for until.
+async function open(address, { width = 1280, height = 900, scheme = "light", context = browser, features = [], until = null } = {}) {
+  const page = await context.newPage();
   await page.setOfflineMode(true);
   page.on("console", (message) => ["error", "warn"].includes(message.type()) && complaints.push(`console: ${message.text()}`));
   page.on("pageerror", (error) => complaints.push(`error: ${error.message}`));
   page.on("request", (request) => must(/^(file|data|blob):/.test(request.url()), `asks for ${request.url()}`));
   await page.setViewport({ width, height });
-  await page.emulateMediaFeatures([{ name: "prefers-color-scheme", value: scheme }]);
+  await page.emulateMediaFeatures([{ name: "prefers-color-scheme", value: scheme }, ...features]);
   await page.goto(address);
-  await page.waitForFunction(() => window.decided, { timeout: 60000 });
+  if (until) await page.waitForSelector(until, { timeout: 60000 });
+  else await page.waitForFunction(() => window.decided, { timeout: 60000 });
   return page;
 }
 
@@ -119,7 +125,7 @@ async function opening() {
   must(size <= LIMITS.megabytes, `${size.toFixed(2)} MB, at most ${LIMITS.megabytes}`);
   const firsts = [];
   for (let i = 0; i < 3; i++) {
-    const page = await open(url);
+    const page = await open(link({ scene: "sledge" }));
     firsts.push(await page.evaluate(() => window.explored.first));
     await page.close();
   }
@@ -129,7 +135,7 @@ async function opening() {
 
 // Every built-in scene has a motion, and what is drawn of it changes with time.
 async function everyScene() {
-  const page = await open(url);
+  const page = await open(`${url}#scene=sledge`);
   const names = await page.evaluate(() => [...document.querySelectorAll("#scene option:not([hidden])")].map(({ value }) => value));
   must(names.length >= 40, `${names.length} scenes`);
   for (const name of names) {
@@ -278,14 +284,19 @@ async function looks() {
   }
 }
 
-const tools = { open, link, must, after, choose, slide, type, said, OWN, url, pictures };
+// A browser that was never here.
+const fresh = () => browser.createBrowserContext();
+
+const tools = { open, fresh, link, must, after, choose, slide, type, said, OWN, url, pictures, deltaq };
 // one that breaks off does not hide what the others find
-const shown = Object.values(checks).map((check) => () => check(tools).catch((error) => complaints.push(`${check.name}: ${error.stack}`)));
+const single = { ...checks, ...access, ...drawn, ...takes, tour, tasks };
+const shown = Object.values(single).map((check) => () => check(tools).catch((error) => complaints.push(`${check.name}: ${error.stack}`)));
 
 try {
   const grows = () => growth(tools, Number(what) || SECONDS);
   const all = [opening, everyScene, sliders, fingers, ownText, looks, ...shown, grows];
-  const parts = { all, numbers: [ownText], shown }[what] ?? [grows];
+  const named = what in single ? [shown[Object.keys(single).indexOf(what)]] : null;
+  const parts = { all, numbers: [ownText], shown }[what] ?? named ?? [grows];
   for (const part of parts) await part();
 } catch (error) {
   complaints.push(error.stack);

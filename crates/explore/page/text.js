@@ -34,7 +34,9 @@ export class Text {
       return row;
     }));
     this.scroll();
-    this.faults.replaceChildren(...faults.map((fault) => this.fault(fault)));
+    const list = document.createElement("ul");
+    list.append(...faults.map((fault) => this.fault(fault)));
+    this.faults.replaceChildren(list);
     this.faults.hidden = !faults.length;
     this.faults.dataset.message = message;
   }

@@ -2,6 +2,8 @@
 
 import katex from "katex";
 
+import { figure, readable } from "./names.js";
+
 const escape = (text) => text.replaceAll("&", "&amp;").replaceAll("<", "&lt;");
 
 // Functions stand apart from what is before and behind them also where no font for mathematics is there to say so.
@@ -53,11 +55,47 @@ export function equations({ system, integrability, motions, refused }) {
   return `${markup(system)}<p>Constraint: ${escape(integrability)}.</p>${motions.map(section).join("")}`;
 }
 
-// The verdict, why and how sure; then which family has which motion, and how that is proved.
-export function verdict({ verdict, why, sure, decisions, refused }) {
+const VERDICTS = { same: ["=", "the same"], different: ["≠", "different"], undecided: ["?", "undecided"] };
+
+// When the gap passes 0.001; of one that does not, since when a difference is certain.
+function since({ verdict, visible, certain }) {
+  if (verdict !== "different") return "–";
+  if (visible !== null) return `${figure(visible)} s`;
+  return certain === null ? "not seen" : `less, from ${figure(certain)} s`;
+}
+
+// The largest differences of coordinates, by name with their units, the largest of each unit.
+function differences({ verdict, coordinates }) {
+  if (verdict !== "different") return "–";
+  const largest = new Map();
+  for (const one of coordinates) if (!(largest.get(one.unit)?.by >= one.by)) largest.set(one.unit, one);
+  const part = ({ name, unit, by }) => `<i>${readable(escape(name))}</i>: ${figure(by)} ${escape(unit)}`;
+  return [...largest.values()].filter(({ by }) => by > 0).map(part).join("<br>") || "–";
+}
+
+// Pair by pair: the same or not, from when, by how much.
+function table(pairs) {
+  const row = (pair) => {
+    const [sign, word] = VERDICTS[pair.verdict];
+    return `<tr><th scope="row">${escape(pair.first)} – ${escape(pair.second)}</th>
+      <td class="${pair.verdict}"><b aria-hidden="true">${sign}</b> ${word}${pair.proved ? "<br>proved" : ""}</td>
+      <td>${since(pair)}</td><td>${differences(pair)}</td><td>${figure(pair.largest)}</td></tr>`;
+  };
+  const undecided = pairs.filter(({ because }) => because).map(({ first, second, because }) => `<p>${escape(first)} – ${escape(second)}: undecided, ${escape(because)}.</p>`);
+  return `<div class="wide" tabindex="0" role="region" aria-label="pairs of motions"><table><thead><tr><th scope="col">pair</th><th scope="col">motions</th><th scope="col">0.001 apart from</th>
+    <th scope="col">differ by up to</th><th scope="col">gap, m √kg</th></tr></thead><tbody>${pairs.map(row).join("")}</tbody></table></div>${undecided.join("")}`;
+}
+
+// The table of pairs and one sentence of why; the verdict, why and how sure in the words of the program; which family
+// has which motion, and how that is proved; motions that are none or end early; what is known of the scene.
+export function verdict({ verdict, why, sure, sentence, pairs, decisions, refused }, { notes = "", motions = [] } = {}) {
   if (refused) return `<p>${escape(refused)}</p>`;
-  const card = ([family, motion, which, reason]) =>
+  const card = ({ family, motion, which, reason }) =>
     `<li><p>Is the motion of <b>${escape(motion)}</b> one of <b>${escape(family)}</b>?</p><p>For ${inline(which)}: ${escape(reason)}.</p></li>`;
   const decided = decisions.length ? `<h3>Decided</h3><ul class="cards">${decisions.map(card).join("")}</ul>` : "";
-  return `<h3>Verdict</h3><p>${escape(verdict)}</p><h3>Why</h3><p>${escape(why)}</p><h3>How sure</h3><p>${escape(sure)}</p>${decided}`;
+  const causes = motions.map((motion) => [motion.label, motion.refused ?? motion.cause]).filter(([, cause]) => cause);
+  const ends = causes.length ? `<h3>Motions that are none or end early</h3>${causes.map(([label, cause]) => `<p><b>${escape(label)}</b>: ${escape(cause)}</p>`).join("")}` : "";
+  return `${sentence ? `<p class="sentence">${escape(sentence)}</p>` : ""}${pairs.length ? table(pairs) : ""}
+    <h3>Verdict</h3><p>${escape(verdict)}</p><h3>Why</h3><p>${escape(why)}</p><h3>How sure</h3><p>${escape(sure)}</p>${decided}${ends}
+    ${notes ? `<h3>Notes on the scene</h3><p>${escape(notes)}</p>` : ""}`;
 }

@@ -35,6 +35,7 @@ fn answered(question: &str, kept: &mut Kept, numbers: &mut Vec<f64>) -> Result<V
         Ask::Scene => Ok(scene(&subject)),
         Ask::Motions => motions::sampled(&subject, &question, kept, numbers),
         Ask::Equations => words::equations(&subject),
+        Ask::Text => Ok(json!({ "text": subject.scene.to_toml() })),
         Ask::Decision => words::decision(subject, &question),
     }
 }

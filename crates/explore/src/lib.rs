@@ -6,12 +6,13 @@
 //!
 //! A [`Question`] is about the text of a scene, with numbers `set` in the place of those of the text:
 //! whatever `--set` takes, `P0_w` (the costate of the memory variable `w` at the start) and `kappa`, which a
-//! scene need not have. There are four:
+//! scene need not have. There are five:
 //!
 //! - `scene`: what can be varied, and which motions there are;
 //! - `motions`: these, sampled at equal times, with the bodies that are drawn, and the gaps between them;
 //! - `equations`: in LaTeX;
-//! - `decision`: the comparison in words, as `deltaq compare` says it.
+//! - `decision`: the comparison in words, as `deltaq compare` says it, and pair by pair;
+//! - `text`: the scene with the numbers that are set.
 //!
 //! ```
 //! let text = include_str!("../../scene/sledge.toml");
@@ -31,6 +32,7 @@
 //! be started with the reason.
 
 mod answering;
+mod arrows;
 mod bodies;
 mod controls;
 #[cfg(target_family = "wasm")]

@@ -5,6 +5,7 @@ use mechanics::{Observables, System, Watched};
 use scene::Scene;
 use serde_json::{Value, json};
 
+use crate::arrows::Arrows;
 use crate::bodies::Bodies;
 use crate::kept::Kept;
 use crate::question::{Question, Refused};
@@ -15,9 +16,10 @@ use crate::subject::Subject;
 ///
 /// Of each motion `from` is the place of its first row in the numbers, `width` the length of a row, `rows`
 /// how many there are. A row is `t`, coordinates, velocities, multipliers, invariants, energy, observables,
-/// the place whose path is drawn, and twelve numbers a body that moves: its place, its rotation row by row.
-/// Rows of the ground are of twelve numbers a body, at every time or one for all; those of a gap are `t`, the
-/// gap, and what it has to pass (infinite in doubt, or at a glance).
+/// what [`Arrows::put`] appends where forces are asked for, the place whose path is drawn, and twelve numbers
+/// a body that moves: its place, its rotation row by row. Rows of the ground are of twelve numbers a body, at
+/// every time or one for all; those of a gap are `t`, the gap, and what it has to pass (infinite in doubt, or
+/// at a glance).
 pub(crate) fn sampled(
     subject: &Subject,
     question: &Question,
@@ -33,6 +35,7 @@ pub(crate) fn sampled(
         times: (0..=steps).map(time).collect(),
         bodies: Bodies::of(scene).map_err(SolveError::from)?,
         observables: observables(&scene.system)?,
+        arrows: if question.forces { Arrows::of(scene)? } else { None },
     };
     let ground = sampler.ground(scene, numbers);
     let (mut answers, mut runs) = (Vec::new(), Vec::new());
@@ -57,7 +60,20 @@ pub(crate) fn sampled(
     Ok(json!({
         "start": scene.start.t, "end": scene.start.t + scene.duration, "times": sampler.times.len(),
         "bodies": sampler.bodies.described(), "ground": ground, "motions": answers, "gaps": gaps,
+        "contacts": sampler.arrows.as_ref().map(Arrows::contacts), "down": if question.glance { Value::Null } else { down(scene, &answers, numbers)? },
     }))
+}
+
+/// Which way is down, by three places of the first motion; `null` where no axis is.
+fn down(scene: &Scene, answers: &[Value], numbers: &[f64]) -> Result<Value, SolveError> {
+    let Some(mut arrows) = Arrows::of(scene)? else { return Ok(Value::Null) };
+    let Some(motion) = answers.iter().find(|answer| answer["rows"].is_u64()) else { return Ok(Value::Null) };
+    let [from, rows, width] = ["from", "rows", "width"].map(|name| motion[name].as_u64().unwrap_or_default() as usize);
+    let state = |row: usize| {
+        let at = from + row * width;
+        (numbers[at], numbers[at + 1..at + 1 + scene.system.dimension()].to_vec())
+    };
+    Ok(json!(arrows.down(&[state(0), state(rows / 3), state(2 * rows / 3)])))
 }
 
 /// The energy and the observables of a system.
@@ -110,6 +126,7 @@ struct Sampler {
     times: Vec<f64>,
     bodies: Bodies,
     observables: Observables,
+    arrows: Option<Arrows>,
 }
 
 impl Sampler {
@@ -149,6 +166,9 @@ impl Sampler {
             numbers.extend(now.coordinates.iter().chain(&now.velocities).chain(&now.multipliers));
             numbers.extend(&now.invariants);
             numbers.extend(self.observables.at(t, &now.coordinates, &now.velocities));
+            if let Some(arrows) = &mut self.arrows {
+                arrows.put(run, self.times[0], t, numbers)?;
+            }
             self.bodies.put_moved(t, &now.coordinates, numbers);
         }
         (answer["from"], answer["rows"]) = (from.into(), (before + 1).into());

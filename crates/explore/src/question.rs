@@ -17,6 +17,8 @@ pub enum Ask {
     Equations,
     /// The comparison in words.
     Decision,
+    /// The scene as a text with the numbers that are set in it; costates are not.
+    Text,
 }
 
 /// A question about the text of a scene.
@@ -43,6 +45,9 @@ pub struct Question {
     /// One run of every motion only, coarser and without an error estimate: to follow a hand on a slider.
     #[serde(default)]
     pub glance: bool,
+    /// Velocities, reactions at the contacts and virtual displacements, too.
+    #[serde(default)]
+    pub forces: bool,
 }
 
 /// An answer: an object of JSON, and the numbers to which it points.

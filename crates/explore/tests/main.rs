@@ -1,5 +1,7 @@
 //! The answers, against the library.
 
+mod arrows;
+
 use deltaq::words::Headline;
 use deltaq::{Settings, choices, compare_unfitted, solve_choice};
 use explore::{Answer, Explorer};
@@ -147,9 +149,34 @@ fn words_are_those_of_a_comparison() {
     let (answer, _) = ask(json!({ "ask": "decision", "name": "sledge", "text": SLEDGE }));
     let Headline { verdict, why, sure } = Headline::of(&comparison);
     assert_eq!([&answer["verdict"], &answer["why"], &answer["sure"]], [&verdict, &why, &sure]);
+    let pairs = answer["pairs"].as_array().unwrap();
+    assert_eq!(pairs.len(), comparison.pairs.len());
+    for (told, pair) in pairs.iter().zip(&comparison.pairs) {
+        let label = |run: usize| comparison.runs[run].choice.label.as_str();
+        assert_eq!((&told["first"], &told["second"]), (&json!(label(pair.first)), &json!(label(pair.second))));
+        assert_eq!(told["verdict"], pair.gap.verdict.word());
+        assert_eq!((&told["largest"], &told["certain"]), (&json!(pair.gap.largest), &json!(pair.gap.certain_from)));
+        let by: Vec<_> = told["coordinates"].as_array().unwrap().iter().map(|c| c["by"].clone()).collect();
+        assert_eq!(json!(by), json!(pair.gap.largest_by_coordinate));
+    }
+    assert!(
+        answer["sentence"].as_str().unwrap().contains("part because the constraint forbids velocities"),
+        "{answer}"
+    );
+    assert_eq!(answer["decisions"][0]["answer"], "none, proved");
     assert!(sure.contains("No μ₀ makes the vakonomic motion Chetaev's: proved"), "{sure}");
     let (answer, _) = ask(json!({ "ask": "equations", "name": "sledge", "text": SLEDGE, "motions": ["Chetaev"] }));
     assert!(answer["motions"][0]["equations"].as_str().unwrap().contains("```math"), "{answer}");
+}
+
+/// The text with numbers set is that of a scene with these numbers.
+#[test]
+fn a_text_has_the_numbers_that_are_set() {
+    let (answer, _) =
+        ask(json!({ "ask": "text", "name": "s", "text": SLEDGE, "set": { "phi": 0.5, "g": 3, "kappa": 2 } }));
+    let scene = Scene::parse("s", answer["text"].as_str().unwrap()).unwrap();
+    let values: Vec<f64> = scene.system.parameters.iter().map(|p| p.value).collect();
+    assert_eq!((scene.start.q[2], &values[..]), (0.5, &[3.0, 0.4, 0.7, 2.0][..]));
 }
 
 #[test]
