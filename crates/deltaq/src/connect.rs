@@ -330,3 +330,21 @@ fn complete(
 fn own_constant_names(problem: &crate::Varying) -> Vec<String> {
     constant_names(&problem.prepared().equations)[..problem.constants().len()].to_vec()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn motions_are_one_up_to_a_part_of_their_unknowns() {
+        // |x − y| against 10⁻³ (1 + |y|), each unknown by itself
+        let known = [99.0, 0.0];
+        for (moved, found) in [([0.09, 0.0], 1), ([0.11, 0.0], 2), ([0.0, 0.9e-3], 1), ([0.0, 1.1e-3], 2)] {
+            let mut all = vec![(known.to_vec(), 2)];
+            merge(&mut all, vec![known[0] + moved[0], known[1] + moved[1]], 3, 1e-3);
+            assert_eq!(all.len(), found, "{moved:?}");
+            assert_eq!(all.iter().map(|(_, starts)| starts).sum::<usize>(), 5);
+            assert_eq!(all[0].1, if found == 1 { 5 } else { 2 });
+        }
+    }
+}

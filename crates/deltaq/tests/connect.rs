@@ -29,6 +29,8 @@ fn found(name: &str, formulation: &Formulation, aim: &Aim) -> Connections {
     let found = connect(&scene, &choice(&scene, formulation), aim, &Settings::default()).expect("a search");
     let led = found.found.iter().map(|motion| motion.starts).sum::<usize>();
     assert_eq!(led + found.failures.iter().map(|failure| failure.1).sum::<usize>(), aim.starts);
+    // each motion took a run in the search and one in the end, and derivatives
+    assert!(found.runs[0] >= 2 * found.found.len() && found.runs[1] >= found.found.len(), "{:?}", found.runs);
     for motion in &found.found {
         assert!(motion.residuals.iter().all(|r| r.abs() < 1e-8), "{:?}", motion.residuals);
     }

@@ -35,6 +35,9 @@ fn the_example_prints_what_the_readme_says() {
     let mut chetaev = solve_choice(&scene, &choices[0], &settings).expect("a motion");
     let x = chetaev.at(2.0).expect("in range").coordinates[0];
     assert_eq!(format!("{}: {x:.6}", choices[0].label), printed("motion.at(2.0)?"));
+    let steps = chetaev.step_times();
+    assert_eq!((steps[0], steps[steps.len() - 1], steps.len()), (0.0, 5.0, chetaev.work.steps + 1));
+    assert!(steps.windows(2).all(|pair| pair[0] < pair[1]));
     let gap = &compare_unfitted(scene, choices, Vec::new(), &settings).expect("compared").pairs[0].gap;
     assert_eq!(format!("{:.2}", gap.largest), printed(".gap.largest"));
 }

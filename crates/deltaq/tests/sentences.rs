@@ -2,7 +2,8 @@
 
 use deltaq::words::{Headline, rows};
 use deltaq::{
-    Choice, Comparison, Gap, Pair, Run, Settings, SolveError, VAKONOMIC_COSTATE, Verdict, choices, compare_unfitted,
+    CHETAEV, Choice, Comparison, Gap, Pair, Run, Settings, SolveError, VAKONOMIC, VAKONOMIC_COSTATE, Verdict, choices,
+    compare_unfitted,
 };
 use equations::Formulation;
 use scene::Scene;
@@ -170,4 +171,15 @@ fn what_the_curvature_predicts_and_what_was_measured_are_told_apart() {
     // substitution is said of removals without costates, and only of those
     let said = "t^3.00. removed constraint (coordinates) is substitution of the constraint into L here";
     assert!(why.contains(said) && why.matches("substitution").count() == 1, "{why}");
+}
+
+/// The costate form is the vakonomic motion once more, which is not said.
+#[test]
+fn a_second_form_that_agrees_is_not_named() {
+    let scene = Scene::parse("sledge", include_str!("../../scene/sledge.toml")).expect("a scene");
+    let mut all = choices(&scene);
+    all.retain(|choice| [CHETAEV, VAKONOMIC, VAKONOMIC_COSTATE].contains(&choice.formulation));
+    assert_eq!(all.len(), 3);
+    let told = verdict(&compare_unfitted(scene, all, Vec::new(), &Settings::default()).expect("a comparison"));
+    assert!(told.starts_with("2 different motions: Chetaev; vakonomic") && !told.contains('≈'), "{told}");
 }

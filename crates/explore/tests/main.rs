@@ -118,6 +118,14 @@ fn kappa_and_what_can_be_varied() {
         let value = control["value"].as_f64().unwrap_or(low);
         assert!(low <= value && value <= high && low < high, "{control}");
     }
+    let bounds = |name: &str| -> [f64; 2] {
+        let control = free["controls"].as_array().unwrap().iter().find(|c| c["name"] == name).unwrap();
+        ["low", "high"].map(|bound| control[bound].as_f64().unwrap())
+    };
+    let pi = std::f64::consts::PI;
+    assert_eq!((bounds("phi"), bounds("x")), ([0.3 - pi, 0.3 + pi], [-1.0, 1.0]));
+    assert_eq!((bounds("phi'"), bounds("mu0_1")), ([1.1 - 2.2, 1.1 + 2.2], [-2.0, 2.0]));
+    assert_eq!((bounds("kappa"), bounds("duration")), ([0.0, 20.0], [1.0, 30.0]));
     let set = json!({ "kappa": 2.0 });
     let (with, _) = ask(json!({ "ask": "scene", "name": "sledge", "text": SLEDGE, "set": set }));
     assert_eq!(names(&with).join(" "), expected);

@@ -70,14 +70,15 @@ impl Point {
                 None => along(kept[i], k),
                 Some(k) => jacobian[(kept[i], speeds[k])],
             });
-            // rows by their size, columns in round units, lest those of small units look flat
-            let scale = |i: usize| kept.iter().position(|&k| k == i).map_or(1.0, |k| scales[k]);
+            // rows by their size, columns in round units, lest those of small units look flat; what is
+            // carried has no size
+            let scale = |i: usize| kept.iter().position(|&k| k == i).map(|k| scales[k]);
             let units = DVector::from_fn(2 * m, |k, _| match k.checked_sub(m) {
                 None => {
-                    let reach = |&p: &usize| scale(p) / jacobian[(p, speeds[k])].abs();
-                    round(places.iter().map(reach).fold(f64::INFINITY, f64::min))
+                    let reach = |&p: &usize| Some(scale(p)? / jacobian[(p, speeds[k])].abs());
+                    round(places.iter().filter_map(reach).fold(f64::INFINITY, f64::min))
                 }
-                Some(k) => round(scale(speeds[k])),
+                Some(k) => scale(speeds[k]).map_or(1.0, round),
             });
             let sizes = DVector::from_fn(kept.len(), |i, _| {
                 let size: f64 = matrix.row(i).iter().zip(&scales).map(|(a, s)| a.abs() * s).sum();

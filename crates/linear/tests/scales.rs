@@ -1,6 +1,6 @@
 //! Steady motions in any unit: traps of a micrometre, motions of a billion seconds.
 
-use linear::{Growth, LinearError, find_steady, linearize};
+use linear::{Growth, LinearError, find_steady, linearize, sweep};
 
 use deltaq::{CHETAEV, setting};
 
@@ -42,4 +42,38 @@ fn what_is_slow_or_small_is_no_steady_motion() {
             assert!(found.q[0].abs() < 1e-9 * width, "{omega} {width}: {found:?}");
         }
     }
+}
+
+/// A wheel of radius `r` that turns in a trap beside another one: what it rolls along is carried.
+#[test]
+fn wheels_of_any_radius_come_to_rest_in_their_traps() {
+    for radius in [1e-12, 1e-6, 1.0, 1e6, 1e12] {
+        let lagrangian = "psi'^2/2 + z'^2/2 + exp(-psi^2) + exp(-z^2)";
+        let place = [("psi", 0.3), ("z", -0.2), ("x", 0.0)];
+        let scene = scene(&place, lagrangian, &[&format!("x' - {radius:e}*psi'")], "\"psi'\" = 0, \"z'\" = 0");
+        let found = find_steady(setting(&scene)).unwrap_or_else(|error| panic!("{radius:e}: {error}"));
+        assert!(found.q[0].abs() < 1e-9 && found.q[1].abs() < 1e-9, "{radius:e}: {found:?}");
+    }
+}
+
+/// `y'' = −4 y + (k − 1) y'` beside a swing at 10⁵ rad/s, whose size is in the errors: stability changes
+/// somewhere about k = 1, in an interval that is as wide in any unit of k.
+#[test]
+fn where_stability_changes_is_as_certain_in_any_unit() {
+    let widths = [1.0, 1e-6, 1e6].map(|unit| {
+        let text = format!(
+            "title = \"fed\"\n[parameters]\nk = {unit:e}\n[coordinates]\ny = {{ start = 0 }}\nz = {{ start = 0 }}\n\
+             [system]\nlagrangian = \"(y'^2 - 4*y^2 + z'^2 - 1e10*z^2)/2 - y*z\"\n\
+             forces = {{ y = \"(k/{unit:e} - 1)*y'\" }}\n[start.velocities]\n\"y'\" = 0\n\"z'\" = 0\n\
+             [run]\nduration = 1\n"
+        );
+        let scene = scene::Scene::parse("fed", &text).unwrap_or_else(|error| panic!("{error}"));
+        let values = [-1.0, 3.0].map(|k| k * unit);
+        let found = sweep(&scene, &choice(&scene, CHETAEV), &[], ("k", &values), false).expect("a sweep");
+        let [change] = &found.changes[..] else { panic!("{:?}", found.changes) };
+        assert!((change.value / unit - 1.0).abs() <= change.width / unit, "{change:?}");
+        println!("{unit:e}: {change:?}");
+        change.width / unit
+    });
+    assert!(widths.iter().all(|width| (0.5..2.0).contains(&(width / widths[0]))), "{widths:?}");
 }

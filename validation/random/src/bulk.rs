@@ -206,3 +206,17 @@ fn shrink_within<V: ValueTree, T>(steps: usize, tree: &mut V, test: &dyn Fn(&V::
     }
     Some(best)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Two kinds take turns, so both of the first pair are thorough, and then both of the eleventh.
+    #[test]
+    fn a_tenth_of_each_kind_is_thorough() {
+        let batch = Batch { seed: 1, kinds: vec![Kind::Free, Kind::Linear] };
+        let thorough: Vec<u64> = (0..60).filter(|&index| batch.is_thorough(index)).collect();
+        assert_eq!(thorough, [0, 1, 20, 21, 40, 41]);
+        assert_eq!([0, 1, 2].map(|i| batch.thorough(i)), [0, 20, 40]);
+    }
+}

@@ -53,5 +53,6 @@ mod tests {
             assert_eq!(short(x), text);
         }
         assert_eq!(enumerate(&["a".into(), "b".into(), "c".into()]), "a, b and c");
+        assert_eq!([None, Some(0.12345)].map(or_dash), ["–", "0.123"]);
     }
 }

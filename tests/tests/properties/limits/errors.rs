@@ -1,10 +1,10 @@
 //! Limits that motions have, by the errors that they carry or where they can no longer be told apart.
 
-use deltaq::{CHETAEV, Gap, Metric, Motion, Settings, compare_motions};
-use random::{CHECKS, Finding, FoundOut, Word, found_out, make, referee};
+use deltaq::{CHETAEV, Gap, Metric, Motion, Settings, VAKONOMIC, compare_motions, growth};
+use random::{CHECKS, Finding, FoundOut, Which, Word, found_out, make, referee};
 use scene::Scene;
 
-use super::{SIDES, case, exact, found, loose, motion, on_both_sides, particle, ten_times};
+use super::{SIDES, case, exact, found, loose, motion, observed, on_both_sides, particle, ten_times};
 
 /// What is said of a control whose gap to Chetaev's motion is this.
 fn judged(scene: &Scene, control: &mut Motion, gap: &Gap, floor: f64) -> FoundOut {
@@ -36,7 +36,6 @@ fn the_control_is_right_or_wrong_by_maggis_residual() {
 /// ten times what its runs differ by, where no gap would flag it. The push comes late: errors come first.
 #[test]
 fn the_control_is_apart_by_ten_times_its_error() {
-    let settings = Settings { tolerance: 1e-10, ..loose() };
     let pushed = |push: f64| particle(1.0, &format!(" + {push:?}*x*t^8"), 0.0);
     let scene = pushed(0.0);
     let mut metric = Metric::new(&scene.system).expect("a metric");
@@ -44,12 +43,12 @@ fn the_control_is_apart_by_ten_times_its_error() {
     let [near, far] = [&mut chetaev, &mut far].map(|motion| motion.at(2.0).expect("the end").coordinates[0]);
     let mut unseen = compare_motions(&mut chetaev.clone(), &mut chetaev, &mut metric).expect("a gap");
     unseen.points.iter_mut().for_each(|p| p.limit = 1.0);
-    let apart = ten_times(&mut motion(&scene, CHETAEV, &settings), 40, |x, _| x);
-    for floor in [0.0, 1e-8] {
+    for (floor, tolerance) in [(0.0, 1e-10), (2e-8, 1e-12)] {
+        let settings = Settings { tolerance, ..loose() };
+        let apart = ten_times(&mut motion(&scene, CHETAEV, &settings), 40, |x, _| x);
         for (part, _) in SIDES {
             let push = part * (apart + floor) / (far - near);
             let found = judged(&scene, &mut motion(&pushed(push), CHETAEV, &settings), &unseen, floor);
-            println!("apart {apart:.1e}, push {push:.1e}: {found:?}");
             assert!(!found.is_right() && !found.is_wrong(), "{found:?}");
             assert_eq!(found.word, (part > 1.0).then_some(Word::Undecided), "{part}, {floor}: {found:?}");
         }
@@ -100,4 +99,24 @@ fn constraints_are_compared_until_a_thousandth_of_their_rank_is_left() {
         let ended = found.iter().any(|f| f.note == "from t = 1.0000 on, the constraints nearly lose rank");
         assert_eq!(ended, part < 1.0, "{part}: {found:?}");
     }
+}
+
+/// Of a push that changes within the range of the fit the exponent is uncertain, the more so where it turns
+/// back.
+#[test]
+fn exponents_are_counted_that_are_certain_to_a_tenth() {
+    let scene = particle(0.0, "", 0.0);
+    let mut seen = [0, 0];
+    for bend in [-60.0, -100.0, -180.0] {
+        let mut case = case(&scene);
+        case.vakonomic = motion(&particle(0.0, &format!(" + 1e-8*(1 + ({bend:?})*t^2)*x"), 0.0), VAKONOMIC, &exact());
+        let gap = case.gap(Which::Chetaev, Which::Vakonomic).expect("a gap");
+        let limit = |t: f64| gap.limit_at(t);
+        let grown = growth(&mut case.vakonomic.clone(), &mut case.chetaev, &mut case.metric, &limit).expect("a fit");
+        let uncertain = grown.expect("stands out").uncertainty;
+        let counted = observed(case, 1, "growth exponent, vakonomic and Chetaev").is_some();
+        assert_eq!(counted, uncertain < 0.1, "{bend}: {uncertain}");
+        seen[usize::from(counted)] += usize::from((0.01..1.0).contains(&uncertain));
+    }
+    assert!(seen[0] > 0 && seen[1] > 0, "{seen:?}");
 }

@@ -116,11 +116,11 @@ fn left(
         }
     }
     let (kept, looser) = motion.at_in_both_runs(motion.end())?;
-    let (mut left, mut limit) = (0.0_f64, CERTAINTY * LEFT);
+    let (mut left, mut apart) = (0.0_f64, 0.0_f64);
     for ((&k, size), _) in places.iter().zip(sizes).zip(least).filter(|((_, size), least)| size > least) {
         let (own, other) = (kept.multipliers[k], looser.multipliers[k]);
         left = left.max(own.abs() / size);
-        limit = limit.max(CERTAINTY * (LEFT + (own - other).abs() / size));
+        apart = apart.max((own - other).abs() / size);
     }
-    Ok((left, limit))
+    Ok((left, CERTAINTY * (LEFT + apart)))
 }
