@@ -195,6 +195,17 @@ class System:
         verify.resize(1)
         return solve(series(matrix), series(right), "the equations of motion are not regular"), A, [[c[0] for c in x[:n]] for x in both]
 
+def root(l, p):
+    """s with s^2 = l: (x + s)^((p-1)/2) = a + b s in F_p[s] is 1 and -1 for the two s if a = 0"""
+    a = 1
+    while a:
+        (a, b), (c, d), power = (1, 0), (secrets.randbelow(p), 1), p // 2
+        while power:
+            if power & 1:
+                a, b = (a * c + b * d * l) % p, (a * d + b * c) % p
+            c, d, power = (c * c + d * d * l) % p, 2 * c * d % p, power >> 1
+    return pow(b, -1, p)
+
 def own_images(proof):
     """Images of the verifier's own: e^(2 pi i/M) as in the certificate, e^i and e of a prime order, roots of the same primes."""
     M, r = proof["unity"][0], 4
@@ -209,19 +220,9 @@ def own_images(proof):
         while any(pow(x, n // l, p) == 1 for l in primes):
             x = pow(secrets.randbelow(p - 1) + 1, (p - 1) // n, p)
         return x
-    def root(l):
-        """s^2 = l: (x + s)^((p-1)/2) in F_p[s] = a + b s is 1 and -1 for the two s if a = 0"""
-        a = 1
-        while a:
-            (a, b), (c, d), power = (1, 0), (secrets.randbelow(p), 1), p // 2
-            while power:
-                if power & 1:
-                    a, b = (a * c + b * d * l) % p, (a * d + b * c) % p
-                c, d, power = (c * c + d * d * l) % p, 2 * c * d % p, power >> 1
-        return pow(b, -1, p)
     divisors = [l for l in range(2, 2**16) if M % l == 0 and verify.is_prime(l)]
     divisors += [M // d for d in range(1, 2**16) if M % d == 0 and verify.is_prime(M // d)]
     unity, e_i, e = of_order(M, divisors), of_order(r, [r]), of_order(r, [r])
     cyclotomic = lambda l: M % (8 if l == 2 else l) == 0
-    found = {str(l): root(l) for l in roots if not cyclotomic(l)}
+    found = {str(l): root(l, p) for l in roots if not cyclotomic(l)}
     verify.map_to(p, [M, unity], {"order": r, "e^i": e_i, "e": e}, found)

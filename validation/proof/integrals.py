@@ -24,6 +24,9 @@ draws itself; where they agree, q0 is regular with these weights. Then there are
 kernels of matrices over it, and their dimensions mod p are not under the true ones. Both are semicontinuous in q0, too: near almost every
 point there are no more. That is why the chart may be given mod p alone.
 
+Integral. f is affine in v, or a single one is quadratic. At drawn q, t a point with f = 0 is found on drawn lines; of a quadratic one both
+points, which lie on both pieces where it has two. There a follows from d/dt L_v - L_q - Q = A' lambda, df/dt = 0, and F_q v + F_v a + F_t = 0.
+
 Identities (a measure, an integral; that L and f are such) are verified at points, with images that the verifier draws itself: p = 1 mod M, e^i and e
 of an order r over 2^60 that is prime. What is not 0 there is not so; what is 0 at 8 points is so but for chances under 2^-100. As
 an identity need not hold mod the certificate's p, nobody gains by choosing that. The scene file is held against the plain scene there, too."""
@@ -33,7 +36,7 @@ from fractions import Fraction
 from itertools import combinations_with_replacement as multisets
 
 import verify
-from chart import BITS, POINTS, Chart, Part, Span, System, dot, own_images, solve, turned
+from chart import BITS, POINTS, Chart, Part, Span, System, dot, own_images, root, solve, turned
 from verify import MANY, NAMED, PAIR, WHOLE, WORD, Series, demand, invert, readable, slopes_of
 
 # The claims -------------------------------------------------------------------------------------------------------------------------------
@@ -213,34 +216,47 @@ def bound(proof):
     return [f"verified: near almost every point {words}, with analytic functions of q, local ones included, of Chetaev's motion "
             f"(order {order} mod {verify.P})"]
 
+def velocities(system, at):
+    """Drawn ones with f = 0: one where f is affine in v, both on a drawn line where a single f is quadratic."""
+    p, drawn, degrees = verify.P, lambda: [secrets.randbelow(verify.P) for _ in system.names], system.formulas.degrees(system.rates)
+    def f(v):
+        values = system.run(at, [], [Series([x % p]) for x in v])
+        return [values[place].plain().c[0] for place in system.f]
+    if all(degrees[place] <= 1 for place in system.f):
+        v, ways = drawn(), [drawn() for _ in system.f]  # f = 0 at v + sum x_k (way k)
+        here = f(v)
+        matrix = turned([[Series([(x - y) % p]) for x, y in zip(f([*map(int.__add__, v, way)]), here)] for way in ways])
+        found = solve(matrix, [[Series([-x % p])] for x in here], "the constraints are not independent")
+        return [[(x + sum(row[0].c[0] * y for row, y in zip(found, column))) % p for x, *column in zip(v, *ways)]]
+    readable(len(system.f) == 1, "several constraints that are not affine in v")
+    for _ in range(200):
+        u, way = drawn(), drawn()
+        on = lambda k: [(x + k * y) % p for x, y in zip(u, way)]
+        c, plus, minus, twice = (f(on(k))[0] for k in (0, 1, -1, 2))
+        a, b = (plus + minus - 2 * c) * invert(2) % p, (plus - minus) * invert(2) % p
+        readable((4 * a + 2 * b + c - twice) % p == 0, "a constraint that is neither affine nor quadratic in v")
+        if a and pow(square := (b * b - 4 * a * c) % p, p // 2, p) == 1:
+            return [on((sign * root(square, p) - b) * invert(2 * a)) for sign in (1, -1)]
+    readable(False, "a constraint without regular points")
+
 def integral(proof):
     system = System(proof["scene"], proof["integral"])
     names, values = system.names, []
-    n, h = len(names), len(system.f)
-    degrees = system.formulas.degrees(system.rates)
-    readable(all(degrees[place] <= 1 for place in system.f), "constraints that are not affine in v")
     used = system.names_in(system.texts) - {*names, *system.rates, "t"}
     demand(used <= proof["scene"]["parameters"].keys(), "a name in the integral")
     own_images(proof)
     for _ in range(POINTS):
-        at, v = system.draw(), [secrets.randbelow(verify.P) for _ in names]
-        here = {x: Series(at[x].c, at[x].first) for x in names}
-        speeds = [Series([x], leaf=True) for x in v]
-        results = system.run(at | here, [], speeds)
-        A = [[c[0] for c in slopes_of(results[place], speeds)] for place in system.f]
-        # v + A'x with f = 0: the columns that are solved for are drawn, too
-        mix = [[secrets.randbelow(verify.P) for _ in system.f] for _ in names]
-        matrix = [[Series([sum(map(int.__mul__, row, column)) % verify.P]) for column in zip(*mix)] for row in A]
-        found = solve(matrix, [[Series([-results[place].c[0] % verify.P])] for place in system.f], "the constraints are not independent")
-        v = [(x + sum(y * z[0].c[0] for y, z in zip(row, found))) % verify.P for x, row in zip(v, mix)]
-        acceleration = [row[0].c[0] for row in system.jets(at, v)[0][:n]]
-        verify.resize(2)
-        q = [Series([at[x].c[0], y], at[x].first) for x, y in zip(names, v)]
-        moving = system.run(at, q, [Series([x, a]) for x, a in zip(v, acceleration)], t=Series([at["t"].c[0], 1], at["t"].first))
-        demand(not any(any(moving[place].c) for place in system.f), "the constraints along the motion")
-        F = moving[system.texts[0]].plain()
-        demand(F.c[1] == 0, "the integral is not constant along Chetaev's motions")
-        values.append(F.c[0])
+        at = system.draw()
+        for v in velocities(system, at):
+            acceleration = [row[0].c[0] for row in system.jets(at, v)[0][: len(names)]]
+            verify.resize(2)
+            q = [Series([at[x].c[0], y], at[x].first) for x, y in zip(names, v)]
+            moving = system.run(at, q, [Series([x, a]) for x, a in zip(v, acceleration)], t=Series([at["t"].c[0], 1], at["t"].first))
+            demand(not any(any(moving[place].c) for place in system.f), "the constraints along the motion")
+            F = moving[system.texts[0]].plain()
+            demand(F.c[1] == 0, "the integral is not constant along Chetaev's motions")
+            values.append(F.c[0])
+            verify.resize(1)
     demand(len(set(values)) > 1, "the integral is a constant where f = 0")
     known = ", ".join(f"{name} = {proof['scene']['parameters'][name]}" for name in sorted(used))
     return [f"verified: {proof['integral']}{' with ' * bool(known) + known} is constant along Chetaev's motions, near almost every point "

@@ -83,6 +83,8 @@ def test_the_sleigh_has_no_measure(images, tmp_path):
     assert verdict(tmp_path, no_measure(images, rows=[0, 1, 2])) == (FORGED, "forged: the rows\n")
     assert verdict(tmp_path, no_measure(images, brackets=[[0, 1]])) == (FORGED, "forged: the rows\n")
     assert verdict(tmp_path, no_measure(images, brackets=[[0, 3], [1, 2]])) == (FORGED, "forged: a bracket of what comes later\n")
+    deep = [[0, 1], *([1, k] for k in range(2, 21))]
+    assert verdict(tmp_path, no_measure(images, brackets=deep)) == (UNREADABLE, "cannot read: that many brackets\n")
     # a potential does not enter
     assert verdict(tmp_path, no_measure(images, scene=sleigh(potential="x^3*exp(y) + sin(phi)")))[0] == VERIFIED
 
@@ -146,6 +148,8 @@ def test_any_chart_that_fits_will_do(images, tmp_path):
         ("phi", [[[1, 0, 0], 1]], "the linear part of the chart"),
     ):
         assert verdict(tmp_path, true | {"chart": true["chart"] | {name: terms}}) == (FORGED, f"forged: {words}\n")
+    for chart in (true["chart"] | {"z": []}, {x: terms for x, terms in true["chart"].items() if x != "y"}):
+        assert verdict(tmp_path, true | {"chart": chart}) == (FORGED, "forged: the coordinates of the chart\n")
     for weights in ([1, 1, 1], [2, 1, 1], [1, 3, 1], [2, 4, 2], [1, 2, 2]):
         assert verdict(tmp_path, true | {"weights": weights})[0] == FORGED
     for weights in ([1, 2], [1, 2, 0], [1, 2, 1, 1]):
@@ -190,6 +194,23 @@ def test_integrals_are_constant(images, tmp_path):
         assert verdict(tmp_path, integral(images, over, text)) == (FORGED, "forged: the integral is a constant where f = 0\n")
     assert verdict(tmp_path, integral(images, over, "phi' + beta")) == (FORGED, "forged: a name in the integral\n")
     assert verdict(tmp_path, integral(images, over, "[phi', 1]"))[0] == UNREADABLE
+
+
+def test_a_quadratic_constraint_has_all_its_pieces(images, tmp_path):
+    drawn, read = {"x": "1", "y": "2", "z": "1/2"}, lambda scene, text: verdict(tmp_path, integral(images, scene, text))
+    cone = plain("(x'^2 + y'^2 + z'^2)/2 - z", ["x'^2 + y'^2 - 2*z'^2"], **drawn)
+    assert read(cone, "(x'^2 + y'^2 + z'^2)/2 + z")[0] == read(cone, "z'^2*3/2 + z")[0] == read(cone, "x'/y'")[0] == VERIFIED
+    for text in ("x'", "z'^2 + z", "y'^2 + x'*z'"):
+        assert read(cone, text) == (FORGED, "forged: the integral is not constant along Chetaev's motions\n")
+    assert read(cone, "(x'^2 + y'^2)/z'^2") == (FORGED, "forged: the integral is a constant where f = 0\n")
+    # x' = y' and x' = -y'; the first alone has x - y
+    planes = plain("(x'^2 + y'^2 + z'^2)/2 - x*z", ["x'^2 - y'^2"], **drawn)
+    assert read(planes, "(x'^2 + y'^2 + z'^2)/2 + x*z")[0] == VERIFIED
+    assert read(planes, "x - y")[0] == read(planes, "x + y")[0] == FORGED
+    others = (["x'^4 - y'^4"], "neither affine nor quadratic"), (["x'^2"], "without regular points"), (["x'^2 - y'^2", "z'"], "several constraints")
+    for constraints, words in others:
+        code, said = read(planes | {"constraints": constraints}, "x - y")
+        assert code == UNREADABLE and words in said
 
 
 def test_images_that_hide_a_sine_prove_nothing(images, tmp_path):
@@ -238,6 +259,16 @@ def test_what_is_no_such_system_is_not_read(images, tmp_path):
     assert verdict(tmp_path, integral(images, plain("x'*y", [], x="1", y="1"), "x'")) == (FORGED, "forged: the equations of motion are not regular\n")
 
 
+def test_other_certificates_are_not_read(images, tmp_path):
+    true = measure(images, sleigh(a="0"))
+    for change, words in (
+        ({"schema": "deltaq/integrals-certificate/2"}, "the schema"), ({"kind": "no integral"}, "the kind"), ({"kind": ["measure"]}, "the kind"),
+        ({"roots": {str(k): 1 for k in range(1, 12)}}, "the roots"), ({"roots": {"x": 1}}, "the roots"), ({"unity": [2, 1]}, None),
+    ):
+        code, said = verdict(tmp_path, true | change)
+        assert (code, said) == (UNREADABLE, f"cannot read: {words}\n") if words else code == FORGED
+
+
 def test_the_scene_is_that_of_the_file(images, tmp_path):
     tables = {"coordinates": "x = { start = 0.2 }\ny = { start = -1 }\nphi = { start = 0 }", "velocities": "\"x'\" = 1\n\"phi'\" = 0.5"}
     file = lambda m="2", a="1/3": scene_file(
@@ -274,7 +305,8 @@ def test_the_scene_is_that_of_the_file_to_all_orders(images, tmp_path):
 REAL = [
     *(("scenes/sleigh", sets) for sets in ([], ["a=0.7"], ["m=3"], ["I=1/3"], ["a=2", "m=0.5"])), ("classics/roller-racer", []),
     *(("classics/suslov", sets) for sets in ([], ["I1=0.2"], ["K=0.01"])), ("classics/engel", []), ("scenes/sledge", []), ("scenes/heisenberg", []),
-    ("scenes/particle", []), ("scenes/planar-body", []), ("scenes/turntable", []), ("classics/martinet", []), ("classics/mobile-robot", []),
+    ("scenes/particle", []), ("scenes/planar-body", []), ("scenes/turntable", []), ("classics/parallel-velocities", []),
+    ("classics/martinet", []), ("classics/mobile-robot", []),
     ("classics/veselova", []),
     ("classics/nonholonomic-oscillator", []), ("classics/unicycle-in-potential", []), ("classics/rubber-ball", []), ("classics/snakeboard", []),
 ]
@@ -344,7 +376,7 @@ def test_what_is_changed_is_forged_or_cannot_be_read(images, tmp_path, kind):
     counts = [0, 0, 0]
     file = tmp_path / "scene.toml"
     table = lambda name, fields: f"[{name}]\n" + "".join(f"{x} = {y}\n" for x, y in fields.items())
-    system, starts = {"lagrangian": json.dumps(true["scene"]["lagrangian"]), "constraints": [BLADE]}, {x: '{ start = "0" }' for x in ("x", "y", "phi")}
+    system, starts = {"lagrangian": json.dumps(true["scene"]["lagrangian"]), "constraints": [BLADE]}, dict.fromkeys(("x", "y", "phi"), '{ start = "0" }')
     parameters = {x: f'"{y}"' for x, y in true["scene"]["parameters"].items()}
     file.write_text(table("parameters", parameters) + table("coordinates", starts) + table("system", system))
     assert verdict(tmp_path, true, file)[0] == VERIFIED
