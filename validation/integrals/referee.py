@@ -251,6 +251,8 @@ def main():
         said, names, parameters = asked(options.program, entry)
         words = {"none": "none", "local": "some", "open": "open"}
         program = {"measure": words[said["measure"]["answer"]]}
+        if program["measure"] != "open":
+            program["reduced"] = "some" if program["measure"] == "some" and "none_free_of" not in said["measure"] else "none"
         for found in said["polynomials"]:
             open_ = found["answer"] == "open"
             most = f"<= {found['at_most']}" if "at_most" in found else "open"

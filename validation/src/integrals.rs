@@ -282,8 +282,9 @@ fn measure(found: &Measure) -> String {
     match found {
         Measure::None { proved: true } => "none".into(),
         Measure::None { proved: false } => "none, by ranks".into(),
-        Measure::Local { density: Some(_) } => "written".into(),
-        Measure::Local { density: None } => "some".into(),
+        Measure::Local { density: Some(_), .. } => "written".into(),
+        Measure::Local { cyclic: Some(_), .. } => "some, none reduced".into(),
+        Measure::Local { .. } => "some".into(),
         Measure::Open(_) => "open".into(),
     }
 }

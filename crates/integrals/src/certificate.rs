@@ -42,7 +42,7 @@ impl Integrals {
         if let (Some(found), Ok(reversible)) = (&self.reversed, Reversible::new(system)) {
             match &found.measure {
                 Measure::None { proved: true } => all.push(("measure".into(), question.no_measure(&reversible))),
-                Measure::Local { density: Some(density) } => {
+                Measure::Local { density: Some(density), .. } => {
                     all.push(("measure".into(), question.of("measure", |_| Ok(question.density(density)))));
                 }
                 _ => {}
@@ -90,7 +90,7 @@ impl Question<'_> {
 
     fn no_measure(&self, reversible: &Reversible) -> Result<Value, Open> {
         self.of("no measure", |point| {
-            let flag = Flag::new(reversible, point, SEED)?;
+            let flag = Flag::new(reversible, point, SEED, false)?;
             let size = self.system.dimension() + 1;
             let (places, rows): (Vec<usize>, Vec<Vec<Modular>>) = flag.with_rates.iter().cloned().unzip();
             let minor = if rows.len() == size { inverse(&rows.concat(), size, Modular::one()) } else { None };
@@ -119,7 +119,7 @@ impl Question<'_> {
 
     fn bound(&self, reversible: &Reversible, found: &Found) -> Result<Value, Open> {
         self.of("bound", |point| {
-            let flag = Flag::new(reversible, point, SEED)?;
+            let flag = Flag::new(reversible, point, SEED, false)?;
             let killing = Killing::new(reversible, &flag, point, found.order, SEED)?;
             let kernel = killing.kernel(found.degree, true)?;
             let ring = &killing.ring;

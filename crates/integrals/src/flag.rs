@@ -26,7 +26,7 @@ pub(crate) struct Field {
     pub(crate) components: Vec<Series>,
     pub(crate) rate: Series,
     pub(crate) weight: usize,
-    /// Its place among all fields that were looked at, those of `ker A` first.
+    /// Its place among all fields that were looked at, those that brackets begin with first.
     place: usize,
 }
 
@@ -36,7 +36,7 @@ pub(crate) struct Flag {
     /// Places of the free velocities.
     pub(crate) free: Vec<usize>,
     pub(crate) fields: Vec<Field>,
-    /// Brackets that were looked at, as two places; they have the places after the `m` fields of `ker A`.
+    /// Brackets that were looked at, as two places; they have the places after the fields they begin with.
     pub(crate) brackets: Vec<[usize; 2]>,
     /// Fields that are independent beside their rates `τ`, as places and `(Y, τ)` at the point; more than
     /// there are `fields`: no measure.
@@ -44,9 +44,17 @@ pub(crate) struct Flag {
 }
 
 impl Flag {
+    /// Of the fields of `ker A`, and with `cyclic` of `∂/∂q` for each coordinate that the system does not
+    /// contain: a density that is free of these does not change along them.
+    ///
     /// # Errors
     /// [`Open`]: what has no image, is singular, or would take too long.
-    pub(crate) fn new(system: &Reversible, point: &SeriesStart<Modular>, seed: u64) -> Result<Flag, Open> {
+    pub(crate) fn new(
+        system: &Reversible,
+        point: &SeriesStart<Modular>,
+        seed: u64,
+        cyclic: bool,
+    ) -> Result<Flag, Open> {
         let n = system.coordinates;
         // every round but the last adds one field at least, and loses one order
         let order = system.constraints + 2;
@@ -55,7 +63,13 @@ impl Flag {
         let ring = Ring::new(&weights, system.present.clone(), order);
         let rays = Rays::new(&ring, &mut draws(seed)).ok_or(Open::Accident)?;
         let local = system.at(point, &ring, &rays, &straight(&ring, n, &system.present))?;
-        let basis = fields_with_rates(&ring, &local);
+        let mut basis = fields_with_rates(&ring, &local);
+        let held = if cyclic { system.cyclic() } else { Vec::new() };
+        for i in held {
+            let unit = |j: usize| ring.constant(if i == j { Modular::one() } else { Modular::ZERO });
+            let components = (0..n).map(unit).collect();
+            basis.push(Field { components, rate: ring.zero(), weight: 1, place: basis.len() });
+        }
         let (mut span, mut beside) = (Echelon::default(), Echelon::default());
         let mut fields: Vec<Field> = Vec::new();
         let (mut brackets, mut with_rates) = (Vec::new(), Vec::new());

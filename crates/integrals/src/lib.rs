@@ -12,7 +12,11 @@
 //!   directions that is one minor that is not zero mod p, so not zero at the point, so, analytic, at almost
 //!   every point: [`Measure::None`], *proved*. Where brackets close without that, with ranks that two
 //!   random points of two fields share, there is a `σ` near almost every point (Frobenius). [`Density`] has
-//!   it, if it is made of `det g`, sines and cosines.
+//!   it, if it is made of `det g`, sines and cosines. With `V = 0`, every smooth positive density near rest
+//!   has such a `σ` in its first order; with a potential there may be others: on a spiral spring `V = kφ` the
+//!   sleigh passes `ω = 0` once on every motion, and what that section carries is invariant. The equations
+//!   without cyclic coordinates may have no measure where there is a `σ`: [`Cyclic`]. Where constraints are
+//!   integrable in part, all this is said of almost every leaf, that of the start not always among them.
 //! - *Integrals* that are polynomials in the velocities: kernels of equations of Killing's kind on weighted
 //!   Taylor coefficients. Every kernel bounds their number from above, as ranks mod p are lower bounds;
 //!   [`Found::none_proved`] is where what is trivial (energy, constants, products) reaches it. The number
@@ -51,4 +55,4 @@ pub use answer::{Integrals, NoAnswer};
 pub use certificate::Certificate;
 pub use density::Density;
 pub use open::Open;
-pub use reversible::{Found, Measure, Reversed, reversible};
+pub use reversible::{Cyclic, Found, Measure, Reversed, reversible};

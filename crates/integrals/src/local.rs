@@ -67,6 +67,11 @@ impl Reversible {
         Ok(Reversible { program, coordinates: positions.len(), constraints: system.constraints.len(), present })
     }
 
+    /// Places of the coordinates that none of these contains.
+    pub(crate) fn cyclic(&self) -> Vec<usize> {
+        (0..self.coordinates).filter(|i| !self.present.contains(i)).collect()
+    }
+
     /// Its series at `point`, where `q − q₀ = chart(z)`, without constant terms.
     pub(crate) fn at(
         &self,

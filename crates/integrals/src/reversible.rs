@@ -27,9 +27,22 @@ pub enum Measure {
     Local {
         /// It, where it can be written down.
         density: Option<Density>,
+        /// Where every density depends on a coordinate that the system does not contain.
+        cyclic: Option<Cyclic>,
     },
     /// It is not known, for this reason.
     Open(Open),
+}
+
+/// Coordinates on which every density depends, though the equations of motion do not contain them: the
+/// equations without these have no measure. Where these are angles none is single-valued: its average over
+/// them would be free of them.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Cyclic {
+    /// Their places.
+    pub places: Vec<usize>,
+    /// Whether a minor of full size is not zero: a proof. Else it rests on ranks modulo two primes.
+    pub proved: bool,
 }
 
 /// How many independent integrals there are that are polynomials of one degree in the velocities, and of
@@ -75,17 +88,25 @@ pub struct Reversed {
 /// [`Open`].
 fn decide_measure(system: &Reversible, start: &ExactStart) -> Result<Measure, Open> {
     let n = system.coordinates;
-    let ranks = |seed| {
-        at_random(start, seed, |point| {
-            let flag = Flag::new(system, point, seed)?;
-            Ok((flag.fields.len(), flag.with_rates.len()))
-        })
+    // whether there is none, and whether that is proved
+    let none = |cyclic: bool| -> Result<Option<bool>, Open> {
+        let ranks = |seed| {
+            at_random(start, seed, |point| {
+                let flag = Flag::new(system, point, seed, cyclic)?;
+                Ok((flag.fields.len(), flag.with_rates.len()))
+            })
+        };
+        let proved = |with_rates| with_rates == n + 1;
+        let found = agreed(SEEDS, ranks, |&(_, with_rates)| proved(with_rates)).map_err(Open::or_accident)?;
+        Ok((found.1 > found.0).then_some(proved(found.1)))
     };
-    let (rank, with_rates) = agreed(SEEDS, ranks, |&(_, with_rates)| with_rates == n + 1).map_err(Open::or_accident)?;
-    if with_rates > rank {
-        return Ok(Measure::None { proved: with_rates == n + 1 });
+    if let Some(proved) = none(false)? {
+        return Ok(Measure::None { proved });
     }
-    Ok(Measure::Local { density: density(system, start)? })
+    let (density, places) = (density(system, start)?, system.cyclic());
+    // one that is written down is free of them
+    let bound = if density.is_some() || places.is_empty() { None } else { none(true)? };
+    Ok(Measure::Local { density, cyclic: bound.map(|proved| Cyclic { places, proved }) })
 }
 
 /// Integrals of `degree` at one point of one field.
@@ -108,7 +129,7 @@ fn decide_integrals(system: &Reversible, start: &ExactStart, degree: usize) -> R
             SEEDS,
             |seed| {
                 at_random(start, seed, |point| {
-                    let flag = Flag::new(system, point, seed)?;
+                    let flag = Flag::new(system, point, seed, false)?;
                     let step = flag.fields.iter().map(|y| y.weight).max().unwrap_or(1);
                     count(&Killing::new(system, &flag, point, step + extra, seed)?, degree)
                 })

@@ -5,7 +5,7 @@ use std::fmt::{self, Display, Formatter};
 use mechanics::System;
 use serde_json::{Value, json};
 
-use crate::{Density, Found, Integrals, Measure, Open, Printed, Reversed};
+use crate::{Cyclic, Density, Found, Integrals, Measure, Open, Printed, Reversed};
 
 /// What integrals of degree `below + 1` are called.
 pub(crate) fn degree(below: usize) -> &'static str {
@@ -75,10 +75,19 @@ fn measure_words(system: &System, measure: &Measure) -> String {
     match measure {
         Measure::None { proved: true } => "none: proved".into(),
         Measure::None { proved: false } => "none, by ranks modulo two primes: no proof".into(),
-        Measure::Local { density: None } => "one, locally, not printed in this ansatz".into(),
-        Measure::Local { density: Some(density) } => format!("{}, verified", density_words(system, density)),
+        Measure::Local { density: Some(density), .. } => format!("{}, verified", density_words(system, density)),
+        Measure::Local { density: None, cyclic: None } => "one, locally, not printed in this ansatz".into(),
+        Measure::Local { density: None, cyclic: Some(cyclic) } => format!(
+            "one, locally, not printed in this ansatz; none is free of {}: {}",
+            names(system, &cyclic.places).join(", "),
+            if cyclic.proved { "proved" } else { "by ranks modulo two primes" },
+        ),
         Measure::Open(open) => format!("open ({open})"),
     }
+}
+
+fn names(system: &System, places: &[usize]) -> Vec<String> {
+    places.iter().map(|&i| system.coordinates[i].name.clone()).collect()
 }
 
 /// The density in the names of the scene.
@@ -157,8 +166,14 @@ impl Integrals {
         let system = &self.scene.system;
         let measure = self.reversed.as_ref().map(|found| match &found.measure {
             Measure::None { proved } => json!({ "answer": "none", "proved": proved }),
-            Measure::Local { density } => {
-                json!({ "answer": "local", "density": density.as_ref().map(|density| density_words(system, density)) })
+            Measure::Local { density, cyclic } => {
+                let density = density.as_ref().map(|density| density_words(system, density));
+                let mut value = json!({ "answer": "local", "density": density });
+                if let Some(Cyclic { places, proved }) = cyclic {
+                    value["none_free_of"] = json!(names(system, places));
+                    value["proved"] = json!(proved);
+                }
+                value
             }
             Measure::Open(open) => json!({ "answer": "open", "reason": open.to_string() }),
         });

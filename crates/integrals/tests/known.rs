@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use integrals::{Measure, Open, Reversed, reversible};
+use integrals::{Cyclic, Measure, Open, Reversed, reversible};
 
 use crate::questions::{built_in, start};
 
@@ -23,8 +23,8 @@ fn volume(measure: &Measure) -> Option<Volume> {
     Some(match measure {
         Measure::None { proved: true } => Volume::None,
         Measure::None { proved: false } => Volume::NoneByRanks,
-        Measure::Local { density: Some(_) } => Volume::Written,
-        Measure::Local { density: None } => Volume::Some,
+        Measure::Local { density: Some(_), .. } => Volume::Written,
+        Measure::Local { density: None, .. } => Volume::Some,
         Measure::Open(_) => return None,
     })
 }
@@ -60,6 +60,19 @@ fn measures_and_linear_integrals() {
         let integrals = found.integrals[0].clone().unwrap_or_else(|open| panic!("{name}: {open}"));
         assert_eq!((integrals.count, integrals.trivial, integrals.settled), (linear, 0, true), "{name} {overrides:?}");
     }
+}
+
+/// The carriage with its mass centre ahead of the axle turns about, as the sleigh does: divergence of the
+/// reduced equations is `−k v`, with `v = R (ψ₁' + ψ₂')/2`. On the angles of the wheels `e^{k (ψ₁ + ψ₂)}` is
+/// a density, though not a periodic one.
+#[test]
+fn a_measure_may_be_that_of_turned_wheels_alone() {
+    let cyclic = |overrides: &[(&str, &str)]| match asked("two-wheeled-carriage", overrides, 0).measure {
+        Measure::Local { density, cyclic } => (density.is_some(), cyclic),
+        other => panic!("{other:?}"),
+    };
+    assert_eq!(cyclic(&[]), (false, Some(Cyclic { places: vec![0, 1, 3, 4], proved: true })));
+    assert_eq!(cyclic(&[("l", "0")]), (true, None));
 }
 
 #[test]
