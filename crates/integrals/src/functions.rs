@@ -6,8 +6,8 @@ use symbolic::{Expr, Graph, Symbol};
 use crate::Open;
 use crate::killing::velocity_monomials;
 
-/// Most functions, and the highest degree in coordinates, or in their sines and cosines: unasked, and where the
-/// coordinates are chosen.
+/// Most functions, and the highest degree in coordinates, or in their sines and cosines: unasked, and where
+/// the coordinates are chosen.
 const UNASKED: (usize, usize) = (420, 4);
 const CHOSEN: (usize, usize) = (1000, 6);
 
@@ -98,7 +98,8 @@ pub(crate) fn functions(
     (spatial, all)
 }
 
-/// The energy of `L`, without its terms that cancel where `L` is quadratic in the velocities: `L − 2 L(v = 0)`.
+/// The energy of `L`, without its terms that cancel where `L` is quadratic in the velocities: `L − 2 L(v =
+/// 0)`.
 fn energy(g: &Graph, lagrangian: Expr, v: &[Symbol]) -> Expr {
     let at_rest = g.substitute(lagrangian, &v.iter().map(|&v| (v, g.zero())).collect());
     let short = g.sub(lagrangian, g.mul(g.integer(2), at_rest));

@@ -51,8 +51,8 @@ fn rolling_bodies_have_their_integrals() {
     assert_eq!(texts, ["theta' + psi'", "phi'"]);
 }
 
-/// Routh: `ω₃² (I₁ I₃ + m r·I r)` with the spin `ω₃` about the axis and `r` to the contact is constant; what is
-/// printed is made of it, of Jellett's integral squared and of the energy.
+/// Routh: `ω₃² (I₁ I₃ + m r·I r)` with the spin `ω₃` about the axis and `r` to the contact is constant; what
+/// is printed is made of it, of Jellett's integral squared and of the energy.
 #[test]
 fn the_square_of_rouths_second_integral_is_printed() {
     let found = asked("routh-sphere", &[], 2, &["theta"]);
@@ -86,7 +86,8 @@ fn the_square_of_rouths_second_integral_is_printed() {
     assert!(svd[4] < 1e-12 * svd[0] && svd[3] > 1e-5 * svd[0], "{svd}");
 }
 
-/// The vakonomic motion is Hamiltonian: cyclic coordinates have momenta `∂L/∂v + μ ∂f/∂v`, Chetaev's sleigh none.
+/// The vakonomic motion is Hamiltonian: cyclic coordinates have momenta `∂L/∂v + μ ∂f/∂v`, Chetaev's sleigh
+/// none.
 #[test]
 fn vakonomic_motions_have_momenta_with_multipliers() {
     let scene = built_in("sleigh", &[]);
