@@ -2,8 +2,10 @@
 
 // What may come and go, in bytes: what is measured after a collection still depends on what is under way.
 const ROOM = 2e6;
-// Part of the time that is left out first, in which the browser compiles and buffers find their size.
-const WARM = 0.2;
+// Rounds that are left out first, in which the browser compiles, and buffers and memories find their size. In each round
+// every slider is moved up and down, once: what a busy machine does in a longer time is the same.
+const WARM = 2;
+const MOVES = 12;
 
 // Bytes of all that WebAssembly has in a worker, which no name of the page leads to.
 async function memory(session) {
@@ -42,32 +44,32 @@ async function atRest(page, measure) {
   }
 }
 
-// Moves every slider of the sledge up and down, lets go of it now and then, and compares the least of the last third of
-// the time with that of the first.
-export async function growth({ open, link, must, said }, seconds) {
+// Moves every slider of the sledge up and down and lets go of it, in rounds, and compares the least of the last third of
+// them with that of the first.
+export async function growth({ open, link, must, said }, rounds) {
   const page = await open(link({ scene: "sledge" }));
   const client = await page.createCDPSession();
   await client.send("Performance.enable");
-  const turn = (milliseconds) => page.evaluate(async (milliseconds) => {
+  const round = () => page.evaluate(async (MOVES) => {
     const sliders = [...document.querySelectorAll("[data-name] input[type=range]")];
-    const [began, from] = [performance.now(), window.explored.drawn];
-    let moves = 0;
-    for (; performance.now() - began < milliseconds; moves++) {
-      const slider = sliders[Math.floor(moves / 20) % sliders.length];
-      slider.value = 500 + 200 * Math.sin((2 * Math.PI * moves) / 20);
-      slider.dispatchEvent(new Event("input"));
-      if (moves % 20 === 19) slider.dispatchEvent(new Event("change"));
-      await new Promise(requestAnimationFrame);
+    const from = window.explored.drawn;
+    for (const slider of sliders) {
+      for (let i = 0; i < MOVES; i++) {
+        slider.value = 500 + 200 * Math.sin((2 * Math.PI * i) / MOVES);
+        slider.dispatchEvent(new Event("input"));
+        if (i === MOVES - 1) slider.dispatchEvent(new Event("change"));
+        await new Promise(requestAnimationFrame);
+      }
     }
-    return [moves, window.explored.drawn - from];
-  }, milliseconds);
-  const [samples, count, began] = [[], Math.max(6, Math.round(seconds / 5)), performance.now()];
+    return [MOVES * sliders.length, window.explored.drawn - from];
+  }, MOVES);
+  const [samples, count, began] = [[], Math.max(6, rounds), performance.now()];
   let [moves, drawn] = [0, 0];
-  await turn(1000 * WARM * seconds);
-  for (let i = 0; i < count; i++) {
-    const turned = await turn((1000 * (1 - WARM) * seconds) / count);
+  for (let i = 0; i < WARM + count; i++) {
+    const turned = await round();
     [moves, drawn] = [moves + turned[0], drawn + turned[1]];
-    samples.push(await atRest(page, () => measured(page, client)));
+    const sample = await atRest(page, () => measured(page, client));
+    if (i >= WARM) samples.push(sample);
   }
   const took = (performance.now() - began) / 1000;
   const third = Math.floor(count / 3);

@@ -1,6 +1,6 @@
-// node test.mjs BROWSER DELTAQ PAGE PICTURES all|numbers|shown|CHECK|SECONDS: the page in a browser without network,
+// node test.mjs BROWSER DELTAQ PAGE PICTURES all|numbers|shown|CHECK|ROUNDS: the page in a browser without network,
 // against the native program; or its numbers only; or whether what is shown is what was computed; or one of these
-// checks by name; or whether it grows while sliders are moved for this number of seconds.
+// checks by name; or whether it grows while sliders are moved, in this number of rounds.
 
 import { execFileSync, spawnSync } from "node:child_process";
 import { mkdirSync, mkdtempSync, rmSync, statSync } from "node:fs";
@@ -21,8 +21,8 @@ import { tour } from "./tour.test.mjs";
 const [executablePath, deltaq, file, pictures, what] = process.argv.slice(2);
 // Milliseconds may be BUSY times as many, as other things may run beside; the figures are told.
 const BUSY = 3;
-// Seconds of slider moves within all checks.
-const SECONDS = 10;
+// Rounds of slider moves within all checks.
+const ROUNDS = 6;
 const LIMITS = { megabytes: 2.2, first: 500, sledge: 10, updates: 60, cone: 50, difference: 1e-12 };
 const OWN = `title = "Skate"
 [coordinates]
@@ -293,7 +293,7 @@ const single = { ...checks, ...access, ...drawn, ...takes, tour, tasks };
 const shown = Object.values(single).map((check) => () => check(tools).catch((error) => complaints.push(`${check.name}: ${error.stack}`)));
 
 try {
-  const grows = () => growth(tools, Number(what) || SECONDS);
+  const grows = () => growth(tools, Number(what) || ROUNDS);
   const all = [opening, everyScene, sliders, fingers, ownText, looks, ...shown, grows];
   const named = what in single ? [shown[Object.keys(single).indexOf(what)]] : null;
   const parts = { all, numbers: [ownText], shown }[what] ?? named ?? [grows];

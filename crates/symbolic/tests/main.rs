@@ -3,6 +3,7 @@
 mod algebra;
 mod evaluation;
 mod properties;
+mod ranges;
 mod saturation;
 mod series;
 mod text;

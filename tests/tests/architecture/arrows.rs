@@ -47,7 +47,8 @@ pub fn packages() -> Vec<Value> {
     metadata["packages"].as_array().expect("packages").clone()
 }
 
-fn folder(package: &Value) -> &Path {
+/// The folder of a member.
+pub fn folder(package: &Value) -> &Path {
     Path::new(package["manifest_path"].as_str().expect("a path")).parent().expect("a folder")
 }
 

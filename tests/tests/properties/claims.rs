@@ -1,9 +1,22 @@
 //! One suite a theorem. What each claim says and assumes is at the check, in the crate `random`.
 
+use std::sync::LazyLock;
+
 use proptest::test_runner::TestCaseError;
 use random::{Fault, Kind, NullTest, null_test};
 
-use super::support::{for_all, holds, part};
+use super::support::{Suite, for_all, part};
+
+/// Systems with and without constraints, and how many of them for each theorem.
+static ALL: LazyLock<Suite> = LazyLock::new(|| {
+    Suite::new(Kind::ALL.to_vec(), &[(0, 96), (2, 96), (3, 150), (4, 150), (6, 96), (10, 64), (11, 256)])
+});
+/// Systems with constraints.
+static CONSTRAINED: LazyLock<Suite> = LazyLock::new(|| Suite::new(Kind::ALL[1..].to_vec(), &[(9, 64), (12, 96)]));
+static LINEAR: LazyLock<Suite> = LazyLock::new(|| Suite::new(linear(), &[(7, 96), (8, 24)]));
+static INTEGRABLE: LazyLock<Suite> = LazyLock::new(|| Suite::new(integrable(), &[(1, 96), (14, 96)]));
+static NONINTEGRABLE: LazyLock<Suite> = LazyLock::new(|| Suite::new(nonintegrable(), &[(5, 96)]));
+static AFFINE: LazyLock<Suite> = LazyLock::new(|| Suite::new(vec![Kind::Affine], &[(6, 48)]));
 
 /// Kinds with constraints that are linear (or affine) in the velocities and well conditioned.
 fn linear() -> Vec<Kind> {
@@ -20,47 +33,47 @@ fn integrable() -> Vec<Kind> {
 
 #[test]
 fn two_derivations_of_each_formulation_give_one_motion() {
-    holds(0, &Kind::ALL, 96);
+    ALL.holds(0);
 }
 
 #[test]
 fn t1_integrable_constraints_leave_nothing_to_dispute() {
-    holds(1, &integrable(), 96);
+    INTEGRABLE.holds(1);
 }
 
 #[test]
 fn t2_removed_constraint_is_vakonomic_motion_of_the_augmented_system() {
-    holds(2, &Kind::ALL, 96);
+    ALL.holds(2);
 }
 
 #[test]
 fn t3_coordinate_removal_and_vakonomic_are_one_family() {
-    holds(3, &Kind::ALL, 150);
+    ALL.holds(3);
 }
 
 #[test]
 fn t4_chetaev_and_vakonomic_do_not_depend_on_writing_and_removal_depends_on_parameters() {
-    let found = holds(4, &Kind::ALL, 150);
+    let found = ALL.holds(4);
     let (depends, count) = part(&found, "not integrable: removed constraint depends on the parameters");
     assert!(count > 20 && depends > 0.7, "of {count} pairs of removals only {depends:.2} differ");
 }
 
 #[test]
 fn t5_leading_divergence_is_the_predicted_one() {
-    holds(5, &nonintegrable(), 96);
+    NONINTEGRABLE.holds(5);
 }
 
 #[test]
 fn t6_energy_is_constant_where_it_should_be_and_not_elsewhere() {
-    holds(6, &Kind::ALL, 96);
-    let found = holds(6, &[Kind::Affine], 48);
+    ALL.holds(6);
+    let found = AFFINE.holds(6);
     let (drifts, count) = part(&found, "affine constraints, and Chetaev's energy is not constant");
     assert!(count > 20 && drifts > 0.8, "of {count} affine systems only {drifts:.2} do not keep Chetaev's energy");
 }
 
 #[test]
 fn t7_cyclic_momenta_are_vakonomic_invariants_and_not_chetaevs() {
-    let found = holds(7, &linear(), 96);
+    let found = LINEAR.holds(7);
     let what = "a constraint acts on a cyclic coordinate, and Chetaev does not keep its momentum";
     let (changes, count) = part(&found, what);
     assert!(count > 20 && changes > 0.5, "of {count} cyclic momenta only {changes:.2} change");
@@ -68,12 +81,12 @@ fn t7_cyclic_momenta_are_vakonomic_invariants_and_not_chetaevs() {
 
 #[test]
 fn t8_friction_tends_to_chetaev_and_added_mass_to_vakonomic() {
-    holds(8, &linear(), 24);
+    LINEAR.holds(8);
 }
 
 #[test]
 fn t9_decision_proof_and_fit_agree() {
-    let found = holds(9, &Kind::ALL[1..], 64);
+    let found = CONSTRAINED.holds(9);
     part(&found, "vakonomic differs from Chetaev, for every mu0");
     let (shown, count) = part(&found, "no mu0, and that is proved, or shown by ranks modulo two primes");
     assert!(count > 20 && shown >= 0.99, "of {count} refusals only {shown:.3} are proved or shown");
@@ -85,17 +98,17 @@ fn t9_decision_proof_and_fit_agree() {
 
 #[test]
 fn t10_time_reversal_and_units_change_nothing() {
-    holds(10, &Kind::ALL, 64);
+    ALL.holds(10);
 }
 
 #[test]
 fn t11_frobenius_test_finds_what_the_construction_put_in() {
-    holds(11, &Kind::ALL, 256);
+    ALL.holds(11);
 }
 
 #[test]
 fn t12_wrong_formulation_is_flagged_where_it_is_wrong() {
-    let found = holds(12, &Kind::ALL[1..], 96);
+    let found = CONSTRAINED.holds(12);
     let (flagged, count) = part(&found, "the wrong formulation is wrong, and flagged");
     assert!(count > 20 && flagged >= 0.99, "of {count} systems on which it is wrong, {flagged:.3} are flagged");
 }
@@ -113,7 +126,7 @@ fn t13_null_tests_with_random_numbers() {
 
 #[test]
 fn t14_removal_of_nothing_is_newtons_motion_only_for_the_right_constants() {
-    let found = holds(14, &integrable(), 96);
+    let found = INTEGRABLE.holds(14);
     let (differs, count) = part(&found, "no constraint, other constants, and removal is not Newton's motion");
     assert!(count > 10 && differs > 0.8, "of {count} free systems only {differs:.2} differ from Newton's motion");
 }
