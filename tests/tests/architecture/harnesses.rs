@@ -34,6 +34,13 @@ fn a_harness_is_compiled_where_there_are_unit_tests_only() {
         if harness != (tests > 0) {
             wrong += &format!("{}: {tests} unit tests, test = {harness}\n", name(&package));
         }
+        // for benches cargo compiles the same program, unless it is told not to
+        let manifest = std::fs::read_to_string(folder(&package).join("Cargo.toml")).expect("a manifest");
+        let [test, bench] =
+            ["test = false", "bench = false"].map(|word| manifest.lines().filter(|l| *l == word).count());
+        if test != bench {
+            wrong += &format!("{}: {test} times test = false, {bench} times bench = false\n", name(&package));
+        }
     }
     assert!(wrong.is_empty(), "{wrong}");
 }
