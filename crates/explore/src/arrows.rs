@@ -114,22 +114,27 @@ impl Arrows {
         let mut mark = DMatrix::zeros(3, q.len());
         let mut matter = DMatrix::zeros(3 * self.contacts.len(), q.len());
         for i in 0..q.len() {
-            let h = BY_COORDINATE * q[i].abs().max(1.0);
-            let mut at = |step: f64| {
-                let mut q = q.to_vec();
-                q[i] += step;
-                self.poses.at(t, &q)
-            };
-            let [before, after] = [at(-h), at(h)];
-            let by = |a: [f64; 3], b: [f64; 3]| (Vector3::from(b) - Vector3::from(a)) / (2.0 * h);
+            let ([before, after], step) = self.around(t, q, i);
+            let by = |a: [f64; 3], b: [f64; 3]| (Vector3::from(b) - Vector3::from(a)) / step;
             let marked = |poses: &[Pose]| poses[self.first].marked();
             mark.fixed_view_mut::<3, 1>(0, i).copy_from(&by(marked(&before), marked(&after)));
             for (k, contact) in self.contacts.iter().enumerate() {
                 let moved = contact.carried(&here, &after) - contact.carried(&here, &before);
-                matter.fixed_view_mut::<3, 1>(3 * k, i).copy_from(&(moved / (2.0 * h)));
+                matter.fixed_view_mut::<3, 1>(3 * k, i).copy_from(&(moved / step));
             }
         }
         (mark, matter)
+    }
+
+    /// Poses with coordinate `i` a little less and a little more, and by how much these are apart.
+    fn around(&mut self, t: f64, q: &[f64], i: usize) -> ([Vec<Pose>; 2], f64) {
+        let h = BY_COORDINATE * q[i].abs().max(1.0);
+        let at = |step: f64| {
+            let mut q = q.to_vec();
+            q[i] += step;
+            self.poses.at(t, &q)
+        };
+        ([-h, h].map(at), 2.0 * h)
     }
 
     /// `∂/∂t` of the place whose path is drawn.
@@ -152,16 +157,10 @@ impl Arrows {
             let values = self.program.evaluate(&[&[*t], &q[..], &rest].concat());
             forces.rows_mut(s * n, n).copy_from_slice(&values[n..2 * n]);
             for i in 0..n {
-                let h = BY_COORDINATE * q[i].abs().max(1.0);
-                let mut at = |step: f64| {
-                    let mut q = q.clone();
-                    q[i] += step;
-                    self.poses.at(*t, &q)
-                };
-                let [before, after] = [at(-h), at(h)];
+                let ([before, after], step) = self.around(*t, q, i);
                 for (axis, places) in places.iter_mut().enumerate() {
                     for body in 0..bodies {
-                        places[(s * n + i, body)] = (after[body].at[axis] - before[body].at[axis]) / (2.0 * h);
+                        places[(s * n + i, body)] = (after[body].at[axis] - before[body].at[axis]) / step;
                     }
                 }
             }
