@@ -4,7 +4,7 @@ use std::io::Write;
 use std::process::Output;
 use std::time::Instant;
 
-use crate::support::run;
+use crate::support::{self, run};
 
 const GOOD: &str = include_str!("good.toml");
 
@@ -191,4 +191,17 @@ fn nested_tables_are_refused_and_overflow_no_stack() {
 fn a_long_flat_sum_is_no_nesting() {
     let sum = format!("{LAGRANGIAN}{}", " + 0*x".repeat(2_000));
     accepted(&GOOD.replacen(LAGRANGIAN, &sum, 1));
+}
+
+#[test]
+fn faults_of_all_files_are_counted() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = |name: &str, before: &str| {
+        let path = folder.path().join(name);
+        std::fs::write(&path, format!("{before}{GOOD}")).expect("written");
+        path.to_str().expect("UTF-8").to_string()
+    };
+    let (good, one, two) = (path("good", ""), path("one", "colour = 1\n"), path("two", "colour = 1\nshade = 2\n"));
+    support::refused(&["check", &one], &["1 fault"]);
+    support::refused(&["check", &one, &good, &two], &["3 faults", "`colour`", "`shade`"]);
 }

@@ -23,6 +23,7 @@ fn text_and_json_have_the_same_motions() {
         assert!(first.is_none_or(|first| (first - turn).abs() < 1e-9));
         assert_eq!(motion["minimum"], turn >= 8.0);
     }
+    assert!(motions.iter().all(|motion| motion["isolated"] == true) && !text.contains("not isolated"), "{text}");
     assert!(text.contains("a local minimum of the action") && text.contains("conjugate times: "), "{text}");
     // no result depends on threads
     assert_eq!(answer(&[&GEODESICS[..], &["--threads", "2", "--format", "json"]].concat(), 0).0, json);

@@ -222,6 +222,20 @@ mod tests {
         assert_eq!(largest(&looked, vec![1.0; 2]), [3.0, 1.0]);
     }
 
+    /// `x'' = √(x − 1)` at x = 1: to the velocity's rate nothing is added up that could be told.
+    #[test]
+    fn an_infinite_slope_tells_nothing() {
+        let text = "title = \"free\"\n[coordinates]\nx = { start = 1 }\n[system]\nlagrangian = \"x'^2/2\"\n\
+                    forces = { x = \"sqrt(x - 1)\" }\n[start.velocities]\n\"x'\" = 2\n[run]\nduration = 2\n";
+        let scene = Scene::parse("free", text).unwrap_or_else(|e| panic!("{e}"));
+        let equations = derive_at(&scene.system, &scene.start, &choices(&scene)[0]).expect("equations");
+        let mut compiled = Compiled::new(&equations).expect("compiled");
+        let raw = compiled.terms_of_rates(0.0, &[1.0, 2.0]).expect("terms");
+        assert!(raw[0] == 2.0 && !raw[1].is_finite(), "{raw:?}");
+        let (_, y, terms) = look(&mut compiled, 0.0, &[1.0, 2.0]).expect("a look");
+        assert_eq!((y, terms), (vec![1.0, 2.0], vec![2.0, 0.0]));
+    }
+
     /// A particle at speed 2 under this force, at these times, places and with so much added up to a rate;
     /// the looser run is this much apart from the second instant on.
     fn of_a_motion(force: &str, looked: [[f64; 3]; 3], apart: f64) -> RoundOff {

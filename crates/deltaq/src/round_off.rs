@@ -123,10 +123,11 @@ impl Motion {
 
 #[cfg(test)]
 mod tests {
+    use mechanics::{ConstantsRule, Removal};
     use scene::Scene;
 
     use super::*;
-    use crate::{choices, setting, solve_choice};
+    use crate::{Choice, REMOVED_CONSTRAINT, choices, setting, solve_choice};
 
     /// A particle from the origin at this speed, on a spring.
     fn particle(speed: f64, spring: f64, duration: f64) -> Motion {
@@ -150,6 +151,25 @@ mod tests {
                 assert!((terms[0] - known).abs() <= 1e-12 * known, "{speed}, at {t}: {terms:?}, {known}");
             }
         }
+    }
+
+    /// A sledge that turns past 90°, where its removal by coordinates goes on in another chart.
+    #[test]
+    fn only_the_first_chart_is_looked_at() {
+        let text = "title = \"sledge\"\n[coordinates]\nx = { start = 0 }\ny = { start = 0 }\nphi = { start = 0.3 }\n\
+                    [system]\nlagrangian = \"(x'^2 + y'^2 + phi'^2)/2\"\nconstraints = [\"y'*cos(phi) - x'*sin(phi)\"]\n\
+                    [start]\nvelocities = { \"x'\" = 0.6, \"phi'\" = 1.1 }\n[run]\nduration = 2.4\n";
+        let scene = Scene::parse("sledge", text).unwrap_or_else(|e| panic!("{e}"));
+        let removal = Removal::by_coordinates(&scene.system, &scene.start).expect("linear");
+        let own = choices(&scene).into_iter().find(|choice| choice.formulation == REMOVED_CONSTRAINT);
+        let own = own.expect("a choice");
+        let choice = Choice { removal: Some(removal), constants: ConstantsRule::Zero, ..own };
+        let mut motion = solve_choice(&scene, &choice, &Settings::default()).expect("a motion");
+        let [change] = &motion.charts[..] else { panic!("{} changes", motion.charts.len()) };
+        let (change, stretch) = (change.t, 2.4 / STRETCHES as f64);
+        let (looked, looser, _) = motion.looked_at(STRETCHES);
+        assert!(looked.iter().all(|(t, ..)| *t < change) && looked.len() == looser.len(), "{change}: {looked:?}");
+        assert!(looked.iter().any(|(t, ..)| *t > change - 2.0 * stretch), "{change}: {looked:?}");
     }
 
     #[test]

@@ -97,3 +97,33 @@ fn a_false_claim_is_shrunk_to_a_small_system() {
     }
     assert!(found > 0, "the claim is false on no system tried");
 }
+
+/// What a kind may not have is not drawn, everything else is; velocities have both signs.
+#[test]
+fn classes_are_those_that_their_kind_may_have() {
+    let (mut names, mut signs) = (HashSet::new(), HashSet::new());
+    for (kind, index) in Kind::ALL.into_iter().flat_map(|kind| (0..60).map(move |index| (kind, index))) {
+        let recipe = draw(5, index, &[kind]).current();
+        let own = recipe.drawn.names();
+        let has = |name: &str| own.contains(&name);
+        assert_eq!(has("more than six coordinates"), recipe.n() > MOST, "{kind} {index}");
+        assert!(!has("a start farther than 100") || recipe.features.far.is_some(), "{kind} {index}");
+        assert!(!has("constraints nearer than 1e-3") || kind == Kind::NearRankLoss, "{kind} {index}");
+        assert!(!has("a constraint that is no cone") || kind == Kind::Nonlinear, "{kind} {index}");
+        signs.extend(recipe.velocities.iter().map(|v| v.signum()));
+        let Scene { system, start, .. } = recipe.scene("random");
+        let timed = ["an L that depends on time", "a breakpoint"].into_iter().any(has);
+        let timed = timed || kind == Kind::TimeDependent || recipe.features.switch.is_some();
+        assert!(timed || !system.graph.depends_on(system.lagrangian, system.time), "{kind} {index}");
+        if recipe.is_homogeneous() && recipe.h() > 0 && system.is_autonomous() {
+            // f = 0 at twice the velocities, too
+            let twice: Vec<f64> = start.v.iter().map(|v| 2.0 * v).collect();
+            let mut metric = deltaq::Metric::new(&system).expect("compiles");
+            let residual = metric.constraint_residual(start.t, &start.q, &twice);
+            let size = 1.0 + twice.iter().map(|v| v * v).sum::<f64>();
+            assert!(residual < ON_THE_CONSTRAINT * size, "{kind} {index}: {residual:e}");
+        }
+        names.extend(own);
+    }
+    assert_eq!((names.len(), signs), (13, HashSet::from([-1, 0, 1])), "{names:?}");
+}

@@ -3,6 +3,7 @@
 use deltaq::{choices, compare_motions, solve_choice};
 
 use super::*;
+use crate::{Kind, draw_recipe};
 
 /// A particle whose `y` is held, under a push.
 fn particle(push: f64) -> Scene {
@@ -22,6 +23,25 @@ fn the_floor_is_a_hundred_last_digits_times_the_condition() {
     let known = 1e2 * f64::EPSILON * ratio * ratio;
     let found = floor(&scene.system, &scene.start, &scene.multipliers).expect("a floor");
     assert!((found / known - 1.0).abs() < 1e-12, "{found:e}, {known:e}");
+}
+
+/// Costates are eighths of what is drawn, zero where a memory variable has none.
+#[test]
+fn costates_at_the_start_are_those_of_the_recipe() {
+    let mut used = 0;
+    for index in 0..6 {
+        let case = Case::new(draw_recipe(1, index, &[Kind::Linear]), "costates").unwrap_or_else(|e| panic!("{e}"));
+        for Removed { removal, costates, motion } in &case.removed {
+            assert_eq!(costates.len(), removal.memory.len());
+            for (i, &costate) in costates.iter().enumerate() {
+                let is_free = motion.equations.free_constants.iter().any(|c| c.memory == Some(i));
+                let drawn = case.recipe.costates[i % case.recipe.costates.len()] as f64 / 8.0;
+                assert_eq!(costate, if is_free { drawn } else { 0.0 }, "{}, {i}", removal.name);
+                used += usize::from(is_free && drawn != 0.0);
+            }
+        }
+    }
+    assert!(used > 0);
 }
 
 /// A push `p` makes a gap of `p t²/2`: 2 p.
