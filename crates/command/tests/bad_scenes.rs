@@ -205,3 +205,17 @@ fn faults_of_all_files_are_counted() {
     support::refused(&["check", &one], &["1 fault"]);
     support::refused(&["check", &one, &good, &two], &["3 faults", "`colour`", "`shade`"]);
 }
+
+/// Names of the user's own have tables or numbers of a kind, as the reader says.
+#[test]
+fn the_schema_says_what_stands_under_names_of_ones_own() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("scene.json");
+    support::answer(&["new", "--schema", path.to_str().expect("UTF-8")], 0);
+    let schema = std::fs::read_to_string(path).expect("a schema");
+    let schema: serde_json::Value = serde_json::from_str(&schema).expect("JSON");
+    let under = |key: &str| &schema["properties"][key]["additionalProperties"];
+    assert_eq!(under("parameters"), &serde_json::json!({ "type": ["number", "string"] }));
+    assert!(under("coordinates")["properties"]["start"].is_object(), "{schema}");
+    assert_eq!(schema["additionalProperties"], false);
+}
