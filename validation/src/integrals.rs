@@ -154,7 +154,7 @@ const MAPS: [Map; 5] = [
         set: &[("K", 0.0), ("a1", 0.2), ("a2", 0.2), ("a3", 0.1), ("I3", 0.016)],
         x: ("I1", 0.004, 0.016),
         y: ("I2", 0.004, 0.016),
-        says: "Ellipsoid of revolution with any moments of inertia about its axes: a measure where I1 = I2, and nowhere else",
+        says: "Ellipsoid of revolution, moments of inertia about its axes: a measure where I1 = I2, and at no other point",
     },
 ];
 
