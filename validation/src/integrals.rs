@@ -130,7 +130,7 @@ const MAPS: [Map; 5] = [
         set: &[],
         x: ("I2", 0.05, 0.15),
         y: ("I3", 0.05, 0.15),
-        says: "Chaplygin's sphere, I1 = 0.1: two equal moments of inertia give it a fourth linear integral, three a seventh",
+        says: "Chaplygin's sphere, I1 = 0.1: three linear integrals, five where two moments are equal, seven where three are",
     },
     Map {
         name: "chaplygin-top",
@@ -146,7 +146,7 @@ const MAPS: [Map; 5] = [
         set: &[("c1", 0.0), ("c2", 0.0)],
         x: ("c3", -0.1, 0.1),
         y: ("I1", 0.08, 0.18),
-        says: "The same ball, rolling without spinning",
+        says: "The same ball, rolling without spinning: a measure at the same places",
     },
     Map {
         name: "ellipsoid-of-revolution",
@@ -197,7 +197,7 @@ impl Map {
             x: axis(self.x),
             y: axis(self.y),
             columns: VALUES,
-            value: Axis::linear("integrals linear in the velocities"),
+            value: Axis::linear("linear integrals"),
             cells: found.iter().map(linear).collect(),
             marked: found.iter().map(|found| matches!(found.measure, Measure::Local { .. })).collect(),
             mark: "a measure".into(),
