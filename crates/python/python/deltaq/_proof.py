@@ -40,9 +40,10 @@ def prove(self: System, almost_every_start: bool = False) -> Proof:
     return Proof(None if text is None else {"schema": _SCHEMA} | _sorted(json.loads(text)), because)
 
 
-def _sorted(value: Any) -> Any:
+def _sorted(value: dict[str, Any]) -> dict[str, Any]:
     """By name, as deltaq prints what is in it."""
-    return json.loads(json.dumps(value, sort_keys=True))
+    by_name: dict[str, Any] = json.loads(json.dumps(value, sort_keys=True))
+    return by_name
 
 
 def integrals(self: System, formulation: str = "chetaev", degree: int = 2, names: Iterable[str] = ()) -> dict[str, Any]:
@@ -60,4 +61,5 @@ def integrals(self: System, formulation: str = "chetaev", degree: int = 2, names
     """
     if not 1 <= degree <= 3:
         raise ValueError(f"degree: {degree} is not from 1 to 3")
-    return {"schema": "deltaq/integrals/1"} | json.loads(self._integrals(formulation, degree, list(names)))
+    found: dict[str, Any] = json.loads(self._integrals(formulation, degree, list(names)))
+    return {"schema": "deltaq/integrals/1"} | found
