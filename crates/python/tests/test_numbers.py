@@ -29,6 +29,14 @@ def test_parameters_of_a_run_are_those_of_another_system(system, formulation):
     np.testing.assert_array_equal(equations.integrate(TIMES).states, own.integrate(TIMES).states)
 
 
+def test_kept_equations_take_the_numbers_of_each_call(system):
+    equations = system.equations("chetaev")
+    y = equations.initial_state()
+    for numbers in [{"g": 1.6}, {"g": 3.7}, {"alpha": 0.1}, {"k": 0.9, "g": 3.7}, {"g": 1.6}]:
+        other = system.replace(numbers).equations("chetaev")
+        np.testing.assert_allclose(equations.rates(0.5, y, parameters=numbers), other.rates(0.5, y), rtol=1e-12, atol=1e-13)
+
+
 def test_start_and_constants_of_a_run(system):
     equations = system.equations("vakonomic")
     other = system.equations("vakonomic", mu0=[0.3])
