@@ -6,10 +6,9 @@ use std::path::Path;
 use std::time::Instant;
 
 use anyhow::{Context, Result};
-use decision::ExactStart;
 use deltaq::{CHETAEV, Choice, VAKONOMIC, default_constants};
 use equations::Formulation;
-use integrals::{Found, Integrals, Measure, Open, Reversed, reversible};
+use integrals::{Found, Integrals, Measure, Open, Reversed, reversible_scene};
 use pages::Table;
 use pages::markdown::inert;
 use picture::{Axis, HeatMap};
@@ -66,10 +65,7 @@ impl Entry {
     /// # Errors
     /// A scene that is not there, or a number that is none.
     pub fn scene(&self) -> Result<Scene> {
-        let set: Vec<(String, Number)> = self.set.iter().map(|(name, &x)| (name.clone(), Number::from(x))).collect();
-        let file = folder().join(&self.scene);
-        let name = if self.scene.ends_with(".toml") { file.display().to_string() } else { self.scene.clone() };
-        Ok(catalogue::find(&name, &set)?)
+        with_numbers(&self.scene, &self.set)
     }
 
     /// What the program says, and whether it is what is known; `None`: it leaves a question open.
@@ -77,7 +73,7 @@ impl Entry {
     /// # Errors
     /// As [`Entry::scene`].
     pub fn compared(&self) -> Result<(Reversed, Option<bool>)> {
-        let found = decided(&self.scene()?, 1)?;
+        let found = reversible_scene(&self.scene()?, 1)?;
         let measure = match &found.measure {
             Measure::None { .. } => "none",
             Measure::Local { .. } => "some",
@@ -97,9 +93,11 @@ fn settled(found: &Found) -> bool {
     found.settled || found.none_proved()
 }
 
-fn decided(scene: &Scene, degree: usize) -> Result<Reversed> {
-    let start = ExactStart::new(&scene.system, &scene.start, &scene.completion, None)?;
-    Ok(reversible(&scene.system, &start, degree))
+/// A built-in scene, or a file beside the table, with these numbers.
+fn with_numbers(scene: &str, set: &BTreeMap<String, f64>) -> Result<Scene> {
+    let set: Vec<(String, Number)> = set.iter().map(|(name, &x)| (name.clone(), Number::from(x))).collect();
+    let file = folder().join(scene).display().to_string();
+    Ok(catalogue::find(if scene.ends_with(".toml") { &file } else { scene }, &set)?)
 }
 
 /// A map over two numbers of a scene: how many integrals are linear, and where there is a measure.
@@ -166,20 +164,12 @@ impl Map {
             format!("{x:.6}").parse().unwrap_or(x)
         };
         let points: Vec<(usize, usize)> = (0..VALUES).flat_map(|j| (0..VALUES).map(move |i| (i, j))).collect();
-        let entry = |i: usize, j: usize| {
+        let decided = |&(i, j): &(usize, usize)| -> Result<Reversed> {
             let mut set: BTreeMap<String, f64> = self.set.iter().map(|&(name, x)| (name.into(), x)).collect();
             set.extend([(self.x, i), (self.y, j)].map(|(of, i)| (of.0.into(), value(of, i))));
-            Entry {
-                name: self.name.into(),
-                scene: self.scene.into(),
-                set,
-                claim: String::new(),
-                source: String::new(),
-                measure: String::new(),
-                linear: None,
-            }
+            Ok(reversible_scene(&with_numbers(self.scene, &set)?, 1)?)
         };
-        let found = parallel::map(&points, |&(i, j)| decided(&entry(i, j).scene()?, 1));
+        let found = parallel::map(&points, decided);
         let found: Vec<Reversed> = found.into_iter().collect::<Result<_>>()?;
         let linear = |found: &Reversed| {
             let found = found.integrals.first()?.as_ref().ok().filter(|found| settled(found))?;

@@ -3,8 +3,7 @@
 use std::path::Path;
 
 use anyhow::Result;
-use decision::ExactStart;
-use integrals::{Integrals, Reversed, reversible};
+use integrals::{Integrals, Reversed, reversible_scene};
 use program::{Answer, File, TextOrJson, pretty, write_all, write_one};
 
 use scene::Number;
@@ -46,10 +45,8 @@ pub fn run(arguments: &IntegralsArguments, quiet: bool) -> Result<Answer> {
 
 /// Writes certificates, and says which there are not and why.
 fn write_certificates(arguments: &IntegralsArguments, found: &Integrals, folder: &Path) -> Result<String> {
-    let overrides = &arguments.scene.set.overrides;
-    let set: Vec<_> = overrides.iter().map(|(name, x)| (name.clone(), x.to_string())).collect();
     let (mut files, mut missing) = (Vec::new(), Vec::new());
-    for (name, certificate) in found.certificates(&set)? {
+    for (name, certificate) in found.certificates(&arguments.scene.set.written())? {
         match certificate {
             Ok(value) => files.push(File {
                 path: format!("{}-{name}.json", found.scene.name).into(),
@@ -71,8 +68,7 @@ fn swept(arguments: &IntegralsArguments, quiet: bool) -> Result<String> {
     let asked = |point: &[f64]| -> Result<Reversed> {
         let values = grid.names().map(String::from).zip(point.iter().map(|&x| Number::from(x)));
         let scene = catalogue::read(name, &text, &set.overrides.iter().cloned().chain(values).collect::<Vec<_>>())?;
-        let start = ExactStart::new(&scene.system, &scene.start, &scene.completion, None)?;
-        Ok(reversible(&scene.system, &start, degree))
+        Ok(reversible_scene(&scene, degree)?)
     };
     // a name that means nothing is a fault of the call
     asked(&grid.point(0))?;

@@ -23,8 +23,7 @@ pub fn run(arguments: &ProveArguments) -> Result<Answer> {
         Ok(certificate) => {
             holds_beside_numbers(&scene)?;
             let order = certificate.order;
-            let set: Vec<_> = given.set.overrides.iter().map(|(name, x)| (name.clone(), x.to_string())).collect();
-            let text = pretty("certificate", &certificate.value(&set));
+            let text = pretty("certificate", &certificate.value(&given.set.written()));
             if to_terminal {
                 return Ok(text.into());
             }

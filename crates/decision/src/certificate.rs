@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use serde_json::{Map, Value, json};
 
-use crate::exact::{Echelon, Exact, FIELDS, Jet, Modular, PARTS, TRIED, in_field, inverse};
+use crate::exact::{Echelon, Exact, Jet, Modular, PARTS, TRIED, in_any_field, inverse};
 use crate::family::{CostateRate, inputs};
 use crate::plain_scene::{PlainScene, named};
 use crate::program::Program;
@@ -114,12 +114,6 @@ impl Certificate {
 
 /// Of random starts.
 const SEED: u64 = 0x5eed_0001;
-
-/// What comes of `compute` in the first field where it succeeds; else the reason in the first one.
-fn in_any_field<T>(mut compute: impl FnMut() -> Result<T, String>) -> Result<T, String> {
-    let first = in_field(&FIELDS[0], &mut compute);
-    first.or_else(|reason| FIELDS[1..].iter().find_map(|field| in_field(field, &mut compute).ok()).ok_or(reason))
-}
 
 /// The primes under roots of these fractions, with the images of their roots.
 fn roots(radicands: impl Iterator<Item = Exact>) -> Vec<(String, u64)> {

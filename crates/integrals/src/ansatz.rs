@@ -77,8 +77,7 @@ pub fn ansatz(
 ) -> Result<Ansatz, Open> {
     let system = &System { graph: equations.graph.clone(), ..system.clone() };
     let places = chosen(system, names)?;
-    let states = equations.states.iter().filter(|y| y.role == Role::Multiplier);
-    let multipliers: Vec<Symbol> = states.map(|y| y.symbol).collect();
+    let multipliers: Vec<Symbol> = multipliers(equations).into_iter().map(|(mu, _)| mu).collect();
     let (spatial, functions) = functions(system, &multipliers, &places, !names.is_empty(), degree);
     let expressions: Vec<Expr> = functions.iter().map(|f| f.expression).collect();
     let mut sample = Sample::new(system, equations, start, &expressions)?;
@@ -125,6 +124,12 @@ fn holds(sample: &Sample, printed: &[Printed]) -> Result<(), Open> {
     Ok(())
 }
 
+/// Multipliers that are states, and their places among these.
+fn multipliers(equations: &Equations) -> Vec<(Symbol, usize)> {
+    let states = equations.states.iter().enumerate().filter(|(_, y)| y.role == Role::Multiplier);
+    states.map(|(i, y)| (y.symbol, i)).collect()
+}
+
 /// Functions at random points of the motions.
 struct Sample<'a> {
     dynamics: Dynamics,
@@ -143,10 +148,8 @@ impl<'a> Sample<'a> {
     fn new(system: &System, equations: &Equations, start: &'a ExactStart, functions: &[Expr]) -> Result<Self, Open> {
         let dynamics = Dynamics::new(system, equations).map_err(|fault| Open::Other(fault.to_string()))?;
         let program = Program::new(&system.graph, &[], &[]).map_err(|fault| Open::Other(fault.to_string()))?;
-        let states = equations.states.iter().enumerate().filter(|(_, y)| y.role == Role::Multiplier);
-        let multipliers = states.map(|(i, y)| (y.symbol, i)).collect();
         let constants = equations.constant_symbols().len();
-        let mut sample = Sample { dynamics, program, start, multipliers, constants, inputs: 0 };
+        let mut sample = Sample { dynamics, program, start, multipliers: multipliers(equations), constants, inputs: 0 };
         sample.ask(system, functions)?;
         Ok(sample)
     }

@@ -55,4 +55,4 @@ pub use answer::{Integrals, NoAnswer};
 pub use certificate::Certificate;
 pub use density::Density;
 pub use open::Open;
-pub use reversible::{Cyclic, Found, Measure, Reversed, reversible};
+pub use reversible::{Cyclic, Found, Measure, Reversed, reversible, reversible_scene};

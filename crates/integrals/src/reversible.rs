@@ -1,8 +1,9 @@
 //! What is asked of a system without time, of homogeneous constraints and a potential.
 
-use decision::ExactStart;
 use decision::exact::{FIELDS, agreed};
+use decision::{DecisionError, ExactStart};
 use mechanics::System;
+use scene::Scene;
 
 use crate::Open;
 use crate::density::{Density, density};
@@ -145,6 +146,15 @@ fn decide_integrals(system: &Reversible, start: &ExactStart, degree: usize) -> R
         }
     }
     last
+}
+
+/// [`reversible`] of a scene and its start.
+///
+/// # Errors
+/// A start that cannot be read.
+pub fn reversible_scene(scene: &Scene, degree: usize) -> Result<Reversed, DecisionError> {
+    let start = ExactStart::new(&scene.system, &scene.start, &scene.completion, None)?;
+    Ok(reversible(&scene.system, &start, degree))
 }
 
 /// Decides measure and integrals up to a degree.

@@ -33,6 +33,13 @@ pub struct Overrides {
     pub overrides: Vec<(String, Number)>,
 }
 
+impl Overrides {
+    /// Names, and numbers as they were written.
+    pub(crate) fn written(&self) -> Vec<(String, String)> {
+        self.overrides.iter().map(|(name, x)| (name.clone(), x.to_string())).collect()
+    }
+}
+
 /// `deltaq new`.
 #[derive(Args, Debug)]
 pub struct NewArguments {

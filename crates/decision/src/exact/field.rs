@@ -94,3 +94,12 @@ pub fn agreed<T: PartialEq, E>(
     }
     Err(fault)
 }
+
+/// What comes of `compute` in the first field where it succeeds.
+///
+/// # Errors
+/// That of the first field, where it succeeds in none.
+pub fn in_any_field<T, E>(mut compute: impl FnMut() -> Result<T, E>) -> Result<T, E> {
+    let first = in_field(&FIELDS[0], &mut compute);
+    first.or_else(|error| FIELDS[1..].iter().find_map(|field| in_field(field, &mut compute).ok()).ok_or(error))
+}

@@ -9,7 +9,7 @@ mod small_fraction;
 
 use symbolic::{Bounded, Scalar};
 
-pub use field::{FIELDS, Field, agreed, in_field};
+pub use field::{FIELDS, Field, agreed, in_any_field, in_field};
 pub use jet::{Jet, ORDERS};
 pub use linear::{Echelon, inverse};
 pub(crate) use linear::{solve, subtract_product};
