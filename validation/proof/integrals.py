@@ -10,6 +10,12 @@ theta_b = div X_b + C_ba^a, so e^sigma(q) dq dp is invariant if and only if X_b 
 follows [Y,Z] sigma = Y(tau_Z) - Z(tau_Y). If n + 1 rows [Y, tau_Y] have a determinant that is not 0 at q0, there is none at q0; as it is
 analytic, there is none near almost every point. For V = 0 a measure that is smooth and positive near v = 0 has such a sigma.
 
+Multiplier. f = 0 gives z' = B(q) r', q = (r, z); the m fields X_a lift d/dr_a, p = g r', c_abd = N_d'M [X_a, X_b] = g_cd C_ab^c, and Chetaev's
+motion is p_a' = -X_a(H) - C_ab^c r'^b p_c: one over r where g, V and c contain r alone. With dtau = f(r) dt, P = f p, phi = log f it is
+Hamilton's motion of H(r, P/f) if and only if C_ab^c r'^b p_c = r'^b phi_b p_a - phi_a r'^b p_b for all r', phi_a = d phi/dr_a, that is
+c_abd + c_adb = phi_b g_ad + phi_d g_ab - 2 phi_a g_bd. The trace over b, d gives (m - 1) phi_a = -C_ab^b. Where these do not solve that, or
+d phi_b/dr_a = d phi_a/dr_b does not hold, there is no f.
+
 Bound. F = sum_I k_I(q) s^I, |I| = d, d - 2, ...; dF/dt = sum_I s^I s^b X_b(k_I) + k_I d(s^I)/dt. In coordinates z with weights w_i that X_b
 lowers by one at most, the part of weight w - 1 contains k to weight w, with those of weight w in sum_I s^I s^b X_b^(-1)(k_I) alone, where
 X^(-1) is the part that lowers by one. S_K: polynomials k of weights up to K for which the parts of weight up to K - 1 vanish. G_w: those k
@@ -79,10 +85,19 @@ def no_measure(proof):
     return ["verified: near almost every point no measure e^sigma(q) dq dp, smooth and positive, is invariant under Chetaev's motion "
             f"(brackets of up to {deep} fields, minor {minor} mod {verify.P})"]
 
-def measure(proof):
+def factors(proof, key):
+    """The exponents of det g, and of sines and cosines by coordinate."""
     fraction = lambda text: Fraction(text if re.fullmatch(r"-?\d{1,9}(/[1-9]\d{0,8})?", text) else readable(False, f"the exponent {text}"))
-    metric, angles = fraction(proof["density"]["metric"]), {x: [*map(fraction, pair)] for x, pair in proof["density"]["angles"].items()}
+    angles = {x: [*map(fraction, pair)] for x, pair in proof[key]["angles"].items()}
     demand(angles.keys() <= set(proof["scene"]["coordinates"]), "an angle that is no coordinate")
+    return fraction(proof[key]["metric"]), angles
+
+def product(metric, angles):
+    powers = [("det g", metric), *((f"{word}({x})", y) for x, pair in angles.items() for word, y in zip(("sin", "cos"), pair))]
+    return " ".join(f"|{word}|^({y})" for word, y in powers if y)
+
+def measure(proof):
+    metric, angles = factors(proof, "density")
     system = System(proof["scene"], *(f"{word}({x})" for x in angles for word in ("sin", "cos")))
     own_images(proof)
     system.mechanical()
@@ -110,10 +125,69 @@ def measure(proof):
         series = lambda rows: [[Series([x]) for x in row] for row in rows]
         slopes = solve(series([[row[i] for i in others] for row in A]), series([[row[i] for i in others] for row in B]), "the free velocities")
         demand((total - sum(row[i].c[0] for i, row in enumerate(slopes))) % verify.P == 0, "the measure is not invariant")
-    powers = [("det g", metric), *((f"{word}({x})", y) for x, pair in angles.items() for word, y in zip(("sin", "cos"), pair))]
-    density = " ".join([*(f"|{word}|^({y})" for word, y in powers if y), "dq ds"])
+    density = f"{product(metric, angles)} dq ds".strip()
     return [f"verified: the measure {density}, s = ({', '.join(proof['free'])}), g the metric of the kinetic energy in s, smooth and positive near "
             f"almost every point, is invariant under Chetaev's motion ({POINTS} drawn points mod {verify.P})"]
+
+def reduced(proof):
+    """At drawn points: the chart, g, N and c as series; they contain r alone."""
+    angles = proof["density"]["angles"] if "density" in proof else {}
+    system = System(proof["scene"], *(f"{word}({x})" for x in angles for word in ("sin", "cos")))
+    own_images(proof)
+    system.mechanical()
+    demand(not proof["scene"]["forces"], "forces")
+    free, names = system.free(proof["free"]), range(len(system.names))
+    for _ in range(POINTS):
+        at = system.draw()
+        chart, M, V, _, N = system.near(at, free, 3)
+        below = [[dot(row, x) for row in M] for x in N]
+        g = [[dot(x, y) for y in below] for x in N]
+        c = [[[dot(x, chart.bracket(X, Y)) for x in below] for Y in N] for X in N]
+        units = [[Series.of(int(i == z)) for i in names] for z in names if z not in free]
+        contained = any(chart.along(unit, x).c[0] for unit in units for x in (V, *sum(g, []), *sum(sum(c, []), [])))
+        readable(not contained, "what is solved for are no velocities of symmetries")
+        yield system, at, chart, g, N, c
+
+def solved(phi, g, c):
+    """c_abd + c_adb = phi_b g_ad + phi_d g_ab - 2 phi_a g_bd"""
+    number = lambda x: x.c[0]
+    rest = lambda a, b, d: (number(c[a][b][d]) + number(c[a][d][b]) - phi[b] * number(g[a][d]) - phi[d] * number(g[a][b])
+                            + 2 * phi[a] * number(g[b][d]))
+    every = range(len(g))
+    return not any(rest(a, b, d) % verify.P for a in every for b in every for d in every)
+
+def change(proof):
+    over = ", ".join(name.rstrip("'") for name in proof["free"])
+    return f"P = f g s, s = ({', '.join(proof['free'])}), g the metric of the kinetic energy in s", f"Chetaev's motion over ({over})"
+
+def multiplier(proof):
+    metric, angles = factors(proof, "density")
+    over = [name.rstrip("'") for name in proof["free"]]
+    demand(angles.keys() <= set(over), "an angle that the motion is not over")
+    for system, at, chart, g, N, c in reduced(proof):
+        values = system.run(at, [], [Series.of(0)] * len(system.names))
+        waves = iter(values[place].plain().c[0] for place in system.texts)
+        slopes = {x: y * q * invert(p) - z * p * invert(q) for (x, (y, z)), (p, q) in zip(angles.items(), zip(waves, waves))}
+        traces = [solve(g, [[chart.along(X, x) for x in row] for row in g], "the metric") for X in N]
+        phi = [(Series.of(metric) * sum((row[i] for i, row in enumerate(trace)), Series.of(0))).c[0] for trace in traces]
+        phi = [x + Series.of(slopes.get(name, 0)).c[0] for x, name in zip(phi, over)]
+        demand(solved(phi, g, c), "the motion is not Hamilton's")
+    change_words, motion = change(proof)
+    return [f"verified: with dtau = f dt, f = {product(metric, angles) or 1}, {change_words}, {motion} is Hamilton's, near almost every point "
+            f"({POINTS} drawn points mod {verify.P})"]
+
+def no_multiplier(proof):
+    m, some = len(proof["free"]), False
+    for system, at, chart, g, N, c in reduced(proof):
+        C = solve(g, [[c[a][b][d] for a in range(m) for b in range(m)] for d in range(m)], "the metric")  # C[c][a, b] = C_ab^c
+        over = Series.of(Fraction(-1, max(m - 1, 1)))
+        phi = [over * sum((C[b][a * m + b] for b in range(m)), Series.of(0)) for a in range(m)]
+        turns = (chart.along(N[a], phi[b]).c[0] - chart.along(N[b], phi[a]).c[0] for a in range(m) for b in range(a))
+        some |= not solved([x.c[0] for x in phi], g, c) or any(x % verify.P for x in turns)
+    demand(some, "the slopes solve their equations")
+    change_words, motion = change(proof)
+    return [f"verified: near almost every point there is no f(r) for which dtau = f dt, {change_words}, makes {motion} Hamilton's "
+            f"(a drawn point mod {verify.P})"]
 
 def growth(system, at, free, depth):
     """The ranks of brackets of up to 1, 2, ... fields, each with a field."""
@@ -265,6 +339,8 @@ def integral(proof):
 CLAIMS = {
     "no measure": (no_measure, {"free": MANY(WORD), "brackets": MANY(PAIR), "rows": MANY(WHOLE), "minor": WHOLE}),
     "measure": (measure, {"free": MANY(WORD), "density": verify.EXACTLY({"metric": WORD, "angles": NAMED(lambda x: MANY(WORD)(x) and len(x) == 2)})}),
+    "multiplier": (multiplier, {"free": MANY(WORD), "density": verify.EXACTLY({"metric": WORD, "angles": NAMED(lambda x: MANY(WORD)(x) and len(x) == 2)})}),
+    "no multiplier": (no_multiplier, {"free": MANY(WORD)}),
     "bound": (bound, {"degree": WHOLE, "free": MANY(WORD), "weights": MANY(WHOLE), "order": WHOLE, "bound": WHOLE,
                       "chart": NAMED(MANY(lambda x: type(x) is list and len(x) == 2 and MANY(WHOLE)(x[0]) and WHOLE(x[1])))}),
     "integral": (integral, {"integral": WORD}),

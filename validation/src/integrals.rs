@@ -8,7 +8,7 @@ use std::time::Instant;
 use anyhow::{Context, Result};
 use deltaq::{CHETAEV, Choice, VAKONOMIC, default_constants};
 use equations::Formulation;
-use integrals::{Found, Integrals, Measure, Open, Reversed, reversible_scene};
+use integrals::{Found, Integrals, Measure, Multiplier, Open, Reversed, reversible_scene};
 use pages::Table;
 use pages::markdown::inert;
 use picture::{Axis, HeatMap};
@@ -35,6 +35,8 @@ pub struct Entry {
     pub source: String,
     /// Whether there is a measure: some, none, or open where the program does not decide.
     pub measure: String,
+    /// Chaplygin's multiplier over the coordinates whose velocities the constraints leave free: some or none.
+    pub multiplier: Option<String>,
     /// Independent integrals linear in the velocities.
     pub linear: Option<usize>,
 }
@@ -81,9 +83,15 @@ impl Entry {
         };
         let linear = found.integrals.first().and_then(|found| found.as_ref().ok()).filter(|found| settled(found));
         let counts = self.linear.zip(linear).is_none_or(|(known, found)| known == found.count);
+        let multipliers = match (&self.multiplier, &found.multiplier) {
+            (None, _) => true,
+            (Some(known), Multiplier::Local(_)) => known == "some",
+            (Some(known), Multiplier::None) => known == "none",
+            _ => false,
+        };
         let agrees = match (measure, &self.measure[..]) {
             ("open", _) => None,
-            (one, other) => Some(one == other && counts),
+            (one, other) => Some(one == other && counts && multipliers),
         };
         Ok((found, agrees))
     }
@@ -279,16 +287,6 @@ fn measure(found: &Measure) -> String {
     }
 }
 
-fn count(found: Option<&Result<Found, Open>>) -> String {
-    match found {
-        None => String::new(),
-        Some(Err(_)) => "open".into(),
-        Some(Ok(found)) if found.none_proved() => "none".into(),
-        Some(Ok(found)) if found.settled => found.further().to_string(),
-        Some(Ok(found)) => format!("at most {}", found.further()),
-    }
-}
-
 fn printed(found: &Integrals) -> String {
     match &found.ansatz {
         Ok(ansatz) => format!("{} of {}", ansatz.printed.len(), ansatz.functions),
@@ -297,21 +295,19 @@ fn printed(found: &Integrals) -> String {
 }
 
 fn catalogue_table(answers: &[(Integrals, Integrals)]) -> String {
-    let mut table = Table::new(["scene", "measure", "linear", "quadratic", ">printed", ">vakonomic"]);
+    let mut table = Table::new(["scene", "measure", "multiplier", "linear", "quadratic", ">printed", ">vakonomic"]);
     for (chetaev, vakonomic) in answers {
         let reversed = chetaev.reversed.as_ref();
-        let cell = |degree: usize| count(reversed.and_then(|found| found.integrals.get(degree)));
-        table.row(&[
-            &chetaev.scene.name,
-            &reversed.map_or(String::new(), |found| measure(&found.measure)),
-            &cell(0),
-            &cell(1),
-            &printed(chetaev),
-            &printed(vakonomic),
-        ]);
+        let (mut cells, _) = reversed.map(Reversed::cells).unwrap_or_default();
+        cells.resize(4, String::new());
+        let measure = reversed.map_or(String::new(), |found| measure(&found.measure));
+        let (printed, of_vakonomic) = (printed(chetaev), printed(vakonomic));
+        let [_, multiplier, linear, quadratic] = [0, 1, 2, 3].map(|i| &cells[i]);
+        table.row(&[&chetaev.scene.name, &measure, multiplier, linear, quadratic, &printed, &of_vakonomic]);
     }
     format!(
-        "*Linear*, *quadratic*: integrals of Chetaev's motion, those left out that the energy, constants and products make; of scenes \
+        "*Multiplier*: whether dτ = f dt makes the reduced motion Hamilton's (Chaplygin); a dash: the velocities that the constraints \
+         give are not those of symmetries. *Linear*, *quadratic*: integrals of Chetaev's motion, those left out that the energy, constants and products make; of scenes \
          with more than {QUADRATIC} coordinates the quadratic ones are not asked for. *Printed*: of how many functions, monomials in \
          velocities times monomials in coordinates or their sines and cosines, combinations are constant, products left out; \
          *vakonomic*: the same in (q, v, μ).\n\n{table}"
@@ -347,7 +343,7 @@ fn reasons(answers: &[(Integrals, Integrals)]) -> String {
 
 fn literature_text() -> Result<String> {
     let entries = literature()?;
-    let mut table = Table::new(["system", "known", "source", "found: measure", "linear", "agrees"]);
+    let mut table = Table::new(["system", "known", "source", "found: measure", "multiplier", "linear", "agrees"]);
     let found = parallel::map(&entries, Entry::compared);
     let (mut agree, mut contradict) = (0, 0);
     for (entry, found) in entries.iter().zip(found) {
@@ -359,8 +355,8 @@ fn literature_text() -> Result<String> {
         };
         agree += usize::from(agrees == Some(true));
         contradict += usize::from(agrees == Some(false));
-        let linear = count(found.integrals.first());
-        table.row(&[&entry.name, &entry.claim, &entry.source, &measure(&found.measure), &linear, &word]);
+        let (cells, _) = found.cells();
+        table.row(&[&entry.name, &entry.claim, &entry.source, &measure(&found.measure), &cells[1], &cells[2], &word]);
     }
     Ok(format!(
         "\n## The literature\n\n{agree} of {} entries agree, {contradict} contradict. The others are affine or have integrable \

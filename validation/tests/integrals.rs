@@ -2,7 +2,9 @@
 
 use std::collections::BTreeSet;
 
-use integrals::Measure;
+use deltaq::{CHETAEV, Choice, VAKONOMIC, default_constants};
+use integrals::{Integrals, Measure};
+use mechanics::Watched;
 use validation::integrals::literature;
 
 /// Entries whose answer takes a second or less.
@@ -40,4 +42,53 @@ fn nothing_contradicts_the_literature() {
     }
     println!("{agree} agree, {open} open");
     assert!(agree > 8 && open > 1);
+}
+
+/// T6 and T7 on random systems, and what the ansatz writes down about both formulations, along their motions.
+/// `INTEGRALS=200` takes as many systems.
+#[test]
+fn integrals_of_random_systems_are_constant_along_motions() {
+    let count = std::env::var("INTEGRALS").map_or(6, |count| count.parse().expect("a number of systems"));
+    let (mut tried, mut energies, mut momenta) = (0, 0, 0);
+    for index in 0..count {
+        let recipe = random::draw_recipe(71, index, &random::Kind::ALL);
+        let scene = recipe.scene(&format!("random-{index}"));
+        let is_closed = scene.system.is_autonomous() && !scene.system.has_forces();
+        for formulation in [CHETAEV, VAKONOMIC] {
+            let has_energy = is_closed && (recipe.is_homogeneous() || formulation.name == VAKONOMIC.name);
+            let mut scene = scene.clone();
+            if has_energy && formulation.name == CHETAEV.name {
+                let expression = scene.system.energy();
+                scene.system.watched.push(Watched { name: "energy".into(), expression, constant: true });
+            }
+            let system = &scene.system;
+            let constants = default_constants(formulation, &scene);
+            let choice = Choice { label: formulation.title.into(), formulation, removal: None, constants };
+            let found = Integrals::find(&scene, &choice, 2, &[]).unwrap_or_else(|e| panic!("{}: {e}", scene.name));
+            let (Ok(ansatz), Ok(drifts)) = (&found.ansatz, &found.drifts) else {
+                println!("{} {}: {:?} {:?}", scene.name, formulation.name, found.ansatz.as_ref().err(), found.drifts);
+                continue;
+            };
+            for (integral, drift) in ansatz.printed.iter().zip(drifts) {
+                assert!(*drift < 1e-9, "{} {}: {} drifts by {drift:.1e}", scene.name, formulation.name, integral.text);
+                tried += 1;
+            }
+            let words = || format!("{} {}: {found}", scene.name, formulation.name);
+            if has_energy {
+                // Chetaev's of L by its rates, the vakonomic one by what is printed
+                let by_rates = matches!(&found.invariants, Ok(own) if own.iter().all(|(_, held)| *held));
+                assert!(by_rates && (ansatz.dimension > 0 || ansatz.unprinted > 0), "{}", words());
+                energies += 1;
+            }
+            let written = system.written();
+            let is_cyclic = |q: &symbolic::Symbol| written.iter().all(|&e| !system.graph.depends_on(e, *q));
+            let cyclic = system.positions().iter().filter(|q| is_cyclic(q)).count();
+            if formulation.name == VAKONOMIC.name && !system.has_forces() {
+                assert!(ansatz.dimension >= cyclic, "{}", words());
+                momenta += cyclic;
+            }
+        }
+    }
+    println!("{tried} integrals, {energies} energies, {momenta} momenta");
+    assert!(tried > count as usize && energies > 0 && momenta > 0);
 }

@@ -7,6 +7,7 @@ mod benchmark;
 mod casadi;
 mod changed_pages;
 mod control;
+mod hamilton;
 mod headlines;
 mod integrals;
 #[path = "../../crates/command/tests/killed.rs"]

@@ -112,6 +112,10 @@ pub struct SolveArguments {
     /// values (the constraints supply the velocities that they supply in the scene), `mu0_1`, … and `P0_w`, …
     #[arg(long, value_name = "NAME,…", value_delimiter = ',')]
     pub sensitivities: Vec<String>,
+    /// Watch the integrals that `deltaq integrals` writes down for this formulation, but those that contain
+    /// multipliers: a column each, and their drift among the invariants.
+    #[arg(long)]
+    pub integrals: bool,
 }
 
 /// `deltaq compare`.

@@ -75,10 +75,10 @@ fn swept(arguments: &IntegralsArguments, quiet: bool) -> Result<String> {
     let row = |point: &[f64]| {
         let (cells, why) = match asked(point) {
             Ok(found) => found.cells(),
-            Err(error) => (vec!["open".into(); 1 + degree], error.to_string()),
+            Err(error) => (vec!["open".into(); 2 + degree], error.to_string()),
         };
         format!("{},{}\n", cells.join(","), quoted(&why))
     };
-    let columns = ["measure", "linear", "quadratic", "cubic"].into_iter().take(1 + degree).chain(["why"]);
+    let columns = ["measure", "multiplier", "linear", "quadratic", "cubic"].into_iter().take(2 + degree).chain(["why"]);
     Ok(grid.write(arguments.out.as_deref(), &columns.collect::<Vec<_>>(), quiet, row)?.unwrap_or_default())
 }

@@ -12,9 +12,10 @@ use deltaq::{
 };
 use discrete::Composition;
 use equations::{Formulation, Outputs};
+use integrals::watched;
 use integrate::{Interrupt, Projection};
 use linear::equidistant;
-use mechanics::{ConstantsRule, Observables, Removal};
+use mechanics::{ConstantsRule, Observables, Removal, Watched};
 use scene::Scene;
 use serde_json::{Map, Value, json};
 
@@ -36,9 +37,15 @@ pub(crate) fn run(arguments: &SolveArguments, quiet: bool) -> Result<Answer> {
         Stepping::Leapfrog if arguments.motion.limits.max_steps.is_none() => settings.max_steps = STEP_LIMIT,
         Stepping::Leapfrog => {}
     }
-    let scene = arguments.motion.scene.find()?;
+    let mut scene = arguments.motion.scene.find()?;
     let MotionArguments { formulation, form, free, .. } = &arguments.motion;
     let choice = choice(&scene, (formulation, form), free)?;
+    if arguments.integrals {
+        let kept = watched(&scene, &choice)?;
+        let shown = kept.iter().map(|own| Watched { constant: false, ..own.clone() });
+        let all: Vec<Watched> = shown.chain(kept.iter().cloned()).collect();
+        scene.system.watched.extend(all);
+    }
     let wanted = match &arguments.motion.times {
         Some(text) => times(text, &scene)?,
         None => equidistant(scene.start.t, scene.start.t + scene.duration, 101),

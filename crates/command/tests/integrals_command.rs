@@ -5,7 +5,10 @@ use crate::support::{answer, refused};
 #[test]
 fn a_table_says_of_each_value_what_is_said_of_it_alone() {
     let (table, _) = answer(&["integrals", "suslov", "--degree", "1", "--sweep", "K=-0.03:0.03:3"], 0);
-    assert_eq!(table, "K,measure,linear,why\n-0.03,none,none,\n0.0,some,5,\n0.03,none,none,\n");
+    assert_eq!(
+        table,
+        "K,measure,multiplier,linear,why\n-0.03,none,none,none,\n0.0,some,some,5,\n0.03,none,none,none,\n"
+    );
     let (alone, _) = answer(&["integrals", "suslov", "--degree", "1", "--set", "K=0"], 0);
     assert!(alone.contains("linear        5 local ones\n"), "{alone}");
     let (open, _) = answer(&["integrals", "pursuit", "--degree", "0", "--sweep", "time=0:1:1"], 0);

@@ -125,7 +125,7 @@ fn holds(sample: &Sample, printed: &[Printed]) -> Result<(), Open> {
 }
 
 /// Multipliers that are states, and their places among these.
-fn multipliers(equations: &Equations) -> Vec<(Symbol, usize)> {
+pub(crate) fn multipliers(equations: &Equations) -> Vec<(Symbol, usize)> {
     let states = equations.states.iter().enumerate().filter(|(_, y)| y.role == Role::Multiplier);
     states.map(|(i, y)| (y.symbol, i)).collect()
 }
@@ -224,23 +224,17 @@ fn found(system: &System, functions: &[Function], (values, rates): &Columns) -> 
         if !known.add(along.clone()) {
             continue;
         }
+        of_degree.push((degree, along.clone()));
         let mut products: Vec<(usize, Vec<Modular>)> = vec![(degree, along)];
         for place in 0.. {
             let Some((d, a)) = products.get(place).cloned() else { break };
-            for (e, b) in &of_degree {
+            for (e, b) in of_degree.iter().filter(|(e, _)| d + e <= highest) {
                 let product: Vec<Modular> = a.iter().zip(b).map(|(&x, &y)| x * y).collect();
-                if d + e <= highest && known.add(product.clone()) {
+                if known.add(product.clone()) {
                     products.push((d + e, product));
                 }
             }
-            if place == 0 && 2 * d <= highest {
-                let square: Vec<Modular> = a.iter().map(|&x| x * x).collect();
-                if known.add(square.clone()) {
-                    products.push((2 * d, square));
-                }
-            }
         }
-        of_degree.extend(products.into_iter().take(1));
         let coefficients: Option<Vec<(usize, Exact)>> = used().map(|(i, c)| Some((i, c.small_fraction()?))).collect();
         match coefficients {
             None => unprinted += 1,

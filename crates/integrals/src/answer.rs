@@ -8,7 +8,8 @@ use mechanics::{System, Watched};
 use scene::Scene;
 use symbolic::{Expr, Symbol};
 
-use crate::{Ansatz, Open, Printed, Reversed, ansatz, constants, reversible};
+use crate::ansatz::{self, ansatz};
+use crate::{Ansatz, Open, Printed, Reversed, constants, reversible};
 
 /// Tolerance of the motion along which what is printed is looked at, and times at which it is.
 const TOLERANCE: f64 = 1e-12;
@@ -35,9 +36,9 @@ pub struct Integrals {
 /// Why nothing is answered.
 #[derive(Debug, thiserror::Error)]
 pub enum NoAnswer {
-    /// A name that is no coordinate.
+    /// A name that is no coordinate, or equations that cannot be followed over a finite field.
     #[error(transparent)]
-    Name(Open),
+    Open(Open),
     /// The start cannot be read in exact numbers.
     #[error(transparent)]
     Start(#[from] DecisionError),
@@ -62,7 +63,7 @@ impl Integrals {
         let equations = derive(system, choice)?;
         let ansatz = ansatz(system, &equations, &start, degree, names);
         if let Err(fault @ Open::Name { .. }) = ansatz {
-            return Err(NoAnswer::Name(fault));
+            return Err(NoAnswer::Open(fault));
         }
         let own: Vec<&Watched> = system.watched.iter().filter(|watched| watched.constant).collect();
         let expressions: Vec<_> = own.iter().map(|watched| watched.expression).collect();
@@ -97,6 +98,29 @@ impl Integrals {
         }
         all
     }
+}
+
+/// What the ansatz writes down about the motion of `choice`, up to degree 2, as quantities that are watched
+/// along it: those that contain multipliers, and the energy, are not among them.
+///
+/// # Errors
+/// [`NoAnswer`].
+pub fn watched(scene: &Scene, choice: &Choice) -> Result<Vec<Watched>, NoAnswer> {
+    let system = &scene.system;
+    let start = ExactStart::new(system, &scene.start, &scene.completion, choice.removal.as_ref())?;
+    let equations = derive(system, choice)?;
+    let found = ansatz(system, &equations, &start, 2, &[]).map_err(NoAnswer::Open)?;
+    let multipliers = ansatz::multipliers(&equations);
+    let is_seen = |printed: &&Printed| {
+        !printed.is_energy && multipliers.iter().all(|(mu, _)| !equations.graph.depends_on(printed.expression, *mu))
+    };
+    let g = &system.graph;
+    let known = |name: &str| g.find_symbol(name).map(|symbol| g.variable(symbol));
+    let read = found.printed.iter().filter(is_seen).map(|printed| {
+        let expression = g.parse(&printed.text, &known, &[]).map_err(|fault| Open::Other(fault.to_string()))?;
+        Ok(Watched { name: printed.text.clone(), expression, constant: true })
+    });
+    read.collect::<Result<_, _>>().map_err(NoAnswer::Open)
 }
 
 fn drifts(scene: &Scene, choice: &Choice, printed: &[Printed]) -> Result<Vec<f64>, String> {

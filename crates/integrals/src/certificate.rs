@@ -10,7 +10,7 @@ use symbolic::Fraction;
 use crate::flag::Flag;
 use crate::killing::Killing;
 use crate::local::{Reversible, at_random};
-use crate::{Density, Found, Integrals, Measure, NoAnswer, Open, words};
+use crate::{Density, Found, Integrals, Measure, Multiplier, NoAnswer, Open, words};
 
 /// Of the random points.
 const SEED: u64 = 0x17e6_0005;
@@ -44,6 +44,15 @@ impl Integrals {
                 Measure::None { proved: true } => all.push(("measure".into(), question.no_measure(&reversible))),
                 Measure::Local { density: Some(density), .. } => {
                     all.push(("measure".into(), question.of("measure", |_| Ok(question.density(density)))));
+                }
+                _ => {}
+            }
+            match &found.multiplier {
+                Multiplier::None => {
+                    all.push(("multiplier".into(), question.no_multiplier(&reversible)));
+                }
+                Multiplier::Local(Some(factor)) => {
+                    all.push(("multiplier".into(), question.of("multiplier", |_| Ok(question.density(factor)))));
                 }
                 _ => {}
             }
@@ -88,7 +97,7 @@ impl Question<'_> {
 
     fn no_measure(&self, reversible: &Reversible) -> Result<Value, Open> {
         self.of("no measure", |point| {
-            let flag = Flag::new(reversible, point, SEED, false)?;
+            let flag = Flag::new(reversible, point, SEED, &[])?;
             let size = self.system.dimension() + 1;
             let (places, rows): (Vec<usize>, Vec<Vec<Modular>>) = flag.with_rates.iter().cloned().unzip();
             let minor = if rows.len() == size { inverse(&rows.concat(), size, Modular::one()) } else { None };
@@ -100,6 +109,13 @@ impl Question<'_> {
                 "rows": places,
                 "minor": minor.value(),
             })))
+        })
+    }
+
+    fn no_multiplier(&self, reversible: &Reversible) -> Result<Value, Open> {
+        self.of("no multiplier", |point| {
+            let flag = Flag::new(reversible, point, SEED, &[])?;
+            Ok(fields(json!({ "free": self.velocities(&flag.free) })))
         })
     }
 
@@ -117,7 +133,7 @@ impl Question<'_> {
 
     fn bound(&self, reversible: &Reversible, found: &Found) -> Result<Value, Open> {
         self.of("bound", |point| {
-            let flag = Flag::new(reversible, point, SEED, false)?;
+            let flag = Flag::new(reversible, point, SEED, &[])?;
             let killing = Killing::new(reversible, &flag, point, found.order, SEED)?;
             let kernel = killing.kernel(found.degree, true)?;
             let ring = &killing.ring;

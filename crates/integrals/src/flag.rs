@@ -44,7 +44,7 @@ pub(crate) struct Flag {
 }
 
 impl Flag {
-    /// Of the fields of `ker A`, and with `cyclic` of `∂/∂q` for each coordinate that the system does not
+    /// Of the fields of `ker A`, and of `∂/∂q` for each coordinate of `held`, which the system does not
     /// contain: a density that is free of these does not change along them.
     ///
     /// # Errors
@@ -53,7 +53,7 @@ impl Flag {
         system: &Reversible,
         point: &SeriesStart<Modular>,
         seed: u64,
-        cyclic: bool,
+        held: &[usize],
     ) -> Result<Flag, Open> {
         let n = system.coordinates;
         // every round but the last adds one field at least, and loses one order
@@ -64,8 +64,7 @@ impl Flag {
         let rays = Rays::new(&ring, &mut draws(seed)).ok_or(Open::Accident)?;
         let local = system.at(point, &ring, &rays, &straight(&ring, n, &system.present))?;
         let mut basis = fields_with_rates(&ring, &local);
-        let held = if cyclic { system.cyclic() } else { Vec::new() };
-        for i in held {
+        for &i in held {
             let unit = |j: usize| ring.constant(if i == j { Modular::one() } else { Modular::ZERO });
             let components = (0..n).map(unit).collect();
             basis.push(Field { components, rate: ring.zero(), weight: 1, place: basis.len() });

@@ -6,7 +6,7 @@ use mechanics::System;
 use symbolic::Expr;
 
 use crate::Open;
-use crate::ring::{Rays, Ring, Series};
+use crate::ring::{Rays, Ring, Series, minus};
 
 /// `L = ½ vᵀM(q)v − V(q)`, `A(q)v = 0`, as a program.
 pub(crate) struct Reversible {
@@ -104,10 +104,15 @@ impl Reversible {
         let all: Vec<Series> = (0..h * n + n * n + 1).map(series).collect();
         let mut rows: Vec<Vec<Series>> = all[..h * n].chunks_exact(n).map(<[Series]>::to_vec).collect();
         let mass: Vec<Vec<Series>> = all[h * n..h * n + n * n].chunks_exact(n).map(<[Series]>::to_vec).collect();
+        // dependent are velocities of cyclic coordinates, where they can be
+        let order: Vec<usize> = self.cyclic().into_iter().chain(self.present.iter().copied()).collect();
+        rows.iter_mut().for_each(|row| *row = order.iter().map(|&i| row[i].clone()).collect());
         let pivots = ring.eliminate(&mut rows, n).ok_or(Open::Rank)?;
+        let pivots: Vec<usize> = pivots.into_iter().map(|place| order[place]).collect();
+        let place = |i: usize| order.iter().position(|&o| o == i);
         let column = |free: usize| -> Vec<Series> {
             let entry = |i: usize| match pivots.iter().position(|&pivot| pivot == i) {
-                Some(row) => rows[row][free].iter().map(|&x| -x).collect(),
+                Some(row) => place(free).map_or(ring.zero(), |at| minus(&ring.zero(), &rows[row][at])),
                 None if i == free => ring.constant(Modular::one()),
                 None => ring.zero(),
             };

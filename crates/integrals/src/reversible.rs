@@ -10,6 +10,7 @@ use crate::density::{Density, density};
 use crate::flag::Flag;
 use crate::killing::{Kernel, Killing, rank};
 use crate::local::{Reversible, at_random};
+use crate::multiplier::{Multiplier, multiplier};
 
 /// Seeds of the random points, one per field.
 const SEEDS: [u64; FIELDS.len()] = [0x17e6_0001, 0x17e6_0002, 0x17e6_0003, 0x17e6_0004];
@@ -79,6 +80,8 @@ impl Found {
 pub struct Reversed {
     /// Invariant measures.
     pub measure: Measure,
+    /// Chaplygin's multiplier.
+    pub multiplier: Multiplier,
     /// Integrals, degree by degree from 1 on.
     pub integrals: Vec<Result<Found, Open>>,
 }
@@ -88,25 +91,24 @@ pub struct Reversed {
 /// # Errors
 /// [`Open`].
 fn decide_measure(system: &Reversible, start: &ExactStart) -> Result<Measure, Open> {
-    let n = system.coordinates;
-    // whether there is none, and whether that is proved
-    let none = |cyclic: bool| -> Result<Option<bool>, Open> {
+    // where no density is free of the coordinates `held`: whether that is proved
+    let none = |held: &[usize]| -> Result<Option<bool>, Open> {
         let ranks = |seed| {
             at_random(start, seed, |point| {
-                let flag = Flag::new(system, point, seed, cyclic)?;
+                let flag = Flag::new(system, point, seed, held)?;
                 Ok((flag.fields.len(), flag.with_rates.len()))
             })
         };
-        let proved = |with_rates| with_rates == n + 1;
+        let proved = |with_rates| with_rates == system.coordinates + 1;
         let found = agreed(SEEDS, ranks, |&(_, with_rates)| proved(with_rates)).map_err(Open::or_accident)?;
         Ok((found.1 > found.0).then_some(proved(found.1)))
     };
-    if let Some(proved) = none(false)? {
+    if let Some(proved) = none(&[])? {
         return Ok(Measure::None { proved });
     }
     let (density, places) = (density(system, start)?, system.cyclic());
     // one that is written down is free of them
-    let bound = if density.is_some() || places.is_empty() { None } else { none(true)? };
+    let bound = if density.is_some() || places.is_empty() { None } else { none(&places)? };
     Ok(Measure::Local { density, cyclic: bound.map(|proved| Cyclic { places, proved }) })
 }
 
@@ -130,7 +132,7 @@ fn decide_integrals(system: &Reversible, start: &ExactStart, degree: usize) -> R
             SEEDS,
             |seed| {
                 at_random(start, seed, |point| {
-                    let flag = Flag::new(system, point, seed, false)?;
+                    let flag = Flag::new(system, point, seed, &[])?;
                     let step = flag.fields.iter().map(|y| y.weight).max().unwrap_or(1);
                     count(&Killing::new(system, &flag, point, step + extra, seed)?, degree)
                 })
@@ -159,11 +161,17 @@ pub fn reversible_scene(scene: &Scene, degree: usize) -> Result<Reversed, Decisi
 
 /// Decides measure and integrals up to a degree.
 pub fn reversible(system: &System, start: &ExactStart, degree: usize) -> Reversed {
-    match Reversible::new(system) {
-        Err(open) => Reversed { integrals: vec![Err(open.clone()); degree], measure: Measure::Open(open) },
-        Ok(reversible) => Reversed {
-            measure: decide_measure(&reversible, start).unwrap_or_else(Measure::Open),
-            integrals: (1..=degree).map(|d| decide_integrals(&reversible, start, d)).collect(),
-        },
+    let reversible = match Reversible::new(system) {
+        Ok(reversible) => reversible,
+        Err(open) => {
+            let (measure, multiplier) = (Measure::Open(open.clone()), Multiplier::Open(open.clone()));
+            return Reversed { integrals: vec![Err(open); degree], measure, multiplier };
+        }
+    };
+    let measure = decide_measure(&reversible, start).unwrap_or_else(Measure::Open);
+    Reversed {
+        multiplier: multiplier(&reversible, start, &measure),
+        measure,
+        integrals: (1..=degree).map(|d| decide_integrals(&reversible, start, d)).collect(),
     }
 }

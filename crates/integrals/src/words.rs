@@ -5,7 +5,7 @@ use std::fmt::{self, Display, Formatter};
 use mechanics::System;
 use serde_json::{Value, json};
 
-use crate::{Cyclic, Density, Found, Integrals, Measure, Open, Printed, Reversed};
+use crate::{Cyclic, Density, Found, Integrals, Measure, Multiplier, Open, Printed, Reversed};
 
 /// What integrals of degree `below + 1` are called.
 pub(crate) fn degree(below: usize) -> &'static str {
@@ -21,6 +21,7 @@ impl Display for Integrals {
                 "near almost every place q; a measure is e^sigma(q) dq dp, sigma smooth there, its periods not asked for"
             )?;
             writeln!(f, "{:<14}{}", "measure", measure_words(&self.scene.system, &found.measure))?;
+            writeln!(f, "{:<14}{}", "multiplier", multiplier_words(&self.scene.system, &found.multiplier))?;
             for (i, found) in found.integrals.iter().enumerate() {
                 writeln!(f, "{:<14}{}", degree(i), count_words(found))?;
             }
@@ -86,12 +87,26 @@ fn measure_words(system: &System, measure: &Measure) -> String {
     }
 }
 
+fn multiplier_words(system: &System, multiplier: &Multiplier) -> String {
+    match multiplier {
+        Multiplier::NotAsked => "not asked: the velocities that f = 0 gives are not those of symmetries".into(),
+        Multiplier::None => "none: proved".into(),
+        Multiplier::Local(Some(factor)) => format!(
+            "f = {}, verified: with dtau = f dt the motion over ({}) is Hamilton's",
+            factor_words(system, factor),
+            names(system, &factor.free).join(", ")
+        ),
+        Multiplier::Local(None) => "one, locally, not printed in this ansatz".into(),
+        Multiplier::Open(open) => format!("open ({open})"),
+    }
+}
+
 fn names(system: &System, places: &[usize]) -> Vec<String> {
     places.iter().map(|&i| system.coordinates[i].name.clone()).collect()
 }
 
-/// The density in the names of the scene.
-fn density_words(system: &System, density: &Density) -> String {
+/// The product in the names of the scene.
+fn factor_words(system: &System, density: &Density) -> String {
     let power = |base: String, exponent: String| match &exponent[..] {
         "0" => None,
         "1" => Some(base),
@@ -103,9 +118,13 @@ fn density_words(system: &System, density: &Density) -> String {
             factors.extend(power(format!("|{function}({})|", system.coordinates[*i].name), exponent.to_string()));
         }
     }
+    if factors.is_empty() { "1".into() } else { factors.join(" ") }
+}
+
+fn density_words(system: &System, density: &Density) -> String {
     let free: Vec<String> = density.free.iter().map(|&i| format!("{}'", system.coordinates[i].name)).collect();
-    let volume = "dq ds";
-    let product = if factors.is_empty() { volume.into() } else { format!("{} {volume}", factors.join(" ")) };
+    let factor = factor_words(system, density);
+    let product = if factor == "1" { "dq ds".into() } else { format!("{factor} dq ds") };
     format!("{product}, s = ({}), T = g_ab s^a s^b/2 on the constraints", free.join(", "))
 }
 
@@ -135,8 +154,8 @@ fn beside(found: &Found) -> String {
 }
 
 impl Reversed {
-    /// A word on measures, one per degree on integrals (`none`, their number, `<=` a bound of it, `open`),
-    /// and why anything is open.
+    /// A word on measures, one on multipliers, one per degree on integrals (`none`, their number, `<=` a bound
+    /// of it, `open`), and why anything is open.
     pub fn cells(&self) -> (Vec<String>, String) {
         let mut why = Vec::new();
         let mut open = |open: &Open| {
@@ -149,6 +168,12 @@ impl Reversed {
             Measure::Local { .. } => "some".into(),
             Measure::Open(reason) => open(reason),
         }];
+        cells.push(match &self.multiplier {
+            Multiplier::NotAsked => "-".into(),
+            Multiplier::None => "none".into(),
+            Multiplier::Local(_) => "some".into(),
+            Multiplier::Open(reason) => open(reason),
+        });
         cells.extend(self.integrals.iter().map(|found| match found {
             Ok(found) if found.none_proved() => "none".into(),
             Ok(found) if found.settled => found.further().to_string(),
@@ -176,6 +201,16 @@ impl Integrals {
                 value
             }
             Measure::Open(open) => json!({ "answer": "open", "reason": open.to_string() }),
+        });
+        let multiplier = self.reversed.as_ref().map(|found| match &found.multiplier {
+            Multiplier::NotAsked => json!({ "answer": "not asked" }),
+            Multiplier::None => json!({ "answer": "none" }),
+            Multiplier::Local(factor) => {
+                let factor = factor.as_ref().map(|factor| (factor_words(system, factor), names(system, &factor.free)));
+                let (factor, over) = factor.unzip();
+                json!({ "answer": "local", "factor": factor, "over": over })
+            }
+            Multiplier::Open(open) => json!({ "answer": "open", "reason": open.to_string() }),
         });
         let count = |(i, found): (usize, &Result<Found, Open>)| match found {
             Err(open) => json!({ "degree": i + 1, "answer": "open", "reason": open.to_string() }),
@@ -221,6 +256,7 @@ impl Integrals {
             "scene": self.scene.name,
             "formulation": self.formulation,
             "measure": measure,
+            "multiplier": multiplier,
             "polynomials": counts,
             "ansatz": ansatz,
             "invariants": invariants,

@@ -3,4 +3,6 @@
 mod backwards;
 mod in_an_ansatz;
 mod known;
+mod multiplier;
+mod other_units;
 mod questions;

@@ -1,7 +1,7 @@
 //! Certificates that no constants make the vakonomic motion Chetaev's; measures and integrals.
 
 use deltaq::{certificate, holds_beside_numbers};
-use integrals::{Integrals, NoAnswer};
+use integrals::{Integrals, NoAnswer, Open};
 use integrate::Interrupt;
 use pyo3::prelude::*;
 use scene::Number;
@@ -35,7 +35,7 @@ impl System {
         let (scene, choice) = arguments::choice(py, &interrupt, self.scene().clone(), (own, None), None)?;
         let work = move || Integrals::find(&scene, &choice, degree.into(), &names);
         let found = background::run(py, &interrupt, work)?.map_err(|fault| match fault {
-            NoAnswer::Name(_) => errors::unknown(fault.to_string()),
+            NoAnswer::Open(Open::Name { .. }) => errors::unknown(fault.to_string()),
             NoAnswer::Equations(fault) => errors::solve(fault),
             other => errors::DeltaqError::new_err(other.to_string()),
         })?;

@@ -106,6 +106,33 @@ def test_the_sleigh_over_its_blade_has_a_measure(images, tmp_path):
     assert verdict(tmp_path, measure(images, over, psi=["0", "0"])) == (FORGED, "forged: an angle that is no coordinate\n")
 
 
+def multiplier(images, scene, metric, free=FREE, **angles):
+    return certificate(images, "multiplier", scene, free=free, density={"metric": metric, "angles": angles})
+
+
+def no_multiplier(images, scene, free=FREE):
+    return certificate(images, "no multiplier", scene, free=free)
+
+
+def test_the_sleigh_over_its_blade_has_a_multiplier(images, tmp_path):
+    over = sleigh(a="0")
+    for scene in over, sleigh(a="0", potential=f"{FREE[0][0]}^3 + cos(phi)"):
+        for metric, angles in (("-1/2", {}), ("0", {"phi": ["0", "1"]})):
+            code, said = verdict(tmp_path, multiplier(images, scene, metric, **angles))
+            assert code == VERIFIED and said.startswith("verified: with dtau = f dt, f = |") and "is Hamilton's" in said
+        for metric, sine, cosine in (("1/2", "0", "0"), ("-1", "0", "0"), ("0", "0", "0"), ("0", "0", "-1"), ("0", "1", "0"), ("-1/2", "0", "1")):
+            assert verdict(tmp_path, multiplier(images, scene, metric, phi=[sine, cosine])) == (FORGED, "forged: the motion is not Hamilton's\n")
+        assert verdict(tmp_path, no_multiplier(images, scene)) == (FORGED, "forged: the slopes solve their equations\n")
+    code, said = verdict(tmp_path, no_multiplier(images, sleigh()))
+    assert code == VERIFIED and said.startswith("verified: near almost every point there is no f(r)")
+    for metric in ("-1/2", "0", "1"):
+        assert verdict(tmp_path, multiplier(images, sleigh(), metric))[0] == FORGED
+    # with a potential of x and y it is no motion over one of these
+    reason = "cannot read: what is solved for are no velocities of symmetries\n"
+    assert verdict(tmp_path, no_multiplier(images, sleigh(potential="x*y"))) == (UNREADABLE, reason)
+    assert verdict(tmp_path, multiplier(images, over, "0", x=["0", "0"], y=["0", "0"])) == (FORGED, "forged: an angle that the motion is not over\n")
+
+
 def test_integrals_are_counted(images, tmp_path):
     # over the blade: phi', u, phi' x - u sin, phi' y + u cos, phi' (x^2 + y^2)/2 - u (x sin - y cos); and 15 of degree 2
     for scene, degree, order, number in ((sleigh(a="0"), 1, 3, 5), (sleigh(a="0"), 2, 6, 15), (sleigh(), 1, 6, 2), (sleigh(), 2, 10, 4)):
@@ -309,11 +336,12 @@ REAL = [
     ("classics/martinet", []), ("classics/mobile-robot", []),
     ("classics/veselova", []),
     ("classics/nonholonomic-oscillator", []), ("classics/unicycle-in-potential", []), ("classics/rubber-ball", []), ("classics/snakeboard", []),
+    ("scenes/sleigh", ["a=0"]), ("classics/suslov", ["K=0"]), ("scenes/sledge", ["g=1"]),
 ]
 
 
 def test_certificates_of_the_program(tmp_path):
-    kinds = {"no measure": 0, "measure": 0, "bound": 0, "integral": 0}
+    kinds = {"no measure": 0, "measure": 0, "multiplier": 0, "no multiplier": 0, "bound": 0, "integral": 0}
     for place, (name, sets) in enumerate(REAL):
         scene, folder = CATALOGUE / f"{name}.toml", tmp_path / str(place)
         words = [PROGRAM, "integrals", scene, "--certificates", folder, "--quiet", *(word for text in sets for word in ("--set", text))]
@@ -324,9 +352,11 @@ def test_certificates_of_the_program(tmp_path):
             assert code == VERIFIED, (name, sets, file.name, said)
             kinds[true["kind"]] += 1
             first = true["scene"]["coordinates"][0]
+            with_angle = lambda true=true, first=first: {"density": true["density"] | {"angles": true["density"]["angles"] | {first: ["1", "0"]}}}
+            trivial = {"metric": "0", "angles": {}}
             forged = {
                 "no measure": lambda true=true: {"minor": true["minor"] - 1}, "bound": lambda true=true: {"bound": true["bound"] + 1},
-                "measure": lambda true=true, first=first: {"density": true["density"] | {"angles": true["density"]["angles"] | {first: ["1", "0"]}}},
+                "measure": with_angle, "multiplier": with_angle, "no multiplier": lambda: {"kind": "multiplier", "density": trivial},
                 "integral": lambda true=true, first=first: {"integral": f"{true['integral']} + {first}"},
             }[true["kind"]]()
             code, said = verdict(tmp_path, true | forged, scene)
@@ -344,7 +374,7 @@ def harmless(true, path, other):
         return "a parameter that stands nowhere"
     if path[:2] in (("scene", "time"), ("scene", "positions")):
         here = scene["positions"]["phi"] == true["scene"]["positions"]["phi"]
-        if kind in ("measure", "integral"):
+        if kind in ("measure", "integral", "multiplier", "no multiplier"):
             return "the verifier draws points"
         return "x, y and t stand nowhere" if path[1] == "time" or kind == "no measure" and here else None
     if path[:2] in (("scene", "lagrangian"), ("scene", "constraints")):
@@ -359,18 +389,21 @@ def harmless(true, path, other):
         before, after = ({x: {tuple(e): y for e, y in terms} for x, terms in fields["chart"].items()} for fields in (true, other))
         same = all(before[x].get((0, 0, 0), 0) == after[x].get((0, 0, 0), 0) for x in before)
         return "another scale" if same and all(after[x].get(tuple(int(x == y) for y in before)) for x in before) else None
+    if path[0] == "free" and kind == "no multiplier":
+        return "over other coordinates there is none, either"
     if path[0] == "free" and sorted(other["free"]) == sorted(true["free"]):
         return "the same fields in another order"
     return None
 
 
-@pytest.mark.parametrize("kind", ["no measure", "measure", "bound", "integral"])
+@pytest.mark.parametrize("kind", ["no measure", "measure", "multiplier", "no multiplier", "bound", "integral"])
 def test_what_is_changed_is_forged_or_cannot_be_read(images, tmp_path, kind):
     # each single change, held against the file
     over, off = sleigh(a="0", potential="x^2*y"), sleigh(potential="x^2*y + sin(phi)")
     true = {
         "no measure": lambda: no_measure(images), "measure": lambda: measure(images, over, "1/4", phi=["0", "-1/2"]),
         "bound": lambda: bound(images, sleigh(), 1, 6, 2), "integral": lambda: integral(images, off, f"{SLEIGH} + x^2*y + sin(phi)"),
+        "multiplier": lambda: multiplier(images, sleigh(a="0"), "-1/4", phi=["0", "1/2"]), "no multiplier": lambda: no_multiplier(images, sleigh()),
     }[kind]()
     found = [(path, other) for path, other in changes(true) if path]
     counts = [0, 0, 0]
