@@ -8,7 +8,7 @@ use std::time::Instant;
 use anyhow::{Context, Result};
 use deltaq::{CHETAEV, Choice, VAKONOMIC, default_constants};
 use equations::Formulation;
-use integrals::{Found, Integrals, Measure, Multiplier, Open, Reversed, reversible_scene};
+use integrals::{Found, Integrals, Measure, Multiplier, Open, Reduction, Reversed, reversible_scene};
 use pages::Table;
 use pages::markdown::inert;
 use picture::{Axis, HeatMap};
@@ -83,11 +83,13 @@ impl Entry {
         };
         let linear = found.integrals.first().and_then(|found| found.as_ref().ok()).filter(|found| settled(found));
         let counts = self.linear.zip(linear).is_none_or(|(known, found)| known == found.count);
-        let multipliers = match (&self.multiplier, &found.multiplier) {
+        let multipliers = match (&self.multiplier, &found.reductions) {
             (None, _) => true,
-            (Some(known), Multiplier::Local(_)) => known == "some",
-            (Some(known), Multiplier::None) => known == "none",
-            _ => false,
+            (Some(known), Ok(found)) => {
+                let has_one = |found: &Reduction| found.multiplier != Multiplier::None;
+                !found.is_empty() && found.iter().any(has_one) == (known == "some")
+            }
+            (Some(_), Err(_)) => false,
         };
         let agrees = match (measure, &self.measure[..]) {
             ("open", _) => None,
@@ -306,8 +308,8 @@ fn catalogue_table(answers: &[(Integrals, Integrals)]) -> String {
         table.row(&[&chetaev.scene.name, &measure, multiplier, linear, quadratic, &printed, &of_vakonomic]);
     }
     format!(
-        "*Multiplier*: whether dτ = f dt makes the reduced motion Hamilton's (Chaplygin); a dash: the velocities that the constraints \
-         give are not those of symmetries. *Linear*, *quadratic*: integrals of Chetaev's motion, those left out that the energy, constants and products make; of scenes \
+        "*Multiplier*: whether dτ = f dt makes the motion over some of the coordinates Hamilton's (Chaplygin); a dash: none of these \
+         have a motion of their own. *Linear*, *quadratic*: integrals of Chetaev's motion, those left out that the energy, constants and products make; of scenes \
          with more than {QUADRATIC} coordinates the quadratic ones are not asked for. *Printed*: of how many functions, monomials in \
          velocities times monomials in coordinates or their sines and cosines, combinations are constant, products left out; \
          *vakonomic*: the same in (q, v, μ).\n\n{table}"

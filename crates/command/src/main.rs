@@ -31,10 +31,6 @@ use clap::CommandFactory;
 use cli::{Cli, Command};
 use program::Answer;
 
-// derivations allocate much: an eighth of the time of a thousand random systems
-#[global_allocator]
-static ALLOCATOR: mimalloc::MiMalloc = mimalloc::MiMalloc;
-
 fn main() -> ExitCode {
     program::parse::<Cli>().map_or_else(|code| code, |cli| program::finish(run(cli)))
 }

@@ -47,14 +47,16 @@ impl Integrals {
                 }
                 _ => {}
             }
-            match &found.multiplier {
-                Multiplier::None => {
-                    all.push(("multiplier".into(), question.no_multiplier(&reversible)));
-                }
-                Multiplier::Local(Some(factor)) => {
-                    all.push(("multiplier".into(), question.of("multiplier", |_| Ok(question.density(factor)))));
-                }
-                _ => {}
+            for (i, reduction) in found.reductions.iter().flatten().enumerate() {
+                let certificate = match &reduction.multiplier {
+                    Multiplier::None => {
+                        let free = question.velocities(&reduction.over);
+                        question.of("no multiplier", |_| Ok(Map::from_iter([("free".into(), free.clone())])))
+                    }
+                    Multiplier::Local(Some(factor)) => question.of("multiplier", |_| Ok(question.density(factor))),
+                    Multiplier::Local(None) => continue,
+                };
+                all.push((format!("multiplier-{}", i + 1), certificate));
             }
             for found in found.integrals.iter().flatten().filter(|found| found.none_proved() || found.settled) {
                 all.push((words::degree(found.degree - 1).into(), question.bound(&reversible, found)));
@@ -109,13 +111,6 @@ impl Question<'_> {
                 "rows": places,
                 "minor": minor.value(),
             })))
-        })
-    }
-
-    fn no_multiplier(&self, reversible: &Reversible) -> Result<Value, Open> {
-        self.of("no multiplier", |point| {
-            let flag = Flag::new(reversible, point, SEED, &[])?;
-            Ok(fields(json!({ "free": self.velocities(&flag.free) })))
         })
     }
 

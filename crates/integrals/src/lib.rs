@@ -56,6 +56,6 @@ pub use ansatz::{Ansatz, Printed, ansatz, constants};
 pub use answer::{Integrals, NoAnswer, watched};
 pub use certificate::Certificate;
 pub use density::Density;
-pub use multiplier::Multiplier;
+pub use multiplier::{Multiplier, Reduction};
 pub use open::Open;
 pub use reversible::{Cyclic, Found, Measure, Reversed, reversible, reversible_scene};

@@ -9,6 +9,7 @@ use crate::Open;
 use crate::ring::{Rays, Ring, Series, minus};
 
 /// `L = ½ vᵀM(q)v − V(q)`, `A(q)v = 0`, as a program.
+#[derive(Clone)]
 pub(crate) struct Reversible {
     /// From parameters and `q`: `A` (h×n), `M` (n×n), `V`.
     program: Program,
@@ -16,6 +17,8 @@ pub(crate) struct Reversible {
     pub(crate) constraints: usize,
     /// Places of the coordinates that any of these contains.
     pub(crate) present: Vec<usize>,
+    /// Places of coordinates, those first whose velocities `A(q)v = 0` is solved for where it can be.
+    pub(crate) order: Vec<usize>,
 }
 
 /// Series at a point: of `M`, `V` and a basis of `ker A`.
@@ -64,7 +67,15 @@ impl Reversible {
         let present = (0..positions.len()).filter(present).collect();
         inputs.extend(&positions);
         let program = Program::new(g, &inputs, &outputs).map_err(|fault| Open::Other(fault.to_string()))?;
-        Ok(Reversible { program, coordinates: positions.len(), constraints: system.constraints.len(), present })
+        let order = (0..positions.len()).collect();
+        Ok(Reversible { program, coordinates: positions.len(), constraints: system.constraints.len(), present, order })
+    }
+
+    /// The same, solved for the velocities of these coordinates first.
+    pub(crate) fn solved_for(mut self, dependent: &[usize]) -> Self {
+        let rest = (0..self.coordinates).filter(|i| !dependent.contains(i));
+        self.order = dependent.iter().copied().chain(rest).collect();
+        self
     }
 
     /// Places of the coordinates that none of these contains.
@@ -104,8 +115,7 @@ impl Reversible {
         let all: Vec<Series> = (0..h * n + n * n + 1).map(series).collect();
         let mut rows: Vec<Vec<Series>> = all[..h * n].chunks_exact(n).map(<[Series]>::to_vec).collect();
         let mass: Vec<Vec<Series>> = all[h * n..h * n + n * n].chunks_exact(n).map(<[Series]>::to_vec).collect();
-        // dependent are velocities of cyclic coordinates, where they can be
-        let order: Vec<usize> = self.cyclic().into_iter().chain(self.present.iter().copied()).collect();
+        let order = &self.order;
         rows.iter_mut().for_each(|row| *row = order.iter().map(|&i| row[i].clone()).collect());
         let pivots = ring.eliminate(&mut rows, n).ok_or(Open::Rank)?;
         let pivots: Vec<usize> = pivots.into_iter().map(|place| order[place]).collect();

@@ -25,6 +25,7 @@ use decision::exact::{Exact, FIELDS, Modular, agreed};
 use decision::{ExactStart, SeriesStart};
 use symbolic::Fraction;
 
+use crate::density::density;
 use crate::flag::MOST;
 use crate::local::{Local, Reversible, at_random, draws, row_times, straight};
 use crate::ring::{Rays, Ring, Series, count, minus};
@@ -35,39 +36,64 @@ const SEEDS: [u64; FIELDS.len()] = [0x17e6_0011, 0x17e6_0012, 0x17e6_0013, 0x17e
 /// Of the series: two derivatives of `g`, one of `c`.
 const ORDER: usize = 2;
 
-/// Whether a change of time makes Chetaev's motion over `r` Hamilton's, near almost every point.
+/// Choices of `r` that are looked at.
+const CHOICES: usize = 100;
+
+/// A motion over some of the coordinates, which is Chetaev's for whatever values of the others.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Reduction {
+    /// Places of `r`.
+    pub over: Vec<usize>,
+    /// Whether a change of time makes it Hamilton's, near almost every point.
+    pub multiplier: Multiplier,
+}
+
+/// What a [`Reduction`] has.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Multiplier {
-    /// The system is not Chaplygin's with the velocities that the constraints are solved for.
-    NotAsked,
-    /// None does: proved, as a number that would be zero is not modulo a prime.
+    /// None: proved, as a number that would be zero is not modulo a prime.
     None,
-    /// One does, by numbers at random points of two fields: it, if it can be written down.
+    /// One, by numbers at random points of two fields: it, if it can be written down.
     Local(Option<Density>),
-    /// It is not known, for this reason.
-    Open(Open),
 }
 
-/// What is known at one point.
-#[derive(PartialEq)]
-struct Seen {
-    is_chaplygin: bool,
-    /// Whether the `φ_a` solve (H) and are the derivatives of a function.
-    is_hamiltonian: bool,
-}
+/// What is known at one point: whether the system is Chaplygin's over `r`, and whether the `φ_a` solve (H) and
+/// are the derivatives of a function.
+type Seen = (bool, bool);
 
-/// The answer; `measure` may have the density that the multiplier is made of.
-pub(crate) fn multiplier(system: &Reversible, start: &ExactStart, measure: &Measure) -> Multiplier {
-    let at = |seed| at_random(start, seed, |point| seen(system, point, seed));
-    match agreed(SEEDS, at, |seen| !seen.is_chaplygin) {
-        Err(open) => Multiplier::Open(Open::or_accident(open)),
-        Ok(Seen { is_chaplygin: false, .. }) => Multiplier::NotAsked,
-        Ok(Seen { is_hamiltonian: false, .. }) => Multiplier::None,
-        Ok(_) => Multiplier::Local(match measure {
-            Measure::Local { density: Some(density), .. } => root(density),
-            _ => None,
-        }),
+/// All choices of `r` for which the system is Chaplygin's; multipliers are made of the measure's density.
+///
+/// # Errors
+/// [`Open`].
+pub(crate) fn reductions(system: &Reversible, start: &ExactStart, measure: &Measure) -> Result<Vec<Reduction>, Open> {
+    let n = system.coordinates;
+    let mut choices: Vec<Vec<usize>> = vec![Vec::new()];
+    for _ in 0..system.constraints {
+        let longer = |chosen: &Vec<usize>| {
+            (chosen.last().map_or(0, |last| last + 1)..n).map(|i| [&chosen[..], &[i]].concat()).collect::<Vec<_>>()
+        };
+        choices = choices.iter().flat_map(longer).collect();
     }
+    if choices.len() > CHOICES {
+        return Err(Open::Choices { found: choices.len(), most: CHOICES });
+    }
+    let mut found = Vec::new();
+    for dependent in choices.iter().filter(|_| system.constraints > 0) {
+        let solved = system.clone().solved_for(dependent);
+        let at = |seed| at_random(start, seed, |point| seen(&solved, point, seed, dependent));
+        let (is_chaplygin, is_hamiltonian) = agreed(SEEDS, at, |(is, _)| !is).map_err(Open::or_accident)?;
+        if is_chaplygin {
+            let multiplier = match measure {
+                _ if !is_hamiltonian => Multiplier::None,
+                Measure::Local { density: Some(_), .. } => {
+                    Multiplier::Local(density(&solved, start)?.and_then(|density| root(&density)))
+                }
+                _ => Multiplier::Local(None),
+            };
+            found.push(Reduction { over: (0..n).filter(|i| !dependent.contains(i)).collect(), multiplier });
+        }
+    }
+    Ok(found)
 }
 
 /// `f` from the density of `dr dṙ`: `dr dp = det g dr dṙ`. One degree of freedom needs no multiplier.
@@ -81,13 +107,16 @@ fn root(density: &Density) -> Option<Density> {
     over_r.then(|| Density { of_metric, of_angles, free: density.free.clone() })
 }
 
-fn seen(system: &Reversible, point: &SeriesStart<Modular>, seed: u64) -> Result<Seen, Open> {
+fn seen(system: &Reversible, point: &SeriesStart<Modular>, seed: u64, dependent: &[usize]) -> Result<Seen, Open> {
     let n = system.coordinates;
     let weights = vec![1; system.present.len()];
     count(&weights, ORDER, MOST).ok_or(Open::Size { order: ORDER, most: MOST })?;
     let ring = Ring::new(&weights, system.present.clone(), ORDER);
     let rays = Rays::new(&ring, &mut draws(seed)).ok_or(Open::Accident)?;
     let local = system.at(point, &ring, &rays, &straight(&ring, n, &system.present))?;
+    if local.free.iter().any(|i| dependent.contains(i)) {
+        return Ok((false, false));
+    }
     let m = local.free.len();
     let momenta: Vec<Vec<Series>> = local.basis.iter().map(|x| row_times(&ring, &local.mass, x)).collect();
     let c: Vec<Series> = (0..m * m * m)
@@ -98,10 +127,10 @@ fn seen(system: &Reversible, point: &SeriesStart<Modular>, seed: u64) -> Result<
         .collect();
     let contained = |(place, z): (usize, &usize)| {
         let all = c.iter().chain(local.metric.iter().flatten()).chain([&local.potential]);
-        !local.free.contains(z) && all.into_iter().any(|x| !ring.derivative(x, place)[0].is_zero())
+        dependent.contains(z) && all.into_iter().any(|x| !ring.derivative(x, place)[0].is_zero())
     };
-    let is_chaplygin = m < n && !system.present.iter().enumerate().any(contained);
-    Ok(Seen { is_chaplygin, is_hamiltonian: is_hamiltonian(&ring, &local, &c) })
+    let is_chaplygin = !system.present.iter().enumerate().any(contained);
+    Ok((is_chaplygin, is_chaplygin && is_hamiltonian(&ring, &local, &c)))
 }
 
 fn is_hamiltonian(ring: &Ring, local: &Local, c: &[Series]) -> bool {

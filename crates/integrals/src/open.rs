@@ -37,6 +37,14 @@ pub enum Open {
         /// Most that are taken.
         most: usize,
     },
+    /// There are many ways to solve the constraints.
+    #[error("the constraints can be solved for {found} sets of velocities; at most {most} are tried")]
+    Choices {
+        /// Sets of as many coordinates as there are constraints.
+        found: usize,
+        /// Most that are tried.
+        most: usize,
+    },
     /// Brackets of the constraints' kernel do not span all directions.
     #[error("the constraints are integrable in part: brackets span {rank} of {dimension} directions")]
     Integrable {

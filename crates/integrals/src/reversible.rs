@@ -10,7 +10,7 @@ use crate::density::{Density, density};
 use crate::flag::Flag;
 use crate::killing::{Kernel, Killing, rank};
 use crate::local::{Reversible, at_random};
-use crate::multiplier::{Multiplier, multiplier};
+use crate::multiplier::{Reduction, reductions};
 
 /// Seeds of the random points, one per field.
 const SEEDS: [u64; FIELDS.len()] = [0x17e6_0001, 0x17e6_0002, 0x17e6_0003, 0x17e6_0004];
@@ -80,8 +80,8 @@ impl Found {
 pub struct Reversed {
     /// Invariant measures.
     pub measure: Measure,
-    /// Chaplygin's multiplier.
-    pub multiplier: Multiplier,
+    /// Chaplygin's reduced motions, with their multipliers.
+    pub reductions: Result<Vec<Reduction>, Open>,
     /// Integrals, degree by degree from 1 on.
     pub integrals: Vec<Result<Found, Open>>,
 }
@@ -164,13 +164,13 @@ pub fn reversible(system: &System, start: &ExactStart, degree: usize) -> Reverse
     let reversible = match Reversible::new(system) {
         Ok(reversible) => reversible,
         Err(open) => {
-            let (measure, multiplier) = (Measure::Open(open.clone()), Multiplier::Open(open.clone()));
-            return Reversed { integrals: vec![Err(open); degree], measure, multiplier };
+            let (measure, reductions) = (Measure::Open(open.clone()), Err(open.clone()));
+            return Reversed { integrals: vec![Err(open); degree], measure, reductions };
         }
     };
     let measure = decide_measure(&reversible, start).unwrap_or_else(Measure::Open);
     Reversed {
-        multiplier: multiplier(&reversible, start, &measure),
+        reductions: reductions(&reversible, start, &measure),
         measure,
         integrals: (1..=degree).map(|d| decide_integrals(&reversible, start, d)).collect(),
     }

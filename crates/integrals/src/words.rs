@@ -5,7 +5,7 @@ use std::fmt::{self, Display, Formatter};
 use mechanics::System;
 use serde_json::{Value, json};
 
-use crate::{Cyclic, Density, Found, Integrals, Measure, Multiplier, Open, Printed, Reversed};
+use crate::{Cyclic, Density, Found, Integrals, Measure, Multiplier, Open, Printed, Reduction, Reversed};
 
 /// What integrals of degree `below + 1` are called.
 pub(crate) fn degree(below: usize) -> &'static str {
@@ -21,7 +21,9 @@ impl Display for Integrals {
                 "near almost every place q; a measure is e^sigma(q) dq dp, sigma smooth there, its periods not asked for"
             )?;
             writeln!(f, "{:<14}{}", "measure", measure_words(&self.scene.system, &found.measure))?;
-            writeln!(f, "{:<14}{}", "multiplier", multiplier_words(&self.scene.system, &found.multiplier))?;
+            for line in multiplier_lines(&self.scene.system, &found.reductions) {
+                writeln!(f, "{:<14}{line}", "multiplier")?;
+            }
             for (i, found) in found.integrals.iter().enumerate() {
                 writeln!(f, "{:<14}{}", degree(i), count_words(found))?;
             }
@@ -87,18 +89,32 @@ fn measure_words(system: &System, measure: &Measure) -> String {
     }
 }
 
-fn multiplier_words(system: &System, multiplier: &Multiplier) -> String {
-    match multiplier {
-        Multiplier::NotAsked => "not asked: the velocities that f = 0 gives are not those of symmetries".into(),
-        Multiplier::None => "none: proved".into(),
-        Multiplier::Local(Some(factor)) => format!(
-            "f = {}, verified: with dtau = f dt the motion over ({}) is Hamilton's",
-            factor_words(system, factor),
-            names(system, &factor.free).join(", ")
-        ),
-        Multiplier::Local(None) => "one, locally, not printed in this ansatz".into(),
-        Multiplier::Open(open) => format!("open ({open})"),
+/// A line for each multiplier, and one for the motions that have none.
+fn multiplier_lines(system: &System, reductions: &Result<Vec<Reduction>, Open>) -> Vec<String> {
+    let over = |found: &Reduction| format!("({})", names(system, &found.over).join(", "));
+    let found = match reductions {
+        Err(open) => return vec![format!("open ({open})")],
+        Ok(found) if found.is_empty() => return vec!["not asked: no coordinates have a motion of their own".into()],
+        Ok(found) => found,
+    };
+    let mut lines: Vec<String> = Vec::new();
+    for found in found {
+        if let Multiplier::Local(factor) = &found.multiplier {
+            lines.push(match factor {
+                Some(factor) => format!(
+                    "f = {}, verified: with dtau = f dt the motion over {} is Hamilton's, T = g_ab r_a' r_b'/2 there",
+                    factor_words(system, factor),
+                    over(found)
+                ),
+                None => format!("one over {}, locally, not printed in this ansatz", over(found)),
+            });
+        }
     }
+    let none: Vec<String> = found.iter().filter(|found| found.multiplier == Multiplier::None).map(over).collect();
+    if !none.is_empty() {
+        lines.push(format!("none over {}: proved", none.join(" or ")));
+    }
+    lines
 }
 
 fn names(system: &System, places: &[usize]) -> Vec<String> {
@@ -168,11 +184,11 @@ impl Reversed {
             Measure::Local { .. } => "some".into(),
             Measure::Open(reason) => open(reason),
         }];
-        cells.push(match &self.multiplier {
-            Multiplier::NotAsked => "-".into(),
-            Multiplier::None => "none".into(),
-            Multiplier::Local(_) => "some".into(),
-            Multiplier::Open(reason) => open(reason),
+        cells.push(match &self.reductions {
+            Err(reason) => open(reason),
+            Ok(found) if found.is_empty() => "-".into(),
+            Ok(found) if found.iter().all(|found| found.multiplier == Multiplier::None) => "none".into(),
+            Ok(_) => "some".into(),
         });
         cells.extend(self.integrals.iter().map(|found| match found {
             Ok(found) if found.none_proved() => "none".into(),
@@ -202,15 +218,19 @@ impl Integrals {
             }
             Measure::Open(open) => json!({ "answer": "open", "reason": open.to_string() }),
         });
-        let multiplier = self.reversed.as_ref().map(|found| match &found.multiplier {
-            Multiplier::NotAsked => json!({ "answer": "not asked" }),
-            Multiplier::None => json!({ "answer": "none" }),
-            Multiplier::Local(factor) => {
-                let factor = factor.as_ref().map(|factor| (factor_words(system, factor), names(system, &factor.free)));
-                let (factor, over) = factor.unzip();
-                json!({ "answer": "local", "factor": factor, "over": over })
-            }
-            Multiplier::Open(open) => json!({ "answer": "open", "reason": open.to_string() }),
+        let multipliers = self.reversed.as_ref().map(|found| match &found.reductions {
+            Err(open) => json!({ "reason": open.to_string() }),
+            Ok(found) => found
+                .iter()
+                .map(|found| {
+                    let mut value = json!({ "over": names(system, &found.over), "answer": "none" });
+                    if let Multiplier::Local(factor) = &found.multiplier {
+                        value["answer"] = "local".into();
+                        value["factor"] = json!(factor.as_ref().map(|factor| factor_words(system, factor)));
+                    }
+                    value
+                })
+                .collect(),
         });
         let count = |(i, found): (usize, &Result<Found, Open>)| match found {
             Err(open) => json!({ "degree": i + 1, "answer": "open", "reason": open.to_string() }),
@@ -256,7 +276,7 @@ impl Integrals {
             "scene": self.scene.name,
             "formulation": self.formulation,
             "measure": measure,
-            "multiplier": multiplier,
+            "multipliers": multipliers,
             "polynomials": counts,
             "ansatz": ansatz,
             "invariants": invariants,

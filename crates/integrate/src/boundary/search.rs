@@ -3,8 +3,8 @@
 use std::cell::RefCell;
 
 use levenberg_marquardt::LeastSquaresProblem;
-use nalgebra_0_34::storage::Owned;
-use nalgebra_0_34::{DMatrix, DVector, Dyn};
+use nalgebra::storage::Owned;
+use nalgebra::{DMatrix, DVector, Dyn};
 
 use super::{BoundaryError, Residuals, SINGULAR, ShootOptions, Shot};
 
