@@ -80,6 +80,8 @@ const STATES = [
   ["tour, a question", { scene: "velocity-pendulum", tab: "tour", step: 1, guess: -1 }],
   ["tour, an answer", { scene: "sledge", tab: "tour", step: 3, guess: 1, set: { mu0_1: 2, duration: 5 }, time: 1 }],
   ["forces", { scene: "sledge", forces: true, time: 1 }],
+  ["the start in the hand", { scene: "sledge", grips: true }],
+  ["curves cut, a camera that goes with a body, differences", { scene: "sledge", curve: "coordinate:x", follow: "Chetaev", by: 10, time: 1 }],
   ["no motion", { scene: "sledge", set: { k: 0 }, tab: "verdict" }],
   ["a faulty text", { scene: "own", text: "title = 3\n", tab: "text" }],
   ["a link that cannot be read", { scene: "nowhere" }],

@@ -15,7 +15,7 @@ const LEAST = 1e-6;
 const plus = (a, b, by = 1) => a.map((x, i) => x + by * b[i]);
 
 // A line with a head at its end, or at both.
-function arrow({ context, ratio }, from, to, { colour, width = 2, both = false }) {
+export function arrow({ context, ratio }, from, to, { colour, width = 2, both = false }) {
   const [dx, dy] = [to[0] - from[0], to[1] - from[1]];
   const length = Math.hypot(dx, dy);
   if (!(length > 3 * ratio)) return;
@@ -53,11 +53,12 @@ export function sizes(motion) {
   return largest;
 }
 
-// The arrows of one motion at a time.
-export function forces(pen, motion, t, largest, side) {
+// The arrows of one motion at a time, which go with the place where it is drawn.
+export function forces(pen, motion, t, largest, side, mark) {
   const { view, ratio } = pen;
   const { velocity, directions, contacts } = motion.arrows(motion.locate(t)[0]);
-  const mark = motion.trackAt(t);
+  const at = motion.trackAt(t);
+  const shifted = (place) => place.map((x, i) => x + mark[i] - at[i]);
   const { colour } = motion.look;
   const pointed = (kind, place, vector, width) => {
     const part = Math.hypot(...vector) / largest[kind];
@@ -70,7 +71,7 @@ export function forces(pen, motion, t, largest, side) {
   };
   rails(pen, mark, directions, (DISPLACEMENT * side) / view.scale);
   pointed("velocity", mark, velocity, 1.4);
-  for (const { place, force } of contacts) pointed("force", place, force, 3.2);
+  for (const { place, force } of contacts) pointed("force", shifted(place), force, 3.2);
   pen.context.lineWidth = ratio;
 }
 
@@ -156,8 +157,13 @@ export function nice(x) {
   return Number((digit * power).toPrecision(1));
 }
 
-// The numbers of the arrows at a time, a line for each motion.
-export function told(motion, t) {
+// The numbers of the arrows at a time, a line for each motion; where there are none, whether some are wanted.
+export function told(samples, t, wanted) {
+  if (samples?.contacts) return samples.motions.map((motion) => line(motion, t)).join("\n");
+  return wanted ? "This scene has no bodies at which forces could be drawn." : "";
+}
+
+function line(motion, t) {
   const { velocity, rest, contacts } = motion.arrows(motion.locate(t)[0]);
   const sum = contacts.map(({ force }) => `${figure(Math.hypot(...force))} N`).join(", ");
   const part = rest > 0.01 ? `; ${figure(100 * rest)} % of the reaction is no force at a contact` : "";

@@ -20,7 +20,6 @@ async function bundled(entry, more = {}) {
 
 // What stands within an element of the page cannot end that element.
 const script = (text) => text.replaceAll("</script", "<\\/script").replaceAll("<!--", "<\\!--");
-const data = (value) => JSON.stringify(value).replaceAll("<", "\\u003c");
 const markup = (text) => text.replaceAll("&", "&amp;").replaceAll("<", "&lt;");
 
 const said = (...words) => execFileSync(deltaq, words, { encoding: "utf8", maxBuffer: 1 << 26 });
@@ -38,7 +37,7 @@ const pieces = {
   digest,
   style: await bundled("style.css", { format: undefined, external: [] }),
   licences: markup(parts.join("\n\n")),
-  scenes: data(texts),
+  scenes: zipped(JSON.stringify(texts)),
   worker: script(await bundled("worker.js")),
   program: zipped(readFileSync(program)),
   words: zipped(await bundled("words.js", { format: "esm" })),

@@ -15,6 +15,13 @@ export class Clock {
     this.go(this.t);
   }
 
+  // Another run, from its start or a time of it, at a speed at which it takes about ten seconds at most.
+  begin({ start, end }, time) {
+    const speeds = [...this.speed.options].map(({ value }) => Number(value));
+    this.speed.value = String(speeds.find((speed) => (end - start) / speed <= 12) ?? speeds.at(-1));
+    this.t = time || start;
+  }
+
   go(t) {
     this.t = Math.min(this.end, Math.max(this.start, t));
     const part = (this.t - this.start) / (this.end - this.start || 1);

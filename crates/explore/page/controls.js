@@ -109,6 +109,11 @@ export class Controls {
     return [...this.rows.values()].filter((other) => other.control.motion === control.motion && other.control.value === null);
   }
 
+  // Numbers that were set elsewhere.
+  take(numbers) {
+    for (const [name, x] of Object.entries(numbers)) this.put(this.rows.get(name), x, true);
+  }
+
   reset(entry) {
     const together = entry.control.value === null ? this.beside(entry) : [entry];
     for (const other of together) this.put(other, other.control.value, false);

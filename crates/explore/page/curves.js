@@ -1,4 +1,4 @@
-// Quantities against time, with a cursor that the animation moves and that moves the animation.
+// Quantities against time, with a cursor that the animation moves and that moves the animation; a part of the time larger.
 
 import uPlot from "uplot";
 
@@ -6,14 +6,26 @@ import { ink } from "./look.js";
 
 const NAMES = { coordinate: "", velocity: "", multiplier: "multipliers", invariant: "should be constant: ", observable: "" };
 
+// Curves that go over so many times the height of the others are cut, and those that are so much steeper in a small part.
+const RUNAWAY = 8;
+const PART = 0.03;
+// The largest magnification of time.
+const LARGEST = 200;
+
 export class Curves {
-  // `go` is told a time that was pointed at.
-  constructor(place, select, go) {
-    Object.assign(this, { place, select, go });
+  // `go` is told a time that was pointed at; `note` says what is cut, `whole` is pressed to see all.
+  constructor({ place, select, note, whole }, go) {
+    Object.assign(this, { place, select, note, whole, go, window: null });
+    whole.addEventListener("click", () => {
+      whole.setAttribute("aria-pressed", String(whole.ariaPressed !== "true"));
+      this.magnify(1);
+    });
     new ResizeObserver(() => this.resize()).observe(place);
   }
 
-  show(samples, chosen) {
+  // New samples; of another scene all is seen first.
+  show(samples, chosen, anew = false) {
+    if (anew) this.all();
     this.samples = samples;
     const options = this.options();
     const key = options.some(([key]) => key === chosen) ? chosen : options[0]?.[0];
@@ -26,7 +38,7 @@ export class Curves {
 
   options() {
     const { motions, gaps, units } = this.samples;
-    const options = gaps.length ? [["gap", `gap to ${gaps[0].first}`]] : [];
+    const options = gaps.length ? [["gap", `gap to ${gaps[0].first}`], ["log", `gap to ${gaps[0].first}, log–log`]] : [];
     if (motions.length) options.push(["observable:energy", "energy"]);
     if (motions.some((motion) => motion.multipliers.length)) options.push(["multiplier", "multipliers, costates"]);
     for (const group of ["coordinate", "velocity", "observable", "invariant"]) {
@@ -36,7 +48,8 @@ export class Curves {
         if (!options.some(([known]) => known === key)) options.push([key, NAMES[group] + name]);
       }
     }
-    return options.map(([key, name]) => [key, units[key] ? `${name} (${units[key]})` : name]);
+    const unit = (key) => units[isGap(key) ? "gap" : key];
+    return options.map(([key, name]) => [key, unit(key) ? `${name} (${unit(key)})` : name]);
   }
 
   // Tables to join, and a series for each column of them.
@@ -44,13 +57,13 @@ export class Curves {
     const [group, name] = key.split(/:(.*)/s);
     const { motions, gaps } = this.samples;
     const [tables, series] = [[], []];
-    const reading = key === "gap" ? (x) => 10 ** x : (x) => x;
+    const reading = isGap(key) ? (x) => 10 ** x : (x) => x;
     const add = (t, values, label, look) => {
       tables.push([t, values]);
       series.push({ label, stroke: look.colour, width: look.width * 0.6, dash: look.dash, points: { show: false },
         value: (_, x) => (x == null ? "–" : reading(x).toPrecision(4)) });
     };
-    if (key === "gap") {
+    if (isGap(key)) {
       for (const { t, gap, limit, second } of gaps) {
         const { look } = motions.find((motion) => motion.label === second);
         // in doubt, as at a glance, there is no limit; what is not certain is not drawn
@@ -74,28 +87,92 @@ export class Curves {
   draw(key) {
     const { tables, series } = key ? this.data(key) : { tables: [], series: [] };
     const { start, end } = this.samples;
+    // along the axis: t, or the logarithm of t − start
+    const log = key === "log";
+    this.along = log ? (t) => Math.log10(Math.max(t - start, 1e-300)) : (t) => t;
+    this.time = log ? (x) => start + 10 ** x : (x) => x;
+    for (const table of log ? tables : []) {
+      const later = table[0].flatMap((t, i) => (t > start ? [i] : []));
+      table.forEach((column, k) => (table[k] = later.map((i) => (k ? column[i] : this.along(column[i])))));
+    }
+    this.ends = log ? [Math.min(...tables.map(([t]) => t[0])), this.along(end)] : [start, end];
+    this.labels = series.map(({ label }) => label);
+    this.cuts = !isGap(key);
     const looks = JSON.stringify([key, start, end, series.map(({ label, stroke }) => [label, stroke]), ink("ink")]);
     if (this.plot && looks === this.looks) {
       this.plot.setData(uPlot.join(tables));
       return this.at(this.t);
     }
-    this.looks = looks;
+    if (this.key !== key) this.window = null;
+    [this.looks, this.key] = [looks, key];
     this.plot?.destroy();
     this.plot = null;
     if (!tables.length) return;
     const axis = { stroke: ink("ink"), grid: { stroke: ink("line"), width: 1 }, ticks: { stroke: ink("line") }, font: "12px system-ui" };
-    const log = key === "gap";
+    const powers = (is) => (is ? { incrs: [1, 2, 3, 5, 10, 20], values: (_, ticks) => ticks.map((x) => `1e${x}`) } : { values: (_, ticks) => ticks.map(label) });
     const options = {
       width: this.place.clientWidth, height: this.height(), padding: [10, 12, 0, 0],
       cursor: { drag: { setScale: false, x: false, y: false }, y: false, points: { size: 6 } },
-      scales: { x: { time: false, range: [start, end] } },
-      axes: [{ ...axis, size: 28 }, { ...axis, size: 56, space: 22, incrs: log ? [1, 2, 3, 5, 10, 20] : undefined,
-        values: (_, ticks) => ticks.map((x) => (log ? `1e${x}` : label(x))) }],
-      series: [{ label: "t", value: (_, x) => (x == null ? "–" : `${x.toFixed(3)} s`) }, ...series],
+      scales: { x: { time: false, range: () => this.span() }, y: { range: (plot) => this.heights(plot.data) } },
+      axes: [{ ...axis, size: 28, ...powers(log) }, { ...axis, size: 56, space: 22, ...powers(isGap(key)) }],
+      series: [{ label: "t", value: (_, x) => (x == null ? "–" : `${Number(this.time(x).toPrecision(4))} s`) }, ...series],
       legend: { live: true },
       hooks: { ready: [(plot) => this.ready(plot)] },
     };
     this.plot = new uPlot(options, uPlot.join(tables), this.place);
+  }
+
+  // What of the time is shown.
+  span() {
+    return this.window ?? this.ends;
+  }
+
+  // The heights that are shown: of all curves, but for steep parts and for those that run away from the others, unless all
+  // are asked for.
+  heights([t, ...columns]) {
+    const [from, to] = this.span();
+    const all = this.whole.ariaPressed === "true" || !this.cuts;
+    const curves = columns.map((column, i) => ({ label: this.labels[i], ...bounds(column.filter((x, i) => Number.isFinite(x) && t[i] >= from && t[i] <= to), all) }));
+    const seen = curves.filter(({ high, low }) => high >= low).sort((a, b) => a.high - a.low - (b.high - b.low));
+    if (!seen.length) return [0, 1];
+    const join = (list) => [Math.min(...list.map(({ low }) => low)), Math.max(...list.map(({ high }) => high))];
+    const isFlat = ({ low, high }) => high - low <= 1e-6 * (1 + Math.max(Math.abs(low), Math.abs(high)));
+    const last = seen.findIndex((curve, i) => {
+      const [before, after] = [join(seen.slice(0, i || 1)), join(seen.slice(0, i + 1))];
+      return i > 0 && !isFlat(seen[i - 1]) && after[1] - after[0] > RUNAWAY * (before[1] - before[0]);
+    });
+    const runs = last > 0 && seen.length - last <= seen.length / 2 && !all ? seen.splice(last) : [];
+    const cut = new Set([...runs, ...seen.filter((curve) => curve.cut)].map(({ label }) => label));
+    this.note.textContent = cut.size ? `${[...cut].join(", ")}: out of the picture` : "";
+    this.whole.hidden = !cut.size && this.whole.ariaPressed !== "true";
+    const [low, high] = join(seen);
+    const room = 0.06 * (high - low) || 1e-3 * Math.abs(high) || 1;
+    return [low - room, high + room];
+  }
+
+  // So many times as large, about a place of the axis, or about now.
+  magnify(factor, at = this.along(this.t)) {
+    const [first, last] = this.ends;
+    const [from, to] = this.span();
+    const width = Math.max((last - first) / LARGEST, (to - from) / factor);
+    this.put(at - ((at - from) * width) / (to - from), width);
+  }
+
+  // Shows what begins there.
+  put(from, width) {
+    const [first, last] = this.ends;
+    const begins = Math.max(first, Math.min(from, last - width));
+    this.window = width < last - first ? [begins, begins + width] : null;
+    const [min, max] = this.span();
+    this.plot?.setScale("x", { min, max });
+    if (this.plot) this.at(this.t);
+  }
+
+  // All of the time, and nothing that is cut on purpose.
+  all() {
+    this.window = null;
+    this.whole.setAttribute("aria-pressed", "false");
+    if (this.plot) this.magnify(1);
   }
 
   height() {
@@ -108,9 +185,15 @@ export class Curves {
   }
 
   at(t) {
+    const moved = t !== this.t;
     this.t = t;
+    if (!this.plot) return;
+    const x = this.along(t);
+    const [from, to] = this.span();
+    // what is shown goes with the time
+    if (moved && this.window && (x < from || x > to) && x >= this.ends[0]) return this.put(x - 0.1 * (to - from), to - from);
     // the cursor of the plot, under which its legend has the values
-    this.plot?.setCursor({ left: this.plot.valToPos(t, "x"), top: 0 });
+    this.plot.setCursor({ left: this.plot.valToPos(x, "x"), top: 0 });
   }
 
   ready(plot) {
@@ -120,21 +203,47 @@ export class Curves {
     if (this.t !== undefined) this.at(this.t);
   }
 
-  listen(plot) {
-    const point = (event) => {
-      const { left } = plot.over.getBoundingClientRect();
-      this.go(plot.posToVal(event.clientX - left, "x"));
+  listen({ over }) {
+    const fingers = new Map();
+    const place = ({ clientX }) => this.plot.posToVal(clientX - over.getBoundingClientRect().left, "x");
+    const apart = () => {
+      const [a, b] = [...fingers.values()].map(({ clientX }) => clientX);
+      return Math.abs(a - b) + 1;
     };
-    plot.over.addEventListener("pointerdown", (event) => {
-      plot.over.setPointerCapture(event.pointerId);
-      point(event);
-      plot.over.onpointermove = point;
+    over.addEventListener("pointerdown", (event) => {
+      over.setPointerCapture(event.pointerId);
+      fingers.set(event.pointerId, event);
+      if (fingers.size === 1) this.go(this.time(place(event)));
     });
-    plot.over.addEventListener("pointerup", () => (plot.over.onpointermove = null));
+    over.addEventListener("pointermove", (event) => {
+      if (!fingers.has(event.pointerId)) return;
+      const before = fingers.size === 2 && apart();
+      fingers.set(event.pointerId, event);
+      // one goes through time, two draw apart
+      if (before) this.magnify(apart() / before, place(event));
+      else if (fingers.size === 1) this.go(this.time(place(event)));
+    });
+    for (const end of ["pointerup", "pointercancel"]) over.addEventListener(end, ({ pointerId }) => fingers.delete(pointerId));
+    over.addEventListener("wheel", (event) => {
+      event.preventDefault();
+      const [from, to] = this.span();
+      if (event.shiftKey || Math.abs(event.deltaX) > Math.abs(event.deltaY)) this.put(from + ((to - from) * (event.deltaX || event.deltaY)) / 1000, to - from);
+      else this.magnify(Math.exp(-event.deltaY / 500), place(event));
+    }, { passive: false });
   }
 }
 
+const isGap = (key) => key === "gap" || key === "log";
 const logarithm = (x) => (x > 0 && Number.isFinite(x) ? Math.log10(x) : null);
+
+// The bounds of a curve; of one that is much steeper in a small part, without that, if not all is asked for.
+function bounds(values, all) {
+  const sorted = values.sort((a, b) => a - b);
+  const at = (part) => sorted[Math.round(part * (sorted.length - 1))];
+  const [low, inner, outer, high] = [0, PART, 1 - PART, 1].map(at);
+  const cut = !all && outer - inner > 1e-6 * (1 + Math.abs(inner)) && high - low > RUNAWAY * (outer - inner);
+  return cut ? { low: inner, high: outer, cut } : { low: low ?? Infinity, high: high ?? -Infinity, cut };
+}
 
 function label(x) {
   const size = Math.abs(x);

@@ -12,6 +12,8 @@ async function unzipped(base64, type) {
 // The program, compiled while it is unzipped.
 export const compile = async (base64) => WebAssembly.compileStreaming(unzipped(base64, "application/wasm"));
 
+export const textOf = async (base64) => (await unzipped(base64, "text/plain")).text();
+
 // A module of the page that is not needed at first.
 export async function load(base64) {
   const url = URL.createObjectURL(await (await unzipped(base64, "text/javascript")).blob());

@@ -21,6 +21,12 @@ export function shownOf(motions, { on, off }) {
   return motions.filter(isShown).map(({ label }) => label);
 }
 
+// A motion is chosen to be shown, or not to be.
+export function choosing(state, label, on) {
+  state.on = state.on.filter((other) => other !== label).concat(on ? [label] : []);
+  state.off = state.off.filter((other) => other !== label).concat(on ? [] : [label]);
+}
+
 export class Legend {
   // `turned` is called with a label that is to be shown or not to be.
   constructor(element, turned) {

@@ -14,7 +14,7 @@ function keys({ openTab, clock, stage }) {
     const actions = {
       " ": () => element("play").click(), ArrowLeft: () => clock.step(-far), ArrowRight: () => clock.step(far),
       Home: () => clock.step(-100), End: () => clock.step(100), "+": () => stage.magnify(1.25), "-": () => stage.magnify(0.8),
-      0: () => stage.reset(), f: () => element("forces").click(),
+      0: () => stage.reset(), f: () => element("forces").click(), m: () => element("grips").click(),
       a: () => stage.turn(-20, 0), d: () => stage.turn(20, 0), w: () => stage.turn(0, 20), s: () => stage.turn(0, -20),
     };
     const action = actions[event.key] ?? (panels.names[event.key - 1] && (() => openTab(panels.names[event.key - 1])));
@@ -65,7 +65,11 @@ export function listen(acts) {
   });
   on("stop", "click", acts.stop);
   on("undecided", "click", acts.stopDeciding);
-  on("forces", "change", ({ target }) => acts.showForces(target.checked));
+  on("forces", "change", ({ target }) => acts.showMore("forces", target.checked));
+  on("grips", "change", ({ target }) => acts.showMore("grips", target.checked));
+  on("closer", "click", () => acts.curves.magnify(2));
+  on("wider", "click", () => acts.curves.magnify(0.5));
+  on("ends", "click", () => acts.curves.all());
   on("keep", "click", acts.keepText);
   on("undo", "click", () => ways().back && history.back());
   on("redo", "click", () => ways().forth && history.forward());

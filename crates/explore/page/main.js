@@ -1,12 +1,14 @@
 // The page: what was chosen goes to the program, what it answers is shown.
 
 import { told } from "./arrows.js";
+import { Camera } from "./camera.js";
 import { Clock } from "./clock.js";
 import { Controls } from "./controls.js";
 import { Curves } from "./curves.js";
 import { Deciding } from "./deciding.js";
-import { Engine, compile } from "./engine.js";
-import { Legend, shownOf } from "./legend.js";
+import { Engine, compile, textOf } from "./engine.js";
+import { Grips } from "./grips.js";
+import { Legend, choosing, shownOf } from "./legend.js";
 import { listen, undoing } from "./listen.js";
 import { Own } from "./own.js";
 import * as panels from "./panels.js";
@@ -20,10 +22,7 @@ import { Text } from "./text.js";
 import { SKATE, STEPS, Tour, stateOf } from "./tour.js";
 
 const element = (id) => document.getElementById(id);
-const json = (id) => JSON.parse(element(id).textContent);
-
-const scenes = json("scenes");
-const chosen = json("chosen");
+const chosen = JSON.parse(element("chosen").textContent);
 const OWN = "own";
 // Rows of a motion at rest, and while a hand is on a slider.
 const SAMPLED = [480, 240];
@@ -33,6 +32,7 @@ const OF_LAWS = ["kappa", "slip", "epsilon"];
 // Who does not like things to move starts them himself.
 const still = matchMedia("(prefers-reduced-motion: reduce)");
 
+let scenes; // the built-in ones
 let scene; // what the program said of the text
 let latest = []; // what it said of the motions last
 let motionsEngine, wordsEngine, deciding;
@@ -42,19 +42,23 @@ const clock = new Clock(
   (t) => {
     stage.draw(t);
     curves.at(t);
-    element("key").textContent = clock.samples?.contacts ? clock.samples.motions.map((motion) => told(motion, t)).join("\n") : state.forces ? "This scene has no bodies at which forces could be drawn." : "";
+    element("key").textContent = told(clock.samples, t, state.forces);
   },
 );
 const ownTexts = new Own(element("scene"));
 const stage = new Stage(element("stage"), element("note"));
-const curves = new Curves(element("plot"), element("curve"), (t) => {
+const camera = new Camera({ follow: element("follow"), by: element("by") }, stage, remember);
+const curves = new Curves({ place: element("plot"), select: element("curve"), note: element("cut"), whole: element("whole") }, (t) => {
   clock.pause();
   clock.go(t);
 });
+const grips = new Grips(element("frame"), stage, (numbers, moving) => {
+  controls.take(numbers);
+  set(numbers, moving);
+});
 const controls = new Controls(element("numbers"), (numbers, moving) => set(numbers, moving));
 const motionsLegend = new Legend(element("legend"), (label, on) => {
-  state.on = state.on.filter((other) => other !== label).concat(on ? [label] : []);
-  state.off = state.off.filter((other) => other !== label).concat(on ? [] : [label]);
+  choosing(state, label, on);
   remember();
   controls.shown(shown());
   outdated();
@@ -90,9 +94,7 @@ const tour = new Tour(element("tour"), {
 
 function keep() {
   if (own() && (ownTexts.draft === null || state.text !== SKATE)) ownTexts.draft = state.text;
-  const select = element("scene");
-  select.querySelector(`[value=${OWN}]`).hidden = ownTexts.draft === null;
-  select.value = own() ? OWN : state.scene;
+  ownTexts.offer(OWN, own() ? OWN : state.scene);
   element("keep").hidden = !own();
   element("keep").textContent = own() && scene && ownTexts.isKept(scene.title, state.text) ? "Forget this text" : "Keep in this browser";
 }
@@ -162,7 +164,7 @@ async function motions(glance, anew) {
   const number = ++asked;
   const wait = setTimeout(() => (element("busy").hidden = false), 400);
   // what is new is first seen at a glance
-  const more = { motions: shown(), steps: SAMPLED[glance || anew ? 1 : 0], glance: glance || anew, forces: state.forces };
+  const more = { motions: shown(), steps: SAMPLED[glance || anew ? 1 : 0], glance: glance || anew, forces: state.forces, grips: state.grips };
   const reply = await motionsEngine.ask("motions", question("motions", more));
   clearTimeout(wait);
   if (!reply) return;
@@ -176,21 +178,16 @@ async function motions(glance, anew) {
   }
 }
 
-let drawn = 0;
-let first;
+let drawn = 0, first;
 
 function draw(samples, anew) {
   clock.samples = samples;
-  if (anew) {
-    const length = samples.end - samples.start;
-    const speeds = [...element("speed").options].map(({ value }) => Number(value));
-    // a run takes about ten seconds at most
-    element("speed").value = String(speeds.find((speed) => length / speed <= 12) ?? speeds.at(-1));
-    clock.t = state.time || samples.start;
-  }
+  if (anew) clock.begin(samples, state.time);
+  grips.show(samples, state.grips);
+  camera.show(samples);
   stage.show(samples, anew);
   clock.span(samples.start, samples.end);
-  curves.show(samples, state.curve);
+  curves.show(samples, state.curve, anew);
   something();
 }
 
@@ -209,7 +206,7 @@ function show(reply, anew) {
   if (anew || answer.motions.some(({ error }) => error !== null)) legend(answer.motions);
   tour.update();
   // for tests and for who looks behind the page
-  window.explored = { answer, milliseconds: reply.milliseconds, drawn: ++drawn, samples, stage, first: (first ??= performance.now()) };
+  window.explored = { answer, scenes, milliseconds: reply.milliseconds, drawn: ++drawn, samples, stage, curves, grips, first: (first ??= performance.now()) };
 }
 
 // What takes longer, in the other worker.
@@ -230,19 +227,16 @@ function set(numbers, moving) {
     if (value === null) delete state.set[name];
     else state.set[name] = value;
   }
-  if (!moving) turned();
+  if (!moving) {
+    push();
+    undoing();
+  }
   if (JSON.stringify(state.set) !== JSON.stringify(before)) outdated();
   if (OF_LAWS.some((name) => name in state.set !== name in before)) return laws();
   motions(moving, false);
 }
 
 let inHand = false;
-
-// Something was changed that can be undone.
-function turned() {
-  push();
-  undoing();
-}
 
 async function laws() {
   const reply = await motionsEngine.ask("scene", question("scene"));
@@ -318,9 +312,14 @@ function redraw() {
   curves.show(clock.samples, state.curve);
 }
 
-function showForces(is) {
-  state.forces = is;
+// Forces, or what a hand takes hold of, which are at the start.
+function showMore(what, is) {
+  state[what] = is;
   remember();
+  if (what === "grips" && is) {
+    clock.pause();
+    clock.go(clock.start);
+  }
   motions(false, false);
 }
 
@@ -357,12 +356,13 @@ async function arrive(isSame = false) {
   undoing();
   editor.put(sceneText());
   if (!isSame) clock.t = state.time;
-  element("forces").checked = state.forces;
+  for (const id of ["forces", "grips"]) element(id).checked = state[id];
+  camera.put();
   panels.open(state.tab);
   showTour();
   await readScene(!isSame);
   keep();
-  if (!isSame && !state.time && !asks()) run();
+  if (!isSame && !state.time && !state.grips && !asks()) run();
 }
 
 new Take(element("takes"), {
@@ -373,9 +373,9 @@ new Take(element("takes"), {
 });
 
 // What buttons and keys do.
-function begin() {
+const begin = () =>
   listen({
-    choose, openTab, link, redraw, showForces, keepText, restore, clock, stage,
+    choose, openTab, link, redraw, showMore, keepText, restore, clock, stage, curves,
     stop() {
       motionsEngine.stop();
       element("busy").hidden = true;
@@ -383,12 +383,13 @@ function begin() {
     },
     stopDeciding: () => wordsEngine.stop(),
   });
-}
 
 async function start() {
-  element("scene").prepend(...groups(scenes), new Option("own text", OWN));
   const source = element("worker").textContent;
-  const module = await compile(element("program").textContent);
+  const compiled = compile(element("program").textContent);
+  scenes = JSON.parse(await textOf(element("scenes").textContent));
+  element("scene").prepend(...groups(scenes), new Option("own text", OWN));
+  const module = await compiled;
   motionsEngine = new Engine(module, source);
   wordsEngine = new Engine(module, source);
   deciding = new Deciding(wordsEngine, element("words").textContent);

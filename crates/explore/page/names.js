@@ -10,8 +10,8 @@ export const figure = (x) => {
   return x.toExponential(1).replace("e+", "e");
 };
 
-const GREEK = { alpha: "α", beta: "β", gamma: "γ", delta: "δ", theta: "θ", kappa: "κ", lambda: "λ", mu: "μ", nu: "ν",
-  rho: "ρ", phi: "φ", chi: "χ", psi: "ψ", omega: "ω", Omega: "Ω", Gamma: "Γ", eta: "η", sigma: "σ", tau: "τ", xi: "ξ" };
+export const GREEK = { alpha: "α", beta: "β", gamma: "γ", delta: "δ", theta: "θ", kappa: "κ", lambda: "λ", mu: "μ", nu: "ν",
+  rho: "ρ", phi: "φ", chi: "χ", psi: "ψ", omega: "ω", Omega: "Ω", Gamma: "Γ", eta: "η", sigma: "σ", tau: "τ", xi: "ξ", epsilon: "ε" };
 
 // A name as it is read: Greek letters, primes, an index below.
 export function readable(name) {

@@ -32,6 +32,12 @@ export class Own {
     return choice.startsWith(PREFIX) ? (this.texts()[choice.slice(PREFIX.length)] ?? null) : null;
   }
 
+  // What is chosen; the text that is being written can be, once there is one.
+  offer(own, chosen) {
+    this.select.querySelector(`[value=${own}]`).hidden = this.draft === null;
+    this.select.value = chosen;
+  }
+
   isKept(title, text) {
     return this.texts()[title] === text;
   }

@@ -109,6 +109,7 @@ export class Samples {
     this.numbers = numbers;
     this.all = answer.motions;
     this.contacts = answer.contacts ?? 0;
+    this.grips = answer.grips ?? null;
     this.down = answer.down ?? undefined;
     this.length = known.some(({ unit }) => unit === "m") ? "m" : "";
     this.motions = answer.motions.flatMap((motion) => {

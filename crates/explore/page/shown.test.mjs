@@ -201,7 +201,7 @@ export async function table({ open, link, must, pictures }) {
   const page = await open(link({ scene: "sledge", on: ["removed constraint (along-x)"], tab: "verdict" }));
   const words = await page.$eval("#verdict", ({ innerText }) => innerText);
   const { notes, causes } = await page.evaluate(() => ({
-    notes: JSON.parse(document.getElementById("scenes").textContent).find(({ name }) => name === "sledge").text.match(/^notes = "(.*)"$/m)[1],
+    notes: window.explored.scenes.find(({ name }) => name === "sledge").text.match(/^notes = "(.*)"$/m)[1],
     causes: window.explored.answer.motions.map((motion) => motion.refused ?? motion.cause).filter(Boolean),
   }));
   must(causes.length > 0, "no motion ends early");

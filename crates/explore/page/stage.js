@@ -1,5 +1,6 @@
 // The bodies in motion on a canvas: outlines in axes of their own, places and rotations from the program.
 
+import { Apart } from "./apart.js";
 import * as arrows from "./arrows.js";
 import { ink } from "./look.js";
 import { Vector } from "./vector.js";
@@ -9,6 +10,8 @@ const OBLIQUE = [0.4, 0.5];
 // A motion widens the frame at most this many times.
 const WIDENED = 2;
 const MARGIN = 18;
+// What goes with a body is so many times as large as that.
+const ROUND = 2.5;
 
 const still = matchMedia("(prefers-reduced-motion: reduce)");
 
@@ -21,6 +24,8 @@ export class Stage {
     this.zoom = 1;
     this.eye = null;
     this.window = null;
+    // the motion that the camera goes with, how many times as large differences are drawn, whether the frame stays
+    [this.follow, this.by, this.held] = ["", 1, false];
     new ResizeObserver(() => this.draw()).observe(canvas);
     this.listen();
   }
@@ -34,10 +39,28 @@ export class Stage {
       this.window = null;
     }
     this.bodies = samples.bodies;
+    this.apart = new Apart(samples.motions[0], this.by);
     this.flat = this.isFlat();
     this.largest = samples.contacts && arrows.sizes(samples.motions[0]);
-    this.frame();
+    if (anew || !this.window || !this.held) this.frame();
     if (anew || !this.window) this.window = this.target;
+    this.draw();
+  }
+
+  // The camera goes with that motion, or with none; differences are drawn `by` times as large.
+  look(follow, by) {
+    [this.follow, this.by] = [follow, by];
+    if (!this.samples?.motions.length) return;
+    this.apart = new Apart(this.samples.motions[0], by);
+    this.frame();
+    this.draw();
+  }
+
+  // While it is held, the frame is not moved by what comes.
+  hold(is) {
+    this.held = is;
+    if (is || !this.samples?.motions.length) return;
+    this.frame();
     this.draw();
   }
 
@@ -86,14 +109,16 @@ export class Stage {
     };
     const ground = empty();
     for (const [pose, body] of this.samples.ground(0)) put(ground, pose, body);
+    const { apart } = this;
     const windows = this.samples.motions.map((motion) => {
       const w = empty();
+      const last = apart.last(motion);
       const stride = Math.max(1, Math.floor(motion.rows / 24));
-      for (let row = 0; row < motion.rows; row += stride) {
-        for (const [pose, body] of motion.poses(row)) put(w, pose, body);
+      for (let row = 0; row <= last; row += stride) {
+        for (const [pose, body] of apart.poses(motion, row)) put(w, pose, body);
       }
-      for (let row = 0; row < motion.rows; row++) {
-        const at = motion.track(row);
+      for (let row = 0; row <= last; row++) {
+        const at = apart.track(motion, row);
         add(w, dot(right, at), dot(up, at));
       }
       return w;
@@ -106,7 +131,26 @@ export class Stage {
     this.target = [all[0] - least, all[1] - least, all[2] + least, all[3] + least];
     this.far = this.samples.motions.filter((_, i) => !near.includes(windows[i])).map((motion) => motion.label);
     const far = this.far.join(", ");
-    this.note.textContent = far ? `${far}: runs out of the picture, whose frame is the neighbourhood of the others` : "";
+    const notes = far ? [`${far}: runs out of the picture, whose frame is the neighbourhood of the others`] : [];
+    if (this.by !== 1 && windows.length > 1) notes.unshift(`Differences from ${this.samples.motions[0].label} are drawn ${this.by} times as large.`);
+    if (this.hint) notes.unshift(this.hint);
+    this.note.textContent = notes.join(" ");
+  }
+
+  // The motion that the camera goes with.
+  followed() {
+    return this.samples.motions.find(({ label }) => label === this.follow);
+  }
+
+  // How far bodies reach round the place whose path is drawn.
+  reach(motion) {
+    const from = motion.track(0);
+    let reach = 0.02 * Math.hypot(this.window[2] - this.window[0], this.window[3] - this.window[1]);
+    for (const [pose, body] of motion.poses(0)) {
+      const far = (p) => Math.hypot(...p.map((x, i) => x - from[i]));
+      reach = Math.max(reach, far(pose.at) + (body.sphere ?? 0), ...body.lines.flat().map((p) => far(pose.place(p))));
+    }
+    return reach;
   }
 
   // Pixels of a place.
@@ -114,10 +158,17 @@ export class Stage {
     const { width, height } = this.canvas;
     const w = this.window;
     const margin = MARGIN * devicePixelRatio;
-    const fit = Math.min((width - 2 * margin) / (w[2] - w[0]), (height - 2 * margin) / (w[3] - w[1]));
-    const scale = fit * this.zoom;
-    const [x, y] = [(w[0] + w[2]) / 2, (w[1] + w[3]) / 2];
+    let fit = Math.min((width - 2 * margin) / (w[2] - w[0]), (height - 2 * margin) / (w[3] - w[1]));
+    let [x, y] = [(w[0] + w[2]) / 2, (w[1] + w[3]) / 2];
     const [right, up, eye] = this.axes();
+    const motion = this.followed();
+    if (motion) {
+      fit = Math.max(fit, Math.min(width, height) / (2 * ROUND * this.reach(motion)));
+      // what is in the hand is not followed
+      if (!this.held) this.middle = this.apart.trackAt(motion, this.t);
+      [x, y] = [right, up].map((axis) => dot(axis, this.middle));
+    }
+    const scale = fit * this.zoom;
     const project = (p) => [width / 2 + (dot(right, p) - x) * scale, height / 2 - (dot(up, p) - y) * scale];
     return { project, scale, depth: (p) => dot(eye, p) };
   }
@@ -149,10 +200,14 @@ export class Stage {
     for (const motion of this.veiled ? [] : samples.motions) this.trail(pen, motion, t);
     for (const motion of samples.motions) {
       const { colour, outline } = motion.look;
-      for (const [pose, body] of [...motion.posesAt(t)].reverse()) draw(pen, pose, body, colour, outline, `${colour}2e`);
+      for (const [pose, body] of [...this.apart.posesAt(motion, t)].reverse()) draw(pen, pose, body, colour, outline, `${colour}2e`);
     }
     const side = Math.min(width, height);
-    for (const motion of samples.contacts ? samples.motions : []) arrows.forces(pen, motion, t, this.largest, side);
+    for (const motion of samples.contacts ? samples.motions : []) {
+      const mark = this.apart.trackAt(motion, t);
+      arrows.forces(pen, motion, t, this.largest, side, mark);
+    }
+    this.over?.(pen);
     arrows.orientation(pen, { width, height }, { down: samples.down, flat: this.flat && !this.eye, unit: samples.length });
   }
 
@@ -168,12 +223,12 @@ export class Stage {
     const { colour, dash, width } = motion.look;
     const path = (until, strong) => {
       context.beginPath();
-      for (let row = 0; row < motion.rows && motion.time(row) <= until; row++) {
-        const [x, y] = view.project(motion.track(row));
+      for (let row = 0; row <= this.apart.last(motion) && motion.time(row) <= until; row++) {
+        const [x, y] = view.project(this.apart.track(motion, row));
         if (row) context.lineTo(x, y);
         else context.moveTo(x, y);
       }
-      if (strong) context.lineTo(...view.project(motion.trackAt(t)));
+      if (strong) context.lineTo(...view.project(this.apart.trackAt(motion, t)));
       context.strokeStyle = colour;
       context.globalAlpha = strong ? 1 : 0.3;
       context.lineWidth = (strong ? width * 0.8 : 1) * ratio;

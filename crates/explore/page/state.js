@@ -1,7 +1,7 @@
 // What a link carries: everything that was chosen, in the fragment of the address; and the way back through it.
 
 const EMPTY = { scene: "sledge", text: null, set: {}, off: [], on: [], time: 0, tab: "numbers", curve: "gap",
-  step: 0, guess: -1, forces: false };
+  step: 0, guess: -1, forces: false, follow: "", by: 1, grips: false };
 // Behind the state, what alone is to be seen: &only=stage, for slides.
 const ONLY = "&only=";
 

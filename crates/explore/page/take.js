@@ -1,6 +1,7 @@
 // What can be taken along: pictures, numbers, equations, a script, the scene. Files are made here and nowhere else.
 
 import { ink } from "./look.js";
+import { GREEK } from "./names.js";
 
 // Kinds of files: what they are called, how their names end, and their type.
 const LABELS = {
@@ -8,6 +9,7 @@ const LABELS = {
   csv: ["Motions, CSV", "csv", "text/csv"], latex: ["Equations, LaTeX", "tex", "text/x-tex"], python: ["Script, Python", "py", "text/x-python"],
   toml: ["Scene, TOML", "toml", "application/toml"], page: ["This page, HTML", "html", "text/html"],
 };
+const LETTERS = Object.fromEntries(Object.entries(GREEK).map(([name, letter]) => [letter, `$\\${name}$`]));
 // The page as it came, before anything was put into it.
 const untouched = document.documentElement.cloneNode(true);
 
@@ -36,7 +38,11 @@ export function csv(samples) {
 
 // The answer about equations as a document: its fenced pieces displayed, the rest as text between them.
 export function latex({ system, integrability, motions }, title) {
-  const words = (text) => text.split(/(\$[^$]+\$)/).map((piece) => (piece.startsWith("$") ? piece : piece.replace(/[&%#_{}~^\\]/g, (c) => ({ "~": "\\textasciitilde{}", "^": "\\textasciicircum{}", "\\": "\\textbackslash{}" })[c] ?? `\\${c}`).replaceAll("**", ""))).join("");
+  const special = { "~": "\\textasciitilde{}", "^": "\\textasciicircum{}", "\\": "\\textbackslash{}" };
+  // fonts of text have no Greek
+  const greek = (piece) => piece.replace(/[α-ωΓ-Ω]/g, (c) => LETTERS[c] ?? c);
+  const plain = (piece) => greek(piece.replace(/[&%#_{}~^\\]/g, (c) => special[c] ?? `\\${c}`).replaceAll("**", ""));
+  const words = (text) => text.split(/(\$[^$]+\$)/).map((piece) => (piece.startsWith("$") ? piece : plain(piece))).join("");
   const prose = (text) => text.split("\n").map((line) => words(line.trim().replace(/^- /, "")));
   const body = (text) => text.split(/```math\n([\s\S]*?)\n```/).map((piece, i) => (i % 2 ? `\\begin{dmath*}\n${piece}\n\\end{dmath*}` : prose(piece).join("\n"))).join("\n");
   const sections = motions.map(({ label, equations, refused }) => `\\section*{${words(label)}}\n${refused ? words(refused) : body(equations)}`);

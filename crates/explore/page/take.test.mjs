@@ -6,6 +6,8 @@ import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { pathToFileURL } from "node:url";
 
+import katex from "katex";
+
 const LABELS = ["Chetaev", "vakonomic", "removed constraint (arc-length)"];
 
 // Files that the buttons write, by kind.
@@ -74,6 +76,41 @@ export async function files({ open, link, must, deltaq }) {
   const script = text("python");
   execFileSync("python3", ["-c", "import sys; compile(sys.stdin.read(), 'script', 'exec')"], { input: script });
   for (const part of ['"phi": 0.5', 'solve("vakonomic")', 'solve("removed-constraint", removal="arc-length", constants=[', "0.25]"]) must(script.includes(part), `the script lacks ${part}:\n${script}`);
+  await page.close();
+}
+
+// Equations of every scene compile: each piece of mathematics by KaTeX in its strict mode, with no command that LaTeX with
+// amsmath lacks; between them nothing stands that TeX takes for a command.
+export async function compiles({ open, url, must, choose, said }) {
+  const page = await open(`${url}#scene=sledge`);
+  const names = await page.$$eval("#scene option:not([hidden])", (all) => all.map(({ value }) => value));
+  const known = new Set("alpha beta gamma delta epsilon zeta eta theta kappa lambda mu nu xi pi rho sigma tau phi varphi chi psi omega Gamma Delta Theta Lambda Sigma Phi Psi Omega dot ddot frac sqrt left right cdot mathrm sin cos tan cot sec csc sinh cosh tanh arcsin arccos arctan exp log ln operatorname quad varepsilon partial to in ne le ge times infty text".split(" "));
+  let count = 0;
+  const strange = new Set();
+  for (const name of names) {
+    if (name !== "sledge") await choose(page, name);
+    const { latex } = await taken(page, ["latex"]);
+    const body = latex.bytes.toString("utf8").split("\\begin{document}")[1] ?? "";
+    const pieces = body.split(/\\begin\{dmath\*\}\n([\s\S]*?)\n\\end\{dmath\*\}|\$([^$]+)\$/);
+    for (const [i, piece] of pieces.entries()) {
+      if (piece === undefined) continue;
+      if (i % 3 === 0) {
+        must(!/[\u0370-\u03ff]/.test(piece), `${name}: Greek that no font of text has in ${piece.slice(0, 60)}`);
+        must(!/(?<!\\)[&%#_^~$]/.test(piece), `${name}: what is no mathematics has ${/.{0,20}(?<!\\)[&%#_^~$].{0,20}/.exec(piece)?.[0]}`);
+        continue;
+      }
+      for (const [, word] of piece.matchAll(/\\([a-zA-Z]+)/g)) if (!known.has(word)) strange.add(word);
+      try {
+        katex.renderToString(piece, { throwOnError: true, strict: "error", output: "mathml" });
+      } catch (error) {
+        must(false, `${name}: ${error.message.slice(0, 200)}`);
+      }
+      count += 1;
+    }
+    must(pieces.length > 3, `${name} has no equations: ${body.slice(0, 100)}`);
+  }
+  must(strange.size === 0, `commands that are not known to be LaTeX's: ${[...strange]}`);
+  said.push(`${count} pieces of LaTeX of ${names.length} scenes compile`);
   await page.close();
 }
 

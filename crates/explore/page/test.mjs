@@ -1,6 +1,6 @@
-// node test.mjs BROWSER DELTAQ PAGE PICTURES all|numbers|shown|CHECK|ROUNDS: the page in a browser without network,
-// against the native program; or its numbers only; or whether what is shown is what was computed; or one of these
-// checks by name; or whether it grows while sliders are moved, in this number of rounds.
+// node test.mjs BROWSER DELTAQ PAGE PICTURES all|numbers|shown|elsewhere|CHECK|ROUNDS: the page in a browser without network,
+// against the native program; or its numbers only; or whether what is shown is what was computed; or what another browser,
+// Firefox, can be asked; or one of these checks by name; or whether it grows while sliders are moved, in this number of rounds.
 
 import { execFileSync, spawnSync } from "node:child_process";
 import { mkdirSync, mkdtempSync, rmSync, statSync } from "node:fs";
@@ -13,6 +13,8 @@ import puppeteer from "puppeteer-core";
 import * as access from "./access.test.mjs";
 import * as drawn from "./drawn.test.mjs";
 import { growth } from "./growth.test.mjs";
+import * as hands from "./hand.test.mjs";
+import * as looking from "./look.test.mjs";
 import * as checks from "./shown.test.mjs";
 import * as takes from "./take.test.mjs";
 import { tasks } from "./tasks.test.mjs";
@@ -43,7 +45,10 @@ const userDataDir = mkdtempSync(join(tmpdir(), "explore-"));
 mkdirSync(pictures, { recursive: true });
 const flags = ["--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-background-networking",
   "--disable-component-update", "--disable-sync"];
-const browser = await puppeteer.launch({ executablePath, headless: true, args: flags, userDataDir });
+// what Chromium is told about networks, looks and fingers, Firefox is not
+const isChromium = !/firefox/.test(executablePath);
+const browser = await puppeteer.launch({ executablePath, headless: true, userDataDir, ...(isChromium ? { args: flags } : { browser: "firefox" }) });
+const browserName = browser.version();
 const complaints = [];
 const said = [];
 
@@ -56,12 +61,12 @@ const link = (state) => `${url}#${Buffer.from(JSON.stringify(state)).toString("b
 // A new page at an address, which has shown its motions in full, and what is decided, or what it is waited for until.
 async function open(address, { width = 1280, height = 900, scheme = "light", context = browser, features = [], until = null } = {}) {
   const page = await context.newPage();
-  await page.setOfflineMode(true);
+  if (isChromium) await page.setOfflineMode(true);
   page.on("console", (message) => ["error", "warn"].includes(message.type()) && complaints.push(`console: ${message.text()}`));
-  page.on("pageerror", (error) => complaints.push(`error: ${error.message}`));
+  page.on("pageerror", (error) => complaints.push(`error: ${error.stack ?? error.message}`));
   page.on("request", (request) => must(/^(file|data|blob):/.test(request.url()), `asks for ${request.url()}`));
   await page.setViewport({ width, height });
-  await page.emulateMediaFeatures([{ name: "prefers-color-scheme", value: scheme }, ...features]);
+  if (isChromium) await page.emulateMediaFeatures([{ name: "prefers-color-scheme", value: scheme }, ...features]);
   await page.goto(address);
   if (until) await page.waitForSelector(until, { timeout: 60000 });
   else await page.waitForFunction(() => window.decided, { timeout: 60000 });
@@ -288,15 +293,19 @@ async function looks() {
 const fresh = () => browser.createBrowserContext();
 
 const tools = { open, fresh, link, must, after, choose, slide, type, said, OWN, url, pictures, deltaq };
+// what asks for nothing that only Chromium is told
+const ELSEWHERE = ["costates", "cleared", "refusals", "overlaps", "wayBack", "badLinks", "table", "tabs", "forces", "down", "camera", "differences",
+  "runaway", "logarithms", "hand", "rolling"];
 // one that breaks off does not hide what the others find
-const single = { ...checks, ...access, ...drawn, ...takes, tour, tasks };
+const single = { ...checks, ...access, ...drawn, ...looking, ...hands, ...takes, tour, tasks };
 const shown = Object.values(single).map((check) => () => check(tools).catch((error) => complaints.push(`${check.name}: ${error.stack}`)));
 
 try {
   const grows = () => growth(tools, Number(what) || ROUNDS);
   const all = [opening, everyScene, sliders, fingers, ownText, looks, ...shown, grows];
   const named = what in single ? [shown[Object.keys(single).indexOf(what)]] : null;
-  const parts = { all, numbers: [ownText], shown }[what] ?? named ?? [grows];
+  const elsewhere = [everyScene, ownText, ...ELSEWHERE.map((name) => shown[Object.keys(single).indexOf(name)])];
+  const parts = { all, numbers: [ownText], shown, elsewhere }[what] ?? named ?? [grows];
   for (const part of parts) await part();
 } catch (error) {
   complaints.push(error.stack);
@@ -304,6 +313,7 @@ try {
   await browser.close();
   rmSync(userDataDir, { recursive: true, force: true, maxRetries: 5 });
 }
+if (what === "elsewhere") said.push(`${ELSEWHERE.length} checks in ${await browserName}`);
 console.log(said.join("; "));
 if (complaints.length) {
   console.error([...new Set(complaints)].join("\n"));

@@ -113,6 +113,7 @@ export const STEPS = [
     question: "Where does purple go when κ becomes large?",
     answers: ["It goes to blue", "It stays with orange"],
     slider: { name: "kappa", sign: "κ", unit: "1/s", low: 0.01, high: 1000, log: true, start: 1000, hint: "Move it from left to right." },
+    purple: KAPPA,
     truth: (facts) => nearer(facts, KAPPA),
     reading: (facts) => `Purple is up to ${metres(apart(facts, KAPPA, BLUE))} away from blue, ${metres(apart(facts, KAPPA, ORANGE))} from orange.`,
     reveal: (facts) => (nearer(facts, KAPPA) === 0
@@ -127,6 +128,7 @@ export const STEPS = [
     question: "With strong friction, whose motion is it?",
     answers: ["That of blue", "That of orange"],
     slider: { name: "slip", sign: "N", unit: "kg/s", low: 3, high: 10000, log: true, inverse: true, start: 1000, hint: "Move it: more friction to the right." },
+    purple: FRICTION,
     truth: (facts) => nearer(facts, FRICTION),
     reading: (facts) => `Purple is up to ${metres(apart(facts, FRICTION, BLUE))} away from blue, ${metres(apart(facts, FRICTION, ORANGE))} from orange.`,
     reveal: (facts) => (nearer(facts, FRICTION) === 0
@@ -150,7 +152,7 @@ export const STEPS = [
 // The state of the page at the beginning of a step.
 export function stateOf(step) {
   const { scene, text = null, set = {}, off = [] } = STEPS[step - 1].state;
-  return { scene, text, set: { ...set }, on: [], off: [...off], time: 0, tab: "tour", step, guess: -1 };
+  return { scene, text, set: { ...set }, on: [], off: [...off], time: 0, tab: "tour", step, guess: -1, follow: "", by: 1, grips: false };
 }
 
 export class Tour {
@@ -222,9 +224,12 @@ export class Tour {
     if (!this.step || !this.guessed) return;
     const { step, panel } = this;
     const facts = this.acts.facts();
-    if (step.reading && facts.samples) panel.querySelector(".reading").textContent = step.reading(facts);
+    // an answer to what was asked in another step has not all of them
+    const isThere = (label) => facts.samples?.motions.some((motion) => motion.label === label);
+    const areThere = [BLUE, ORANGE, step.purple ?? BLUE].every(isThere);
+    if (step.reading && areThere) panel.querySelector(".reading").textContent = step.reading(facts);
     const reveal = panel.querySelector(".reveal");
-    if (!facts.samples || !facts.decided?.pairs) {
+    if (!areThere || !facts.decided?.pairs) {
       reveal.setAttribute("aria-busy", "true");
       return;
     }

@@ -14,9 +14,9 @@ pub(crate) struct Bodies {
 }
 
 impl Bodies {
-    /// Those of `[view]`; without one a point in the plane of the first two coordinates.
+    /// Those that [`shown`] has.
     pub(crate) fn of(scene: &Scene) -> Result<Bodies, CompileError> {
-        let view = if scene.view.bodies.is_empty() { point(scene) } else { scene.view.clone() };
+        let view = shown(scene);
         let poses = view.poses(&scene.system)?;
         let moved = view.bodies.iter().map(|body| view.is_moved(&scene.system, body)).collect();
         Ok(Bodies { view, poses, moved })
@@ -53,6 +53,11 @@ impl Bodies {
         let poses = self.poses.at(t, q);
         poses.iter().zip(&self.moved).filter(|(_, moved)| !**moved).for_each(|(pose, _)| put(pose, numbers));
     }
+}
+
+/// `[view]`; without one a point in the plane of the first two coordinates.
+pub(crate) fn shown(scene: &Scene) -> View {
+    if scene.view.bodies.is_empty() { point(scene) } else { scene.view.clone() }
 }
 
 fn put(pose: &Pose, numbers: &mut Vec<f64>) {

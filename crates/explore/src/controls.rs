@@ -70,6 +70,12 @@ fn around(value: f64, reach: f64) -> [f64; 2] {
     [value - reach, value + reach]
 }
 
+/// Names and values of the coordinates, velocities and rates that are given at the start.
+pub(crate) fn start_numbers(scene: &Scene) -> Vec<(String, f64)> {
+    let coordinates = scene.system.coordinates.iter().zip(&scene.start.q).map(|(c, &q)| (c.name.clone(), q));
+    coordinates.chain(velocities(scene)).collect()
+}
+
 /// The velocities and rates that are given at the start; the constraints supply the others.
 fn velocities(scene: &Scene) -> Vec<(String, f64)> {
     let g = &scene.system.graph;

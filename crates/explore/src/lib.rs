@@ -10,6 +10,7 @@
 //!
 //! - `scene`: what can be varied, and which motions there are;
 //! - `motions`: these, sampled at equal times, with the bodies that are drawn, and the gaps between them;
+//!   where they are asked for, arrows and what a hand takes hold of at the start;
 //! - `equations`: in LaTeX;
 //! - `decision`: the comparison in words, as `deltaq compare` says it, and pair by pair;
 //! - `text`: the scene with the numbers that are set.
@@ -37,6 +38,7 @@ mod bodies;
 mod controls;
 #[cfg(target_family = "wasm")]
 mod exports;
+mod grips;
 mod kept;
 mod motions;
 mod question;

@@ -7,6 +7,7 @@ use serde_json::{Value, json};
 
 use crate::arrows::Arrows;
 use crate::bodies::Bodies;
+use crate::grips;
 use crate::kept::Kept;
 use crate::question::{Question, Refused};
 use crate::run::{Run, settings};
@@ -56,11 +57,12 @@ pub(crate) fn sampled(
         answers.push(answer);
     }
     let gaps = gaps(scene, &answers, &mut runs, numbers)?;
+    let grips = if question.grips { grips::of(scene, question)? } else { None };
     runs.into_iter().for_each(|(i, run)| run.leave(&choices[i], kept));
     Ok(json!({
         "start": scene.start.t, "end": scene.start.t + scene.duration, "times": sampler.times.len(),
         "bodies": sampler.bodies.described(), "ground": ground, "motions": answers, "gaps": gaps,
-        "contacts": sampler.arrows.as_ref().map(Arrows::contacts), "down": if question.glance { Value::Null } else { down(scene, &answers, numbers)? },
+        "grips": grips, "contacts": sampler.arrows.as_ref().map(Arrows::contacts), "down": if question.glance { Value::Null } else { down(scene, &answers, numbers)? },
     }))
 }
 

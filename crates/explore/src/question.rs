@@ -48,6 +48,9 @@ pub struct Question {
     /// Velocities, reactions at the contacts and virtual displacements, too.
     #[serde(default)]
     pub forces: bool,
+    /// What a hand takes hold of at the start, too.
+    #[serde(default)]
+    pub grips: bool,
 }
 
 /// An answer: an object of JSON, and the numbers to which it points.

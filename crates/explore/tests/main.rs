@@ -212,6 +212,35 @@ fn bodies_and_a_point_where_a_scene_has_none() {
     assert!((numbers[end - 12] - 0.4_f64.cos() * q[0]).abs() < 1e-14);
 }
 
+/// The sledge in closed form: its place is R (x, y, 0), R the turn of the slope by 0.4 about y.
+#[test]
+fn a_hand_holds_the_start() {
+    let question = |set: Value| json!({ "ask": "motions", "name": "s", "text": SLEDGE, "motions": ["Chetaev"], "steps": 4, "grips": true, "set": set });
+    let (c, s) = (0.4_f64.cos(), 0.4_f64.sin());
+    let place = |x: f64, y: f64| [c * x, y, -s * x];
+    let near = |found: &Value, expected: [[f64; 3]; 3]| {
+        let found: Vec<f64> = found.as_array().unwrap().iter().map(|x| x.as_f64().unwrap()).collect();
+        let off = found.iter().zip(expected.as_flattened()).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        assert!(found.len() == 9 && off < 1e-5, "{found:?}, not {expected:?}");
+    };
+    let (answer, _) = ask(question(json!({ "x": 2.0, "phi": 0.5 })));
+    let grips = &answer["grips"];
+    // x' = 0.5 cos(phi), and the constraint supplies y'
+    let (cos, sin) = (0.5_f64.cos(), 0.5_f64.sin());
+    near(&grips["here"], [place(2.0, 0.0), place(cos, sin), place(0.5 * cos, 0.5 * sin)]);
+    let numbers = grips["numbers"].as_array().unwrap();
+    let names: Vec<&str> = numbers.iter().map(|number| number["name"].as_str().unwrap()).collect();
+    assert_eq!(names, ["x", "y", "phi", "x'", "phi'"]);
+    let zero = [0.0; 3];
+    near(&numbers[0]["by"], [place(1.0, 0.0), zero, zero]);
+    near(&numbers[1]["by"], [place(0.0, 1.0), zero, zero]);
+    near(&numbers[2]["by"], [zero, place(-sin, cos), place(-0.5 * sin, 0.5 * cos)]);
+    near(&numbers[3]["by"], [zero, zero, place(1.0, sin / cos)]);
+    near(&numbers[4]["by"], [zero, zero, zero]);
+    // unasked there are none
+    assert_eq!(ask(json!({ "ask": "motions", "name": "s", "text": SLEDGE, "steps": 4 })).0["grips"], Value::Null);
+}
+
 /// What is kept while sliders move, against motions in full: every scene, all its numbers moved at once.
 #[test]
 fn motions_at_a_glance_follow_sliders() {

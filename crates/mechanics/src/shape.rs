@@ -19,6 +19,8 @@ pub enum Kind {
     Disc,
     /// About the origin, with two great circles.
     Ball,
+    /// About the origin, its axes along x, y and z.
+    Ellipsoid,
     /// About x, its middle at the origin.
     Cylinder,
     /// Opens along z, its apex at the origin.
@@ -41,6 +43,7 @@ impl Kind {
         (Kind::Cart, "cart", &["length", "width", "bar"]),
         (Kind::Disc, "disc", &["radius"]),
         (Kind::Ball, "ball", &["radius"]),
+        (Kind::Ellipsoid, "ellipsoid", &["half axis x", "half axis y", "half axis z"]),
         (Kind::Cylinder, "cylinder", &["radius", "length"]),
         (Kind::Cone, "cone", &["half-angle", "length"]),
         (Kind::Bowl, "bowl", &["curvature along x", "curvature along y", "radius"]),
@@ -101,6 +104,7 @@ impl Shape {
             Kind::Ball => {
                 vec![circle(LARGE, |c, d| [s[0] * c, s[0] * d, 0.0]), circle(LARGE, |c, d| [s[0] * c, 0.0, s[0] * d])]
             }
+            Kind::Ellipsoid => ellipsoid([s[0], s[1], s[2]]),
             Kind::Cylinder => cylinder(s[0], s[1] / 2.0),
             Kind::Cone => cone(s[0], s[1]),
             Kind::Bowl => bowl(s[0], s[1], s[2]),
@@ -141,6 +145,19 @@ fn cart(length: f64, w: f64, bar: f64) -> Vec<Vec<Place>> {
     let body = [(-l, -half), (l, -half), (l, half), (-l, half), (-l, -half)].map(flat);
     let wheel = |y: f64| vec![flat((-l / 2.0, y)), flat((l / 2.0, y))];
     vec![body.to_vec(), vec![flat((0.0, -w)), flat((0.0, w))], wheel(-w), wheel(w), vec![[0.0; 3], flat((bar, 0.0))]]
+}
+
+/// The ellipses in the three planes of symmetry, and two across x halfway to the ends.
+fn ellipsoid([a, b, c]: Place) -> Vec<Vec<Place>> {
+    let half = 0.75_f64.sqrt();
+    let across = |x: f64, part: f64| circle(ROUND, move |cos, sin| [x * a, part * b * sin, part * c * cos]);
+    vec![
+        circle(LARGE, |cos, sin| [a * cos, b * sin, 0.0]),
+        circle(LARGE, |cos, sin| [a * cos, 0.0, c * sin]),
+        across(0.0, 1.0),
+        across(0.5, half),
+        across(-0.5, half),
+    ]
 }
 
 fn cylinder(r: f64, l: f64) -> Vec<Vec<Place>> {

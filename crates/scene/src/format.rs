@@ -89,7 +89,8 @@ pub const SYSTEM: &[Key] = &[
 ];
 
 /// The words for what a body looks like.
-pub const SHAPES: &str = "one of point, rod, blade, box, cart, disc, ball, cylinder, cone, bowl, plane, table";
+pub const SHAPES: &str =
+    "one of point, rod, blade, box, cart, disc, ball, ellipsoid, cylinder, cone, bowl, plane, table";
 
 /// `[view.NAME]`.
 pub const BODY: &[Key] = &[

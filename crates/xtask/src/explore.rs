@@ -19,8 +19,9 @@ const ENDINGS: [&str; 7] = ["js", "mjs", "css", "html", "json", "rs", "toml"];
 /// The committed page.
 const COMMITTED: &str = "reports/explore.html";
 const WASM: &str = "wasm32-unknown-unknown";
-/// Where a browser is looked for.
+/// Where a browser is looked for, and a second one.
 const BROWSERS: [&str; 4] = ["chromium", "chromium-browser", "google-chrome", "google-chrome-stable"];
+const FIREFOX: [&str; 2] = ["firefox", "firefox-esr"];
 
 /// The committed page is that of the sources, and works; so does a fresh one, where it can be built.
 pub(crate) fn check() -> Result<Outcome> {
@@ -34,7 +35,11 @@ pub(crate) fn check() -> Result<Outcome> {
             let (page, size) = fresh(&digest)?;
             let found = tried(&browser, &page, "all")?;
             tried(&browser, Path::new(COMMITTED), "numbers")?;
-            Outcome::Passed(format!(", {size}; {found}"))
+            let second = match installed(&FIREFOX) {
+                Some(firefox) => tried(&firefox, &page, "elsewhere")?,
+                None => "not tried in Firefox, which is not installed".into(),
+            };
+            Outcome::Passed(format!(", {size}; {found}; {second}"))
         }
     })
 }
@@ -112,14 +117,14 @@ fn tools() -> Result<Result<PathBuf, String>> {
     if !there() {
         return Ok(Err(format!("rustc has no target {WASM}; {INSTALL}=1 adds it")));
     }
-    if let Some(browser) = browser() {
+    if let Some(browser) = installed(&BROWSERS) {
         return Ok(Ok(browser));
     }
     if asked {
         answer(outside("apt-get").args(["install", "--yes", "--no-install-recommends", "chromium"]));
     }
     let lacking = || format!("there is no browser, none of {}; {INSTALL}=1 installs one (apt)", BROWSERS.join(", "));
-    Ok(browser().ok_or_else(lacking))
+    Ok(installed(&BROWSERS).ok_or_else(lacking))
 }
 
 fn npm() -> Command {
@@ -132,9 +137,10 @@ fn answer(command: &mut Command) -> Option<String> {
     output.status.success().then(|| String::from_utf8_lossy(&output.stdout).into_owned())
 }
 
-fn browser() -> Option<PathBuf> {
+/// The first of these programs that there is.
+fn installed(names: &[&str]) -> Option<PathBuf> {
     let folders: Vec<PathBuf> = std::env::split_paths(&std::env::var_os("PATH")?).collect();
-    let places = BROWSERS.iter().flat_map(|name| folders.iter().map(move |folder| folder.join(name)));
+    let places = names.iter().flat_map(|name| folders.iter().map(move |folder| folder.join(name)));
     { places }.find(|place| place.is_file())
 }
 

@@ -31,6 +31,11 @@ pub fn scenes() -> Vec<Scene> {
     catalogue::SCENES.iter().map(|(name, _)| scene(name, &[])).collect()
 }
 
+/// The further systems of the literature.
+pub fn classics() -> Vec<Scene> {
+    catalogue::CLASSICS.iter().map(|(name, _)| scene(name, &[])).collect()
+}
+
 /// A bicycle that is pushed over at 2 m/s.
 pub fn falling_bicycle() -> Scene {
     scene("bicycle", &[("lean'", 0.5), ("yaw", 0.3)])
