@@ -111,6 +111,7 @@ pub fn scene(trailers: usize, coordinates: Coordinates) -> Result<Scene, ParseEr
         completion: Completion::default(),
         removals: Vec::new(),
         duration: DURATION,
+        film: Vec::new(),
         view: View::default(),
     })
 }

@@ -2,6 +2,7 @@
 
 mod connect;
 mod ensemble;
+mod fit;
 mod integrals;
 mod judge;
 mod linearize;
@@ -19,6 +20,7 @@ pub use connect::ConnectArguments;
 use deltaq::{Fits, Stepping};
 pub use ensemble::{EnsembleArguments, FreeArguments, Limits, MotionArguments};
 use equations::Formulation;
+pub use fit::FitArguments;
 pub use integrals::IntegralsArguments;
 pub use judge::JudgeArguments;
 pub use linearize::{LinearizeArguments, TableFormat};
@@ -67,6 +69,8 @@ pub enum Command {
     Integrals(IntegralsArguments),
     /// Say which law a program integrates, from motions that it made: slip, epsilon and drag with errors.
     Judge(JudgeArguments),
+    /// Fit unknown numbers to films: estimates with intervals, and which formulation the films support.
+    Fit(FitArguments),
     /// Measure error against run time, by every method at every tolerance.
     Bench(BenchArguments),
     /// Print completions for a shell.

@@ -1,7 +1,7 @@
 //! The `deltaq` command. Exit code 1 where the answer cannot be written, 2 for bad input; `solve` gives 0
 //! only for a trajectory to trust, 3 where the integration had to stop or its error estimate is too large;
-//! `ensemble` likewise, for any member; `prove` gives 3 without a certificate, `judge` where no law fits; 4
-//! where results contradict each other, which is a fault of the program.
+//! `ensemble` likewise, for any member; `prove` gives 3 without a certificate, `judge` where no law fits,
+//! `fit` where no formulation does; 4 where results contradict each other, which is a fault of the program.
 
 mod bench_command;
 mod cli;
@@ -10,6 +10,7 @@ mod compare_command;
 mod connect_command;
 mod ensemble_command;
 mod explore_command;
+mod fit_command;
 mod grid;
 mod integrals_command;
 mod judge_command;
@@ -54,6 +55,7 @@ fn run(cli: Cli) -> Result<Answer> {
         }
         Command::Man { command } => manual(command.as_deref())?,
         Command::Integrals(arguments) => return integrals_command::run(&arguments, quiet),
+        Command::Fit(arguments) => return fit_command::run(&arguments),
         Command::Judge(arguments) => return judge_command::run(&arguments),
         Command::Prove(arguments) => return prove_command::run(&arguments),
         Command::Connect(arguments) => return connect_command::run(&arguments),

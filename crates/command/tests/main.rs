@@ -8,6 +8,7 @@ mod connect_command;
 mod documents;
 mod ensemble_command;
 mod explore_command;
+mod fit_command;
 mod integrals_command;
 mod judge_command;
 mod killed;

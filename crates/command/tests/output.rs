@@ -8,7 +8,7 @@ use crate::support::{all_may_be_left, answer, command, commands, elsewhere, none
 const BAD: &str = concat!(env!("CARGO_TARGET_TMPDIR"), "/bad.toml");
 
 /// One call of every command.
-const ANSWERS: [&[&str]; 18] = [
+const ANSWERS: [&[&str]; 19] = [
     &["new"],
     &["check", "sledge"],
     &["solve", "sledge", "-f", "chetaev", "--times", "0,1"],
@@ -22,6 +22,14 @@ const ANSWERS: [&[&str]; 18] = [
     &["prove", "sledge", "--out", "-"],
     &["integrals", "suslov"],
     &["judge", "sledge", concat!(env!("CARGO_MANIFEST_DIR"), "/tests/sledge.csv")],
+    &[
+        "fit",
+        "sledge",
+        concat!(env!("CARGO_MANIFEST_DIR"), "/tests/film.csv"),
+        "--free=x,y,phi,x',phi'",
+        "--sigma=1mm",
+        "--starts=1",
+    ],
     &["bench", "bowl", "--set", "duration=0.01", "--seconds", "0.0001", "--quiet"],
     &["completions", "bash"],
     &["man"],

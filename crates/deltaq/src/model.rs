@@ -62,15 +62,7 @@ impl Model {
     ) -> Result<Self, SolveError> {
         let refused = |reason: String| Err(SolveError::Member { reason });
         let start = scene.start.t;
-        if let Some(pair) = times.windows(2).find(|pair| pair[0] > pair[1] || pair[1].is_nan()) {
-            return refused(format!("times have to rise: {:?} comes before {:?}", pair[0], pair[1]));
-        }
-        match (times.first(), times.last()) {
-            (Some(first), Some(last)) if *first >= start && *last > start && last.is_finite() => {}
-            _ => {
-                return refused(format!("times have to begin at the start {start:?} or after it, and to end after it"));
-            }
-        }
+        check(start, times)?;
         if matches!(choice.constants, ConstantsRule::Natural { .. }) {
             return refused(
                 "constants that are natural at a horizon are found by a search: a model has given ones".into(),
@@ -82,6 +74,31 @@ impl Model {
         let settings = Settings { method: Some(method), ..settings.clone() };
         let names = names.iter().map(|name| name.to_string()).collect();
         Ok(Model { by_name, names, times: times.to_vec(), settings, start })
+    }
+
+    /// The same at other times; nothing is derived anew.
+    ///
+    /// # Errors
+    /// [`SolveError::Member`] for times that make no sense.
+    pub fn with_times(&self, times: &[f64]) -> Result<Self, SolveError> {
+        check(self.start, times)?;
+        Ok(Model { times: times.to_vec(), ..self.clone() })
+    }
+
+    /// From now on a motion may take no more than `times` the steps, 10 at least, of that with these numbers;
+    /// nothing changes where there is no such motion.
+    ///
+    /// # Panics
+    /// If there are not as many as names.
+    pub fn limit_steps(&mut self, row: &[f64], times: usize) {
+        let (end, options) = self.end();
+        if self.set(row).is_ok() {
+            let run = self.by_name.varying_mut().prepared_mut().integrate(end, &options);
+            if let Some(run) = run.ok().filter(|run| run.solution.status == Status::Completed) {
+                let steps = run.solution.work.steps + run.solution.work.rejected;
+                self.settings.max_steps = self.settings.max_steps.min(times * steps.max(10));
+            }
+        }
     }
 
     /// Names of the numbers.
@@ -179,6 +196,18 @@ impl Model {
         }
         self.by_name.set(row, None)?;
         Ok(along)
+    }
+}
+
+/// Refuses times of which no motion from `start` can be read off.
+fn check(start: f64, times: &[f64]) -> Result<(), SolveError> {
+    let refused = |reason: String| Err(SolveError::Member { reason });
+    if let Some(pair) = times.windows(2).find(|pair| pair[0] > pair[1] || pair[1].is_nan()) {
+        return refused(format!("times have to rise: {:?} comes before {:?}", pair[0], pair[1]));
+    }
+    match (times.first(), times.last()) {
+        (Some(first), Some(last)) if *first >= start && *last > start && last.is_finite() => Ok(()),
+        _ => refused(format!("times have to begin at the start {start:?} or after it, and to end after it")),
     }
 }
 

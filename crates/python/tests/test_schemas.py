@@ -32,6 +32,7 @@ ANSWERS = {
     "integrals": {"integrals suslov": 0, "integrals turntable --degree 1": 0, "integrals sledge-with-friction --degree 1": 0},
     "integrals-certificate": {f"integrals {scene} --degree 1 --certificates FOLDER": 0 for scene in ("suslov", "heisenberg")},
     "judge": {"judge sledge FOLDER/motion.csv": 0, "judge sledge FOLDER/motion.csv FOLDER/motion.csv FOLDER/motion.csv --set g=5": 3},
+    "fit": {"fit sledge FOLDER/film.csv --free x,y,phi,x',phi',g~9 --law eps --sigma 1mm": 0, "fit sledge FOLDER/film.csv --free x,y --sigma 1cm": 3},
     "certificate": {"prove sledge --out -": 0},
     "linearize": {"linearize bicycle --free lean,steer --sweep v=4:5:2": 0, "linearize sledge --at 1": 0},
     "random": {"random --count 3": 0},
@@ -65,6 +66,8 @@ def test_answers_are_as_described(kind, tmp_path):
     if kind == "judge":
         motion = subprocess.run([PROGRAM, "solve", "sledge", "-f", "chetaev"], capture_output=True, text=True, check=True).stdout
         (tmp_path / "motion.csv").write_text(motion)
+    if kind == "fit":
+        (tmp_path / "film.csv").write_bytes((ROOT / "crates" / "command" / "tests" / "film.csv").read_bytes())
     for call, code in ANSWERS[kind].items():
         form = [] if kind.endswith("certificate") else ["--format", "json"]
         words = call.replace("FOLDER", str(tmp_path)).split(" ") + form

@@ -58,6 +58,7 @@ pub const SCENE: &[Key] = &[
     may("definitions", Named(&Quantity), "numbers, vectors and matrices, in any order"),
     may("invariants", Named(&Quantity), "what is to stay constant along every motion, and is watched"),
     may("observables", Named(&Quantity), "what else is printed of a motion"),
+    may("film", Named(&Table(FILMED)), "what columns of films show, by name"),
     must("system", Table(SYSTEM), "what moves"),
     may("start", Table(START), "where it starts"),
     may("removal", Removals, "parametrizations written by hand"),
@@ -70,6 +71,12 @@ pub const SCENE: &[Key] = &[
 pub const COORDINATE: &[Key] = &[
     may("unit", Text, "a label; angles are in radians"),
     must("start", Expression, "q at the start, in parameters, t and the coordinates above"),
+];
+
+/// `[film.NAME]`.
+pub const FILMED: &[Key] = &[
+    must("is", Expression, "the column, in coordinates, velocities, parameters and t"),
+    may("sigma", Number, "standard deviation of its errors, above 0, in the unit of the column"),
 ];
 
 /// `[system]`.

@@ -47,6 +47,7 @@
 mod constants;
 mod context;
 mod error;
+mod film;
 pub mod format;
 mod load;
 mod names;
@@ -68,6 +69,6 @@ pub use error::{SceneError, SceneErrorKind};
 pub use load::SIZE_LIMIT;
 pub use number::Number;
 pub use reasons::{NameFault, Unavailable};
-pub use scene::Scene;
+pub use scene::{Filmed, Scene};
 pub use starts::{Start, Starts};
 pub use write::quoted;

@@ -9,7 +9,7 @@ use toml::de::DeTable;
 use super::context::Context;
 use super::overrides::Overrides;
 use super::section::{Entry, Section, Source};
-use super::{constants, removal, start, system, view};
+use super::{constants, film, removal, start, system, view};
 use crate::{Number, Scene, SceneError, SceneErrorKind, format};
 
 /// Size of the largest scene file that is read, in bytes.
@@ -176,6 +176,7 @@ fn read(name: &str, source: Source, overrides: Overrides) -> Result<Scene, Scene
         source.note(duration(&context, &run))
     });
     let view = source.note(view::read(&context)).unwrap_or_default();
+    let film = source.note(film::read(&context)).unwrap_or_default();
     // constraints that could not be read would be missed
     let multipliers =
         if faults_so_far(source) { Some(Vec::new()) } else { source.note(constants::multipliers(&context)) };
@@ -200,6 +201,7 @@ fn read(name: &str, source: Source, overrides: Overrides) -> Result<Scene, Scene
         removals,
         multipliers,
         duration,
+        film,
         view,
     })
 }

@@ -1,6 +1,7 @@
 //! What a scene is.
 
 use mechanics::{Completion, Removal, State, System, View};
+use symbolic::Expr;
 
 /// A system together with a consistent start and everything else a scene file says.
 #[derive(Clone)]
@@ -25,8 +26,21 @@ pub struct Scene {
     pub multipliers: Vec<f64>,
     /// Length of the run, in units of `t`; positive.
     pub duration: f64,
+    /// What columns of films show.
+    pub film: Vec<Filmed>,
     /// What is drawn; without bodies where the file does not say.
     pub view: View,
+}
+
+/// What a column of a film shows.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Filmed {
+    /// Name of the column.
+    pub name: String,
+    /// It, in `(q, v, t)` and parameters, in the graph of the system.
+    pub expression: Expr,
+    /// Standard deviation of its errors, positive, where the scene says it.
+    pub sigma: Option<f64>,
 }
 
 impl Scene {

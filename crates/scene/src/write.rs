@@ -50,6 +50,13 @@ fn written(scene: &Scene) -> String {
             text.line(&watched.name, &quoted(&g.plain(watched.expression)));
         }
     }
+    for filmed in &scene.film {
+        text.header(&format!("film.{}", key(&filmed.name)));
+        text.line("is", &quoted(&g.plain(filmed.expression)));
+        if let Some(sigma) = filmed.sigma {
+            text.line("sigma", &number(sigma));
+        }
+    }
     for body in &scene.view.bodies {
         write_body(&mut text, &scene.view, body);
     }

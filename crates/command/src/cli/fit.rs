@@ -1,0 +1,53 @@
+//! Options of `deltaq fit`.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use fit::Unknown;
+use program::TextOrJson;
+
+use super::SceneArguments;
+
+/// `deltaq fit`.
+#[derive(Args, Debug)]
+pub struct FitArguments {
+    #[command(flatten)]
+    pub scene: SceneArguments,
+    /// Films, CSV: a column `t`, the others expressions of coordinates, velocities and parameters by their
+    /// names, `x` or `a*theta`, perhaps with a unit behind, `x [mm]`; empty cells are gaps.
+    #[arg(required = true)]
+    pub films: Vec<PathBuf>,
+    /// What is not known: parameters, start values; `NAME~VALUE` where the search begins,
+    /// `NAME~MEAN±DEVIATION` what is known before, `NAME>=BOUND`. Each film has start values of its own and
+    /// shares parameters; `NAME@2` is the second film's own. Multipliers and costates at the start are
+    /// unknown anyway.
+    #[arg(long, value_name = "NAME,…", value_delimiter = ',', required = true, allow_hyphen_values = true)]
+    pub free: Vec<Unknown>,
+    /// Numbers of a constraint law, which adds a row: `eps` (ε ≥ 0), `slip` (1/N), `kappa`; as in `--free`.
+    #[arg(long, value_name = "NAME,…", value_delimiter = ',')]
+    pub law: Vec<Unknown>,
+    /// Standard deviations of columns: `0.5mm` of all, `x=0.5mm` of one.
+    #[arg(long, value_name = "σ,…", value_delimiter = ',', allow_hyphen_values = true)]
+    pub sigma: Vec<String>,
+    /// Numbers that are known and others in one film: `psi'@2=6`.
+    #[arg(long, value_name = "NAME@FILM=VALUE,…", value_delimiter = ',')]
+    pub known: Vec<String>,
+    /// Formulations by name, or `all`.
+    #[arg(long, value_name = "NAME,…", value_delimiter = ',', default_value = "chetaev,vakonomic")]
+    pub formulations: Vec<String>,
+    /// Starts of the search, which differ in multipliers and costates.
+    #[arg(long, default_value_t = 16)]
+    pub starts: usize,
+    /// Outliers count little: residuals above 1.345 σ count linearly.
+    #[arg(long)]
+    pub robust: bool,
+    /// Tolerance of motions.
+    #[arg(long, default_value_t = 1e-9)]
+    pub tolerance: f64,
+    /// Most steps of a motion: a search that goes where motions take more comes back.
+    #[arg(long, default_value_t = 2_000)]
+    pub max_steps: usize,
+    /// Output format.
+    #[arg(long, value_enum, default_value_t = TextOrJson::Text)]
+    pub format: TextOrJson,
+}

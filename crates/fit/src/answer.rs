@@ -1,0 +1,138 @@
+//! Formulations side by side.
+
+use deltaq::{CHETAEV, Choice, Settings, choices_among, constants_of, costate_names, is_costate};
+use equations::{Formulation, Needs};
+use mechanics::{ConstantsRule, Parameter};
+use scene::Scene;
+
+use crate::fit::length_that_tells;
+use crate::search::begun;
+use crate::{Film, Fit, FitError, Problem, Row, Unknown, Verdict, fit, verdicts};
+
+/// What is asked of films.
+#[derive(Clone)]
+pub struct Question<'a> {
+    /// What is not known, whatever the formulation. Multipliers and costates at the start are unknown where a
+    /// formulation has them, and need not be named.
+    pub unknowns: &'a [Unknown],
+    /// Numbers of constraint laws that are not known, `epsilon`, `slip` or `kappa`: a further row for each
+    /// law.
+    pub law: &'a [Unknown],
+    /// Starts of the search.
+    pub starts: usize,
+    /// Residuals above this size count linearly.
+    pub robust: Option<f64>,
+    /// How motions are integrated.
+    pub settings: Settings,
+}
+
+/// Fits every formulation that is wanted and gives verdicts. One that cannot be fitted has the reason.
+///
+/// # Errors
+/// [`FitError`] where there is no formulation to fit.
+pub fn fit_formulations(
+    scene: &Scene,
+    films: &[Film],
+    question: &Question,
+    wanted: &dyn Fn(&Formulation) -> bool,
+) -> Result<Vec<Row>, FitError> {
+    let scene = with_law(scene, question.law);
+    let choices = choices_among(&scene, |f| match f.needs {
+        Needs::Parameters(names) => question.law.iter().any(|unknown| names.contains(&unknown.name.as_str())),
+        _ => wanted(f),
+    });
+    let mut fits: Vec<(Choice, Result<(Problem, Fit), FitError>)> = Vec::new();
+    for choice in choices {
+        // a law that contains Chetaev's begins there
+        let contains = matches!(choice.formulation.needs, Needs::Parameters(_));
+        let near = fits.iter().find(|(known, _)| contains && known.formulation == CHETAEV);
+        let near = near.and_then(|(_, fit)| fit.as_ref().ok()).map(|(_, fit)| fit);
+        let found = fit_choice(&scene, &choice, films, question, near);
+        fits.push((choice, found));
+    }
+    let plain = |(choice, fit): &(Choice, Result<(Problem, Fit), FitError>)| {
+        (choice.clone(), fit.as_ref().map(|(_, fit)| fit.clone()).map_err(FitError::clone))
+    };
+    let mut rows = verdicts(fits.iter().map(plain).collect());
+    let labels: Vec<String> = rows.iter().map(|row| row.choice.label.clone()).collect();
+    for (row, (_, own)) in rows.iter_mut().zip(&fits) {
+        let (Verdict::CannotTell { from, needs }, Ok((problem, fit))) = (&mut row.verdict, own) else { continue };
+        let of = |label: &String| labels.iter().position(|own| own == label).and_then(|i| fits[i].1.as_ref().ok());
+        *needs = from
+            .iter()
+            .map(|label| of(label).and_then(|(other, best)| length_that_tells((other, best), (problem, fit))))
+            .collect();
+    }
+    Ok(rows)
+}
+
+/// The scene with the parameters of a law that it lacks.
+fn with_law(scene: &Scene, law: &[Unknown]) -> Scene {
+    let mut scene = scene.clone();
+    for unknown in law {
+        let symbol = scene.system.graph.symbol(&unknown.name);
+        if !scene.system.parameters.iter().any(|p| p.symbol == symbol) {
+            scene.system.parameters.push(Parameter { symbol, value: unknown.start.unwrap_or(0.0) });
+        }
+    }
+    scene
+}
+
+/// Unknowns of a formulation beside those of the question: constants that it starts from, numbers of its law.
+fn own(scene: &Scene, choice: &Choice, question: &Question) -> Vec<Unknown> {
+    let constants = match &choice.removal {
+        Some(removal) => costate_names(scene, removal),
+        None if choice.formulation.starts_multipliers => scene.multiplier_names(),
+        None => Vec::new(),
+    };
+    let is_own = |u: &&Unknown| match choice.formulation.needs {
+        Needs::Parameters(names) => names.contains(&u.name.as_str()),
+        _ => false,
+    };
+    let law = question.law.iter().filter(is_own);
+    let named = |name: &str| question.unknowns.iter().any(|u| u.name == name && u.film.is_none());
+    let constants = constants.iter().filter(|name| !named(name)).map(|name| Unknown::named(name));
+    law.cloned().chain(constants).collect()
+}
+
+fn fit_choice(
+    scene: &Scene,
+    choice: &Choice,
+    films: &[Film],
+    question: &Question,
+    near: Option<&Fit>,
+) -> Result<(Problem, Fit), FitError> {
+    let is_constant = |name: &str| name.starts_with("mu0_") || is_costate(name);
+    let mut unknowns: Vec<Unknown> = question.unknowns.to_vec();
+    unknowns.retain(|u| {
+        !is_constant(&u.name) || (is_costate(&u.name) == choice.removal.is_some()) && choice_starts(choice)
+    });
+    unknowns.extend(own(scene, choice, question));
+    let constants = match (&choice.removal, constants_of(choice, scene)) {
+        (Some(_), ConstantsRule::Natural { .. }) => ConstantsRule::Zero,
+        (_, rule) => rule,
+    };
+    let choice = Choice { constants, ..choice.clone() };
+    let problem = Problem::new(scene, &choice, films, &unknowns, &question.settings)?;
+    let mut problem = problem.robust(question.robust);
+    let hidden =
+        |name: &str| near.is_some_and(|near| near.estimates.iter().any(|e| e.name == name && e.error.is_infinite()));
+    if let Some(near) = near {
+        let known = |label: &str| near.estimates.iter().find(|e| e.name == label).map(|e| e.value);
+        let start: Vec<f64> =
+            problem.unknowns().iter().zip(problem.start()).map(|(u, x)| known(&u.label()).unwrap_or(*x)).collect();
+        problem.begin_at(&start);
+        // what Chetaev's law does not show is held at first
+        let held: Vec<usize> = (0..start.len()).filter(|&i| hidden(&problem.unknowns()[i].name)).collect();
+        problem.begin_at(&begun(&problem, &held));
+    }
+    let of_law = |name: &str| question.law.iter().any(|u| u.name == name);
+    let spread = |name: &str| is_constant(name) || of_law(name) || hidden(name);
+    let found = fit(&problem, &spread, question.starts)?;
+    Ok((problem, found))
+}
+
+/// Whether a formulation has constants to start from.
+fn choice_starts(choice: &Choice) -> bool {
+    choice.formulation.starts_multipliers || choice.removal.is_some()
+}

@@ -1,0 +1,147 @@
+//! A film as a table: times, and what is seen of the motion.
+
+use scene::Scene;
+use symbolic::Expr;
+
+use crate::FitError;
+use crate::quantity::unit;
+
+/// What a column of a film shows.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Column {
+    /// Its name.
+    pub name: String,
+    /// It, in `(q, v, t)` and parameters, in the graph of the scene.
+    pub expression: Expr,
+    /// Standard deviation of its errors, positive.
+    pub sigma: f64,
+}
+
+/// A film of one motion of a scene.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Film {
+    /// Its name for messages.
+    pub name: String,
+    /// Times, growing, on the clock of the scene.
+    pub t: Vec<f64>,
+    /// What is seen.
+    pub columns: Vec<Column>,
+    /// One row per time, one value per column; none where nothing was seen.
+    pub rows: Vec<Vec<Option<f64>>>,
+    /// Lines of the file, the header being the first; one per time.
+    pub lines: Vec<usize>,
+    /// Numbers of the scene that are others in this film, and known: `("psi'", 6.0)`.
+    pub known: Vec<(String, f64)>,
+}
+
+/// Standard deviations of columns: by name, or of all that have no other.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Deviations {
+    /// Of columns by name.
+    pub by_name: Vec<(String, f64)>,
+    /// Of the others.
+    pub others: Option<f64>,
+}
+
+impl Deviations {
+    fn of(&self, name: &str, written: Option<f64>) -> Result<f64, FitError> {
+        let named = self.by_name.iter().find(|(known, _)| known == name).map(|(_, sigma)| *sigma);
+        let found = named.or(written).or(self.others).ok_or_else(|| FitError::NoDeviation(name.into()))?;
+        positive(name, found)
+    }
+}
+
+/// A standard deviation that makes sense.
+pub(crate) fn positive(of: &str, found: f64) -> Result<f64, FitError> {
+    match found > 0.0 && found.is_finite() {
+        true => Ok(found),
+        false => Err(FitError::Deviation { of: of.into(), found }),
+    }
+}
+
+/// Cells that show nothing.
+const EMPTY: [&str; 3] = ["", "nan", "na"];
+
+impl Film {
+    /// Reads a table, CSV, with a column `t`. Every other column has the name of an entry of `[film]`, or is
+    /// an expression of coordinates, velocities and parameters: `x`, `x'`, `a*theta`. A unit may follow:
+    /// `x [mm]`. Empty cells and `nan` are gaps; a row of gaps only is left out.
+    ///
+    /// # Errors
+    /// [`FitError`] with the line where there is one.
+    pub fn read(scene: &Scene, name: &str, text: &str, deviations: &Deviations) -> Result<Film, FitError> {
+        let cells =
+            |line: &str| -> Vec<String> { line.split(',').map(|c| c.trim().trim_matches('"').into()).collect() };
+        let mut lines = text.lines().enumerate().filter(|(_, line)| !line.trim().is_empty());
+        let header = lines.next().map(|(_, line)| cells(line.trim_start_matches('\u{feff}'))).unwrap_or_default();
+        let heads = header.iter().map(|cell| head(cell)).collect::<Result<Vec<_>, _>>()?;
+        let time = heads.iter().position(|(name, _)| *name == "t").ok_or(FitError::NoTime)?;
+        let seen: Vec<usize> = (0..heads.len()).filter(|&i| i != time).collect();
+        let columns = seen.iter().map(|&i| column(scene, heads[i].0, deviations)).collect::<Result<Vec<_>, _>>()?;
+        if columns.is_empty() {
+            return Err(FitError::NoColumn);
+        }
+        let (rows, known, t) = (Vec::new(), Vec::new(), Vec::new());
+        let mut film = Film { name: name.into(), t, columns, rows, lines: Vec::new(), known };
+        for (index, line) in lines {
+            let (line, row) = (index + 1, cells(line));
+            if row.len() != header.len() {
+                return Err(FitError::Ragged { line, found: row.len(), expected: header.len() });
+            }
+            let number = |i: usize| {
+                let wrong = || FitError::NotANumber { line, column: heads[i].0.to_string(), text: row[i].clone() };
+                let value = row[i].parse::<f64>().ok().filter(|x| x.is_finite()).ok_or_else(wrong)?;
+                Ok(value * heads[i].1)
+            };
+            let t = number(time)?;
+            if let Some(&before) = film.t.last().filter(|&&before| before >= t) {
+                return Err(FitError::TimesNotGrowing { line, t, before });
+            }
+            if t < scene.start.t {
+                return Err(FitError::BeforeTheStart { line, t, start: scene.start.t });
+            }
+            let is_gap = |i: usize| EMPTY.contains(&row[i].to_lowercase().as_str());
+            let value = |&i: &usize| if is_gap(i) { Ok(None) } else { number(i).map(Some) };
+            let values = seen.iter().map(value).collect::<Result<Vec<_>, FitError>>()?;
+            if values.iter().any(Option::is_some) {
+                film.t.push(t);
+                film.rows.push(values);
+                film.lines.push(line);
+            }
+        }
+        Ok(film)
+    }
+
+    /// Times of a film that is this many times as long, the further ones at the mean distance; no rows.
+    pub(crate) fn lengthened(&self, longer: f64) -> Film {
+        let (first, last) = (self.t[0], self.t[self.t.len() - 1]);
+        let step = (last - first) / (self.t.len() - 1).max(1) as f64;
+        let more = ((longer - 1.0) * (last - first) / step).round() as usize;
+        let t: Vec<f64> = self.t.iter().copied().chain((1..=more).map(|k| last + k as f64 * step)).collect();
+        let lines = (2..).take(t.len()).collect();
+        Film { t, lines, rows: Vec::new(), ..self.clone() }
+    }
+
+    /// Cells that are not empty.
+    pub fn count(&self) -> usize {
+        self.rows.iter().flatten().flatten().count()
+    }
+}
+
+/// The name and the unit of a cell of the header.
+fn head(cell: &str) -> Result<(&str, f64), FitError> {
+    match cell.strip_suffix(']').and_then(|cell| cell.rsplit_once('[')) {
+        Some((name, of)) => Ok((name.trim(), unit(of.trim())?)),
+        None => Ok((cell, 1.0)),
+    }
+}
+
+fn column(scene: &Scene, name: &str, deviations: &Deviations) -> Result<Column, FitError> {
+    if let Some(filmed) = scene.film.iter().find(|filmed| filmed.name == name) {
+        let sigma = deviations.of(name, filmed.sigma)?;
+        return Ok(Column { name: name.into(), expression: filmed.expression, sigma });
+    }
+    let refused = |error: symbolic::ParseError| FitError::Column { column: name.into(), reason: error.to_string() };
+    let expression = scene.system.expression(name).map_err(refused)?;
+    Ok(Column { name: name.into(), expression, sigma: deviations.of(name, None)? })
+}

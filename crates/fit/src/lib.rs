@@ -1,0 +1,56 @@
+//! # Films of motions: estimates with intervals, and which formulation a film supports
+//!
+//! Given: a scene, films, and what is not known of the scene. A film is a table of times `t_k` and columns
+//! `c(t, q, v, p)` with standard deviations σ; unknown numbers θ are parameters, start values, multipliers
+//! `μ₀` or costates `P₀`, and those of the constraint law: ε, 1/N. In each formulation that is asked for,
+//!
+//! ```text
+//! χ²(θ) = Σ ((c(t_k, q(t_k; θ), v(t_k; θ), θ) − seen_k)/σ)² + Σ ((θ_j − mean_j)/deviation_j)²
+//! ```
+//!
+//! is minimised by Levenberg and Marquardt's method, with exact derivatives of the motions, from several
+//! starts, and over beginnings of the films that become longer ([`search()`]).
+//!
+//! - [`Film::read`]: a film from CSV, with the line of what is wrong.
+//! - [`Problem`]: residuals of several films in one formulation, with shared unknowns and others of their
+//!   own.
+//! - [`fit()`]: estimates, intervals of 95 %, tests on residuals ([`residual_tests`]).
+//! - [`standard_errors`]: what films that are not yet made would show.
+//! - [`fit_formulations`]: formulations side by side, and the verdict ([`Verdict`]).
+//!
+//! **Intervals.** `± 1.96` standard errors where χ² rises by 3.84 there, to 5 %, all others fitted again;
+//! elsewhere by the profile. An unknown with a bound that is within reach, as ε ≥ 0, has an interval that
+//! ends there if χ² at the bound is above the least by no more than 2.71: the difference is `½χ²₀ + ½χ²₁`
+//! where the bound is the truth.
+//!
+//! **What films do not show.** Combinations of unknowns that change no residual are named ([`Fit::hidden`]),
+//! and the intervals of these unknowns are infinite.
+//!
+//! **What it refuses.** Films that cannot be read, with the place ([`FitError`]). No verdict is given where
+//! residuals of the best formulation object.
+
+mod answer;
+mod distribution;
+mod error;
+mod film;
+mod fit;
+mod observation;
+mod part;
+mod problem;
+mod quantity;
+mod residual_tests;
+mod search;
+mod unknown;
+mod verdict;
+
+pub use answer::{Question, fit_formulations};
+pub use distribution::{chi_squared_tail, normal_tails};
+pub use error::FitError;
+pub use film::{Column, Deviations, Film};
+pub use fit::{Estimate, Fit, Shown, fit, standard_errors};
+pub use problem::{Problem, Residual};
+pub use quantity::{quantity, unit};
+pub use residual_tests::{ResidualTest, residual_tests};
+pub use search::{Found, Minimum, search};
+pub use unknown::{Prior, Unknown};
+pub use verdict::{EXCLUDED, Row, Verdict, verdicts};

@@ -1,0 +1,113 @@
+//! Whether residuals are independent, normal and of variance one, as they are where formulation, numbers and
+//! standard deviations are right.
+
+use crate::distribution::{chi_squared_tail, normal_tails};
+use crate::{Film, Residual};
+
+/// All tests together object to a right formulation in one of this many films.
+const WRONGLY: f64 = 1000.0;
+/// Residuals of a column that a test in time asks for.
+const ENOUGH: usize = 12;
+/// Lags of the test of whiteness, at most.
+const LAGS: usize = 10;
+
+/// A test and what it found.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ResidualTest {
+    /// What it looks at: `chi squared`, `runs of x`, `whiteness of x`, `largest`.
+    pub name: String,
+    /// What was found.
+    pub found: f64,
+    /// What is expected.
+    pub expected: f64,
+    /// The probability of what was found or of something rarer.
+    pub probability: f64,
+    /// Whether it objects.
+    pub objects: bool,
+}
+
+/// The tests on residuals of films with `unknowns` fitted numbers; `robust` leaves out those that ask for
+/// normal errors.
+///
+/// - *χ²* of all residuals, too large or too small;
+/// - *runs* of one sign in each column (Wald and Wolfowitz);
+/// - *whiteness* of each column: `n(n+2) Σ ρ_l²/(n−l)` over at most ten lags (Ljung and Box);
+/// - the *largest* residual.
+pub fn residual_tests(films: &[&Film], residuals: &[Residual], unknowns: usize, robust: bool) -> Vec<ResidualTest> {
+    let mut tests = Vec::new();
+    let mut add = |name: String, found: f64, expected: f64, probability: f64| {
+        tests.push(ResidualTest { name, found, expected, probability, objects: false });
+    };
+    let count = residuals.len();
+    let dof = count.saturating_sub(unknowns).max(1) as f64;
+    if !robust {
+        let sum: f64 = residuals.iter().map(|r| r.value * r.value).sum();
+        let tail = chi_squared_tail(sum, dof);
+        add("chi squared".into(), sum, dof, (2.0 * tail.min(1.0 - tail)).min(1.0));
+        let largest = residuals.iter().map(|r| r.value.abs()).fold(0.0, f64::max);
+        let expected = (2.0 * (count as f64).ln()).sqrt();
+        add("largest residual".into(), largest, expected, (count as f64 * normal_tails(largest)).min(1.0));
+    }
+    for (number, film) in films.iter().enumerate() {
+        for (c, column) in film.columns.iter().enumerate() {
+            let of = |r: &&Residual| r.film == number && r.column == c;
+            let values: Vec<f64> = residuals.iter().filter(of).map(|r| r.value).collect();
+            if values.len() < ENOUGH {
+                continue;
+            }
+            let name = if films.len() > 1 { format!("{}@{}", column.name, number + 1) } else { column.name.clone() };
+            let (found, expected, probability) = runs(&values);
+            add(format!("runs of {name}"), found, expected, probability);
+            let (found, expected, probability) = whiteness(&values);
+            add(format!("whiteness of {name}"), found, expected, probability);
+        }
+    }
+    let limit = 1.0 / (WRONGLY * tests.len() as f64);
+    tests.iter_mut().for_each(|test| test.objects = test.probability < limit);
+    tests
+}
+
+/// Runs of one sign, how many are expected, and the probability.
+fn runs(values: &[f64]) -> (f64, f64, f64) {
+    let n = values.len() as f64;
+    let above = values.iter().filter(|x| **x > 0.0).count() as f64;
+    let found = 1.0 + values.windows(2).filter(|pair| (pair[0] > 0.0) != (pair[1] > 0.0)).count() as f64;
+    let expected = 2.0 * above * (n - above) / n + 1.0;
+    let variance = (expected - 1.0) * (expected - 2.0) / (n - 1.0);
+    if variance <= 0.0 {
+        return (found, expected, 2.0 * 0.5_f64.powf(n));
+    }
+    (found, expected, normal_tails((found - expected) / variance.sqrt()))
+}
+
+/// Ljung's and Box's Q, its degrees of freedom, and the probability.
+fn whiteness(values: &[f64]) -> (f64, f64, f64) {
+    let n = values.len();
+    let lags = LAGS.min(n / 4);
+    let mean = values.iter().sum::<f64>() / n as f64;
+    let deviations: Vec<f64> = values.iter().map(|x| x - mean).collect();
+    let variance: f64 = deviations.iter().map(|x| x * x).sum();
+    let correlation =
+        |lag: usize| deviations.iter().zip(&deviations[lag..]).map(|(a, b)| a * b).sum::<f64>() / variance;
+    let sum: f64 = (1..=lags).map(|lag| correlation(lag).powi(2) / (n - lag) as f64).sum();
+    let found = n as f64 * (n as f64 + 2.0) * sum;
+    (found, lags as f64, chi_squared_tail(found, lags as f64))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{runs, whiteness};
+
+    /// By hand: + + − − + − has 4 runs; 3 above of 6: 4 expected.
+    #[test]
+    fn runs_and_correlations_by_hand() {
+        let (found, expected, probability) = runs(&[1.0, 2.0, -1.0, -1.0, 3.0, -2.0]);
+        assert_eq!((found, expected), (4.0, 4.0));
+        assert!((probability - 1.0).abs() < 1e-12);
+        // one sign only
+        assert_eq!(runs(&[1.0; 12]), (1.0, 1.0, 2.0 * 0.5_f64.powi(12)));
+        // ρ₁ of 1, −1, 1, −1 is −3/4: Q = 4·6·(9/16)/3
+        let (found, lags, _) = whiteness(&[1.0, -1.0, 1.0, -1.0]);
+        assert!((found - 4.5).abs() < 1e-12 && lags == 1.0);
+    }
+}

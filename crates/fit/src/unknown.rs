@@ -1,0 +1,95 @@
+//! What is not known of a scene.
+
+use std::str::FromStr;
+
+use crate::film::positive;
+use crate::{FitError, quantity};
+
+/// What was known before: a normal distribution.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Prior {
+    /// Its mean.
+    pub mean: f64,
+    /// Its standard deviation.
+    pub deviation: f64,
+}
+
+/// A number of a scene that is not known: a parameter, a start value, `mu0_1`, `P0_w`.
+///
+/// Written `NAME`, `NAME@2` for the second film alone, `NAME~VALUE` with a value at which the search begins,
+/// `NAME~MEAN±DEVIATION` with what is known before; `NAME>=BOUND`.
+///
+/// ```
+/// use fit::{Prior, Unknown};
+/// let unknown: Unknown = "Omega@2~0.7±0.01".parse()?;
+/// assert_eq!((unknown.name.as_str(), unknown.film), ("Omega", Some(1)));
+/// assert_eq!(unknown.prior, Some(Prior { mean: 0.7, deviation: 0.01 }));
+/// # Ok::<(), fit::FitError>(())
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct Unknown {
+    /// Its name in the scene.
+    pub name: String,
+    /// The film, from 0, whose own number it is. Otherwise all films share a parameter, and each has its own
+    /// start value, multiplier or costate.
+    pub film: Option<usize>,
+    /// Where the search begins; at the scene's value if left out.
+    pub start: Option<f64>,
+    /// What is known before.
+    pub prior: Option<Prior>,
+    /// The least that it can be.
+    pub bound: Option<f64>,
+}
+
+impl Unknown {
+    /// A number of this name, nothing known before.
+    pub fn named(name: &str) -> Self {
+        Unknown { name: name.into(), film: None, start: None, prior: None, bound: None }
+    }
+
+    /// As it is written: `x@2`.
+    pub fn label(&self) -> String {
+        self.film.map_or_else(|| self.name.clone(), |film| format!("{}@{}", self.name, film + 1))
+    }
+}
+
+impl FromStr for Unknown {
+    type Err = FitError;
+
+    fn from_str(text: &str) -> Result<Self, FitError> {
+        let refused = |reason: String| FitError::Unknown { text: text.into(), reason };
+        let (rest, bound) = match text.split_once(">=") {
+            Some((rest, bound)) => (rest, Some(quantity(bound)?)),
+            None => (text, None),
+        };
+        let (rest, known) = match rest.split_once('~') {
+            Some((rest, known)) => (rest, Some(known)),
+            None => (rest, None),
+        };
+        let (name, film) = match rest.split_once('@') {
+            Some((name, film)) => (name, Some(film)),
+            None => (rest, None),
+        };
+        let number = |film: &str| {
+            let number = film.trim().parse::<usize>().ok().and_then(|film| film.checked_sub(1));
+            number.ok_or_else(|| refused(format!("`{film}` is no number of a film, which count from 1")))
+        };
+        let film = film.map(number).transpose()?;
+        let name = name.trim();
+        if name.is_empty() {
+            return Err(refused("it has no name".into()));
+        }
+        let pair = |known: &str| {
+            known.split_once('±').or_else(|| known.split_once("+-")).map(|(a, b)| (a.to_string(), b.to_string()))
+        };
+        let (start, prior) = match known.map(|known| (known, pair(known))) {
+            None => (None, None),
+            Some((_, Some((mean, deviation)))) => {
+                let (mean, deviation) = (quantity(&mean)?, positive(name, quantity(&deviation)?)?);
+                (Some(mean), Some(Prior { mean, deviation }))
+            }
+            Some((start, None)) => (Some(quantity(start)?), None),
+        };
+        Ok(Unknown { name: name.into(), film, start, prior, bound })
+    }
+}

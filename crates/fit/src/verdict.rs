@@ -1,0 +1,83 @@
+//! Which formulation films support.
+
+use deltaq::{CHETAEV, Choice, FIRST_ORDER, KAPPA};
+use equations::Formulation;
+
+use crate::{Fit, FitError};
+
+/// A formulation is excluded where its χ² is this much above the least.
+pub const EXCLUDED: f64 = 15.0;
+
+/// What films say of a formulation.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Verdict {
+    /// It fits, and all others are excluded.
+    Supported,
+    /// Its χ² is above the least by the square of this.
+    Excluded {
+        /// `√(χ² − least χ²)`.
+        sigmas: f64,
+    },
+    /// It fits, and so do these.
+    CannotTell {
+        /// Labels of the others.
+        from: Vec<String>,
+        /// How many times as long a film has to be at least that tells it from each of these, if they are
+        /// right; none where no length up to 8 times does. See [`fit_formulations`](crate::fit_formulations).
+        needs: Vec<Option<f64>>,
+    },
+    /// Residuals of the best formulation object: something else is wrong.
+    None,
+    /// It could not be fitted.
+    NotFitted(FitError),
+}
+
+/// A formulation and what films say of it.
+#[derive(Clone)]
+pub struct Row {
+    /// What was fitted.
+    pub choice: Choice,
+    /// The fit.
+    pub fit: Result<Fit, FitError>,
+    /// The verdict.
+    pub verdict: Verdict,
+}
+
+/// Verdicts on fits of formulations to the same films.
+pub fn verdicts(fits: Vec<(Choice, Result<Fit, FitError>)>) -> Vec<Row> {
+    let least =
+        fits.iter().filter_map(|(_, fit)| fit.as_ref().ok()).min_by(|a, b| a.chi_squared.total_cmp(&b.chi_squared));
+    let least = least.map(|fit| (fit.chi_squared, fit.objections().next().is_some()));
+    let fitting: Vec<(String, &'static Formulation)> = fits
+        .iter()
+        .filter(|(_, fit)| fit.as_ref().is_ok_and(|fit| least.is_some_and(|l| fit.chi_squared - l.0 < EXCLUDED)))
+        .map(|(choice, _)| (choice.label.clone(), choice.formulation))
+        .collect();
+    let verdict = |(choice, fit): &(Choice, Result<Fit, FitError>)| match (fit, least) {
+        (Err(error), _) => Verdict::NotFitted(error.clone()),
+        (_, Some((_, true)) | None) => Verdict::None,
+        (Ok(fit), Some((least, false))) => {
+            let above = fit.chi_squared - least;
+            if above >= EXCLUDED {
+                return Verdict::Excluded { sigmas: above.sqrt() };
+            }
+            let others = fitting.iter().filter(|(label, f)| *label != choice.label && !is_part(choice.formulation, f));
+            let from: Vec<String> = others.map(|(label, _)| label.clone()).collect();
+            if from.is_empty() {
+                Verdict::Supported
+            } else {
+                Verdict::CannotTell { needs: vec![None; from.len()], from }
+            }
+        }
+    };
+    let verdicts: Vec<Verdict> = fits.iter().map(verdict).collect();
+    fits.into_iter().zip(verdicts).map(|((choice, fit), verdict)| Row { choice, fit, verdict }).collect()
+}
+
+/// Whether one of two formulations is the other with more numbers, so that both can be right: Chetaev's law
+/// is that of first order with ε = 0.
+fn is_part(a: &Formulation, b: &Formulation) -> bool {
+    let is = |x: &Formulation, y: &Formulation| x.name == y.name;
+    let larger = |x: &Formulation| is(x, FIRST_ORDER) || is(x, KAPPA);
+    is(a, b) || (larger(a) && is(b, CHETAEV)) || (is(a, CHETAEV) && larger(b)) || (larger(a) && larger(b))
+}
