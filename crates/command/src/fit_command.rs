@@ -179,6 +179,8 @@ fn row_value(row: &Row) -> Value {
         "label": row.choice.label,
         "verdict": verdict,
         "words": words(&row.verdict),
+        "from": match &row.verdict { Verdict::CannotTell { from, .. } => from.clone(), _ => Vec::new() },
+        "needs": match &row.verdict { Verdict::CannotTell { needs, .. } => needs.clone(), _ => Vec::new() },
         "sigmas": match row.verdict { Verdict::Excluded { sigmas } => Some(sigmas), _ => None },
         "fit": row.fit.as_ref().ok().map(fit_value),
     })

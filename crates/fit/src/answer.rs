@@ -128,7 +128,7 @@ fn fit_choice(
     }
     let of_law = |name: &str| question.law.iter().any(|u| u.name == name);
     let spread = |name: &str| is_constant(name) || of_law(name) || hidden(name);
-    let found = fit(&problem, &spread, question.starts)?;
+    let found = fit(&problem, &spread, question.starts, near.is_some())?;
     Ok((problem, found))
 }
 

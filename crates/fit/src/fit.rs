@@ -183,13 +183,13 @@ fn combination(problem: &Problem, along: &DVector<f64>, lengths: &[f64]) -> Stri
     }
 }
 
-/// Fits `problem` from several starts of the unknowns that `spread` names. An unknown that changes nothing at
+/// Fits `problem` as [`search()`] does. An unknown that changes nothing at
 /// the minimum is held where the search began.
 ///
 /// # Errors
 /// [`FitError::NoMotion`], and [`FitError::ShowsNothing`] where all unknowns change nothing.
-pub fn fit(problem: &Problem, spread: &dyn Fn(&str) -> bool, starts: usize) -> Result<Fit, FitError> {
-    let Found { best, minima, starts } = search(problem, spread, starts)?;
+pub fn fit(problem: &Problem, spread: &dyn Fn(&str) -> bool, starts: usize, known: bool) -> Result<Fit, FitError> {
+    let Found { best, minima, starts } = search(problem, spread, starts, known)?;
     let (held, shown, best) = without_hidden(problem, &best)?;
     let Shown { errors, hidden } = standard_errors(&shown, &best.theta)?;
     let no_motion = |reason| FitError::NoMotion { starts, reason };

@@ -16,9 +16,9 @@ const LONGER: f64 = 1.5;
 /// Starts that are followed from one beginning to the next.
 const FOLLOWED: usize = 4;
 /// Least gain, as a part of χ², for which an iteration goes on, by [`Stage`].
-const GAINS: [f64; 3] = [1e-3, 1e-10, 1e-6];
+const GAINS: [f64; 4] = [1e-2, 1e-4, 1e-10, 1e-6];
 /// Iterations by [`Stage`].
-const ITERATIONS: [usize; 3] = [20, 50, 12];
+const ITERATIONS: [usize; 4] = [10, 20, 50, 12];
 /// Starts for the whole film are up to this many times halfway to the first one.
 const NEARER: i32 = 8;
 /// Starts that are fitted to the whole film at once beside the first one.
@@ -27,6 +27,10 @@ const SCREENED: usize = 2;
 const STEPS: usize = 40;
 /// Halvings of the way back to the start, where unknowns have gone where a longer motion cannot follow.
 const HALVINGS: i32 = 10;
+/// A beginning is fitted where χ² is within this many standard deviations; then a start is given up whose χ²
+/// is this much above.
+const FITS: f64 = 4.0;
+const HOPELESS: f64 = 100.0;
 /// Two minima are one where χ² differs by no more than this, beside this part of it.
 const SAME: [f64; 2] = [0.1, 1e-3];
 
@@ -51,46 +55,74 @@ pub struct Found {
 }
 
 /// The least minimum from several starts: the first is [`Problem::start`]; in the others unknowns for which
-/// `spread` says so are moved, by parts of their scales that no period fits.
+/// `spread` says so are moved, by parts of their scales that no period fits. Beginnings are left out where
+/// the first start is `known` to come close.
 ///
 /// # Errors
 /// [`FitError::NoMotion`].
-pub fn search(problem: &Problem, spread: &dyn Fn(&str) -> bool, starts: usize) -> Result<Found, FitError> {
+pub fn search(problem: &Problem, spread: &dyn Fn(&str) -> bool, starts: usize, known: bool) -> Result<Found, FitError> {
+    let starts = starts.max(1);
     let problem = &problem.limited(problem.start(), STEPS);
     let short = problem.beginning(FIRST.max(2 * problem.unknowns().len()))?;
     let (scale, mut reason) = scales(&mut short.clone());
-    let direct =
-        screened(problem, spread, starts).into_iter().map(|start| least(problem, &start, &scale, Stage::Whole));
-    let direct: Vec<Minimum> = direct.flatten().collect();
-    let mut followed: Vec<Minimum> = Vec::new();
-    for number in 0..starts.max(1) {
-        let start = moved(problem, &scale, spread, number);
-        match least(&short, &start, &scale, Stage::Beginning) {
-            Ok(minimum) => followed.push(minimum),
+    let mut begun = screened(problem, spread, starts);
+    if !known {
+        let starts = (0..starts).map(|number| moved(problem, &scale, spread, number));
+        begun.extend(followed(problem, short, &scale, starts.collect(), &mut reason)?);
+    }
+    let mut rough = Vec::new();
+    for start in &begun {
+        match least(problem, start, &scale, Stage::Rough) {
+            Ok(minimum) => rough.push(minimum),
             Err(error) => reason = reason.or(Some(error)),
         }
     }
-    let mut samples = short.samples();
-    let origin = problem.start();
-    while samples < problem.samples() {
-        samples = ((samples as f64 * LONGER) as usize).min(problem.samples());
-        let part = problem.beginning(samples)?;
-        distinct(&mut followed, &scale);
-        followed.truncate(FOLLOWED);
-        let next = |minimum: &Minimum| least(&part, &within(&part, origin, &minimum.theta), &scale, Stage::Beginning);
-        let (found, failed): (Vec<_>, Vec<_>) = followed.iter().map(next).partition(Result::is_ok);
-        reason = failed.into_iter().find_map(Result::err).or(reason);
-        followed = found.into_iter().flatten().collect();
-    }
-    let whole = |minimum: &Minimum| least(problem, &minimum.theta, &scale, Stage::Whole);
-    let (found, failed): (Vec<_>, Vec<_>) = followed.iter().map(whole).partition(Result::is_ok);
-    reason = failed.into_iter().find_map(Result::err).or(reason);
-    let mut minima: Vec<Minimum> = found.into_iter().flatten().chain(direct).collect();
+    distinct(&mut rough, &scale);
+    let close = 1.5 * rough.first().map_or(f64::INFINITY, |m| m.chi_squared) + HOPELESS;
+    let fine = |minimum: Minimum| match minimum.chi_squared < close {
+        true => least(problem, &minimum.theta, &scale, Stage::Whole).unwrap_or(minimum),
+        false => minimum,
+    };
+    let mut minima: Vec<Minimum> = rough.into_iter().map(fine).collect();
     distinct(&mut minima, &scale);
     minima.dedup_by(|b, a| b.chi_squared - a.chi_squared <= SAME[0] + SAME[1] * a.chi_squared);
     let no_motion = || FitError::NoMotion { starts, reason: reason.unwrap_or_else(|| "no minimum".into()) };
     let best = minima.first().cloned().ok_or_else(no_motion)?;
-    Ok(Found { best, minima: minima.iter().map(|m| m.chi_squared).collect(), starts: starts.max(1) })
+    Ok(Found { best, minima: minima.iter().map(|m| m.chi_squared).collect(), starts })
+}
+
+/// Minima over beginnings that become longer, from these starts: where the search over the whole film begins.
+fn followed(
+    problem: &Problem,
+    short: Problem,
+    scale: &[f64],
+    starts: Vec<Vec<f64>>,
+    reason: &mut Option<String>,
+) -> Result<Vec<Vec<f64>>, FitError> {
+    let (mut part, mut starts) = (short, starts);
+    loop {
+        let mut found = Vec::new();
+        for start in &starts {
+            let start = within(&part, problem.start(), start);
+            match least(&part, &start, scale, Stage::Beginning) {
+                Ok(minimum) => found.push(minimum),
+                Err(error) => *reason = reason.take().or(Some(error)),
+            }
+        }
+        distinct(&mut found, scale);
+        found.truncate(FOLLOWED);
+        // beside one that fits no other can be the least
+        let count = part.count() as f64;
+        if let Some(least) = found.first().map(|m| m.chi_squared).filter(|x| *x < count + FITS * (2.0 * count).sqrt()) {
+            found.retain(|m| m.chi_squared < least + HOPELESS);
+        }
+        starts = found.into_iter().map(|m| m.theta).collect();
+        if part.samples() >= problem.samples() {
+            return Ok(starts);
+        }
+        let samples = (part.samples() as f64 * LONGER) as usize;
+        part = problem.beginning(samples.min(problem.samples()))?;
+    }
 }
 
 /// A start of the search: the minimum near its own with these unknowns held, ascending, or else its own.
@@ -197,6 +229,8 @@ fn within(problem: &Problem, origin: &[f64], theta: &[f64]) -> Vec<f64> {
 pub(crate) enum Stage {
     /// A beginning, coarsely; the start counts as a measurement.
     Beginning,
+    /// The whole film, coarsely.
+    Rough,
     /// The whole film.
     Whole,
     /// The whole film, with one unknown held beside a minimum.

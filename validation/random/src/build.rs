@@ -373,6 +373,7 @@ impl<'a> Builder<'a> {
             removals: vec![removal],
             multipliers: self.recipe.multipliers[..self.dependent.len()].iter().map(|&x| x as f64 / 8.0).collect(),
             duration: DURATION,
+            film: Vec::new(),
             view: View::default(),
             system: self.system,
         }
