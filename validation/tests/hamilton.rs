@@ -61,7 +61,8 @@ impl Reduced {
         (0..rates.len()).map(|a| (along(a, 1.0) - along(a, -1.0)) / 2.0).collect()
     }
 
-    /// `φ` at a place by least squares over random `ṙ`, and the largest of what is left of `E_a` in parts of `E`.
+    /// `φ` at a place by least squares over random `ṙ`, and the largest of what is left of `E`, in parts of
+    /// it.
     fn slopes(&mut self, q: &[f64]) -> (Vec<f64>, f64) {
         let m = self.free.len();
         let mut random = SplitMix::new(5);

@@ -17,7 +17,7 @@
 //!   sleigh passes `ω = 0` once on every motion, and what that section carries is invariant. The equations
 //!   without cyclic coordinates may have no measure where there is a `σ`: [`Cyclic`]. Where constraints are
 //!   integrable in part, all this is said of almost every leaf, that of the start not always among them.
-//! - *Multipliers* `f(r)` that make a reduced motion Hamilton's in the time `τ`, `dτ = f dt` ([`Multiplier`]).
+//! - *Multipliers* `f(r)` that make a reduced motion Hamilton's in a time with `dτ = f dt` ([`Multiplier`]).
 //! - *Integrals* that are polynomials in the velocities: kernels of equations of Killing's kind on weighted
 //!   Taylor coefficients. Every kernel bounds their number from above, as ranks mod p are lower bounds;
 //!   [`Found::none_proved`] is where what is trivial (energy, constants, products) reaches it. The number

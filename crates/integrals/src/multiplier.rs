@@ -57,8 +57,8 @@ pub enum Multiplier {
     Local(Option<Density>),
 }
 
-/// What is known at one point: whether the system is Chaplygin's over `r`, and whether the `φ_a` solve (H) and
-/// are the derivatives of a function.
+/// At one point: whether the system is Chaplygin's over `r`, and whether the `φ_a` solve (H) and are the
+/// derivatives of a function.
 type Seen = (bool, bool);
 
 /// All choices of `r` for which the system is Chaplygin's; multipliers are made of the measure's density.

@@ -170,8 +170,8 @@ fn beside(found: &Found) -> String {
 }
 
 impl Reversed {
-    /// A word on measures, one on multipliers, one per degree on integrals (`none`, their number, `<=` a bound
-    /// of it, `open`), and why anything is open.
+    /// A word on measures, one on multipliers, one per degree on integrals (`none`, their number, `<=` a
+    /// bound of it, `open`), and why anything is open.
     pub fn cells(&self) -> (Vec<String>, String) {
         let mut why = Vec::new();
         let mut open = |open: &Open| {

@@ -5,8 +5,8 @@ use decision::ExactStart;
 use integrals::{Multiplier, reversible};
 use symbolic::Fraction;
 
-/// `g = (1 + x²) 1` on the constraints, whose lifts have `[X_x, X_y] = ∂_u`, `[X_x, X_z] = ∂_w`. With `φ = −log(1
-/// + x²)`, `c_abd = φ_b g_ad − φ_a g_bd` is `N_yᵀ M ∂_u = 2x = N_zᵀ M ∂_w`.
+/// `g = (1 + x²) 1` on the constraints, whose lifts have `[X_x, X_y] = ∂_u`, `[X_x, X_z] = ∂_w`. With `f =
+/// 1/(1 + x²)`, `c_abd = φ_b g_ad − φ_a g_bd` is `N_yᵀ M ∂_u = 2x = N_zᵀ M ∂_w`.
 fn built(more: &str) -> String {
     format!(
         "title = \"built\"\n[coordinates]\nu = {{ start = 0 }}\nw = {{ start = 0 }}\nx = {{ start = 0.5 }}\ny = {{ start = 0 }}\nz = \

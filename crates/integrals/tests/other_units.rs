@@ -1,5 +1,5 @@
-//! The same system in other words has the same answers: other units, numbers as formulas, other combinations of
-//! the constraints.
+//! The same system in other words has the same answers: other units, numbers as formulas, other
+//! combinations of the constraints.
 
 use equations::Derivation;
 use integrals::{Ansatz, Reversed, ansatz, reversible};
@@ -41,8 +41,8 @@ fn in_other_units(scene: &Scene) -> Scene {
     other
 }
 
-/// Each constraint times `2 + sin q` and with a multiple of the one before; `L` times `sin² q + cos² q`; `q` is
-/// one that they contain, as the ansatz is made of these.
+/// Each constraint times `2 + sin q` and with a multiple of the one before; `L` times `sin² q + cos² q`;
+/// `q` is one that they contain, as the ansatz is made of these.
 fn in_other_words(scene: &Scene) -> Scene {
     let mut other = scene.clone();
     let (g, written) = (scene.system.graph.clone(), scene.system.written());
