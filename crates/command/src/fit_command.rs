@@ -86,8 +86,7 @@ fn of_law(unknown: &Unknown) -> Unknown {
     let mut unknown = unknown.clone();
     match unknown.name.as_str() {
         "eps" => (unknown.name, unknown.bound) = ("epsilon".into(), unknown.bound.or(Some(0.0))),
-        "slip" => unknown.start = unknown.start.or(Some(0.01)),
-        "kappa" => unknown.start = unknown.start.or(Some(1.0)),
+        "slip" => (unknown.start, unknown.bound) = (unknown.start.or(Some(0.01)), unknown.bound.or(Some(0.0))),
         _ => {}
     }
     unknown

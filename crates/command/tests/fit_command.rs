@@ -59,6 +59,7 @@ fn what_makes_no_sense_is_refused() {
     refused(good, &["--sigma", "1mm", "--formulations", "chetayev"], "did you mean `chetaev`?");
     refused(good, &["--sigma", "1mm", "--tolerance", "2"], "the tolerance is 2.0");
     refused(good, &["--sigma", "1mm", "--formulations", "prescribed"], "the scene has none of these formulations");
+    refused(good, &["--sigma", "1mm", "--law", "kappa"], "`kappa` is no unknown: it is no number of the law");
     // a film shorter than its unknowns is fitted by no formulation
     fs::write(path, "t,x\n0.1,0\n0.2,0\n").unwrap();
     let found = run(&["fit", "sledge", path, "--free", "x,y", "--sigma", "1mm"]);

@@ -1,6 +1,6 @@
 //! Formulations side by side.
 
-use deltaq::{CHETAEV, Choice, Settings, choices_among, constants_of, costate_names, is_costate};
+use deltaq::{CHETAEV, Choice, FIRST_ORDER, Settings, choices_among, constants_of, costate_names, is_costate};
 use equations::{Formulation, Needs};
 use mechanics::{ConstantsRule, Parameter};
 use scene::Scene;
@@ -9,16 +9,24 @@ use crate::fit::length_that_tells;
 use crate::search::begun;
 use crate::{Film, Fit, FitError, Problem, Row, Unknown, Verdict, fit, verdicts};
 
+/// Times as many starts of a search for constants, where no formulation fits.
+const MORE_STARTS: usize = 4;
+
+/// Numbers of the law of first order.
+const LAW: [&str; 2] = ["epsilon", "slip"];
+
+/// A fit with what was fitted.
+type Fitted = Result<(Problem, Fit), FitError>;
+
 /// What is asked of films.
 #[derive(Clone)]
 pub struct Question<'a> {
     /// What is not known, whatever the formulation. Multipliers and costates at the start are unknown where a
     /// formulation has them, and need not be named.
     pub unknowns: &'a [Unknown],
-    /// Numbers of constraint laws that are not known, `epsilon`, `slip` or `kappa`: a further row for each
-    /// law.
+    /// Numbers of the law of first order that are not known, `epsilon` or `slip`: a further row.
     pub law: &'a [Unknown],
-    /// Starts of the search.
+    /// Starts of the search; four times as many where no formulation fits.
     pub starts: usize,
     /// Residuals above this size count linearly.
     pub robust: Option<f64>,
@@ -29,28 +37,43 @@ pub struct Question<'a> {
 /// Fits every formulation that is wanted and gives verdicts. One that cannot be fitted has the reason.
 ///
 /// # Errors
-/// [`FitError`] where there is no formulation to fit.
+/// [`FitError::Unknown`] for a number of another law.
 pub fn fit_formulations(
     scene: &Scene,
     films: &[Film],
     question: &Question,
     wanted: &dyn Fn(&Formulation) -> bool,
 ) -> Result<Vec<Row>, FitError> {
+    if let Some(unknown) = question.law.iter().find(|u| !LAW.contains(&u.name.as_str())) {
+        let reason = format!("it is no number of the law of first order; these are {}", LAW.join(", "));
+        return Err(FitError::Unknown { text: unknown.name.clone(), reason });
+    }
     let scene = with_law(scene, question.law);
-    let choices = choices_among(&scene, |f| match f.needs {
-        Needs::Parameters(names) => question.law.iter().any(|unknown| names.contains(&unknown.name.as_str())),
-        _ => wanted(f),
-    });
-    let mut fits: Vec<(Choice, Result<(Problem, Fit), FitError>)> = Vec::new();
+    let is_law = |f: &Formulation| matches!(f.needs, Needs::Parameters(_));
+    let has_law = !question.law.is_empty();
+    let choices = choices_among(&scene, |f| if is_law(f) { *f == *FIRST_ORDER && has_law } else { wanted(f) });
+    let mut fits: Vec<(Choice, Fitted)> = Vec::new();
     for choice in choices {
         // a law that contains Chetaev's begins there
-        let contains = matches!(choice.formulation.needs, Needs::Parameters(_));
+        let contains = is_law(choice.formulation);
         let near = fits.iter().find(|(known, _)| contains && known.formulation == CHETAEV);
         let near = near.and_then(|(_, fit)| fit.as_ref().ok()).map(|(_, fit)| fit);
         let found = fit_choice(&scene, &choice, films, question, near);
         fits.push((choice, found));
     }
-    let plain = |(choice, fit): &(Choice, Result<(Problem, Fit), FitError>)| {
+    // before nothing fits, more starts
+    let fits_well = |(_, fit): &(Choice, Fitted)| fit.as_ref().is_ok_and(|(_, fit)| fit.objections().next().is_none());
+    if !fits.iter().any(fits_well) {
+        let more = Question { starts: MORE_STARTS * question.starts, ..question.clone() };
+        for (choice, fit) in fits.iter_mut().filter(|(choice, _)| has_constants(choice)) {
+            let again = fit_choice(&scene, choice, films, &more, None);
+            let least = fit.as_ref().map_or(f64::INFINITY, |(_, fit)| fit.chi_squared);
+            if again.as_ref().is_ok_and(|(_, again)| again.chi_squared < least) {
+                *fit = again;
+            }
+        }
+    }
+    let plain = |(choice, fit): &(Choice, Fitted)| {
         (choice.clone(), fit.as_ref().map(|(_, fit)| fit.clone()).map_err(FitError::clone))
     };
     let mut rows = verdicts(fits.iter().map(plain).collect());
@@ -85,27 +108,17 @@ fn own(scene: &Scene, choice: &Choice, question: &Question) -> Vec<Unknown> {
         None if choice.formulation.starts_multipliers => scene.multiplier_names(),
         None => Vec::new(),
     };
-    let is_own = |u: &&Unknown| match choice.formulation.needs {
-        Needs::Parameters(names) => names.contains(&u.name.as_str()),
-        _ => false,
-    };
-    let law = question.law.iter().filter(is_own);
+    let law = if choice.formulation == FIRST_ORDER { question.law } else { &[] };
     let named = |name: &str| question.unknowns.iter().any(|u| u.name == name && u.film.is_none());
     let constants = constants.iter().filter(|name| !named(name)).map(|name| Unknown::named(name));
-    law.cloned().chain(constants).collect()
+    law.iter().cloned().chain(constants).collect()
 }
 
-fn fit_choice(
-    scene: &Scene,
-    choice: &Choice,
-    films: &[Film],
-    question: &Question,
-    near: Option<&Fit>,
-) -> Result<(Problem, Fit), FitError> {
+fn fit_choice(scene: &Scene, choice: &Choice, films: &[Film], question: &Question, near: Option<&Fit>) -> Fitted {
     let is_constant = |name: &str| name.starts_with("mu0_") || is_costate(name);
     let mut unknowns: Vec<Unknown> = question.unknowns.to_vec();
     unknowns.retain(|u| {
-        !is_constant(&u.name) || (is_costate(&u.name) == choice.removal.is_some()) && choice_starts(choice)
+        !is_constant(&u.name) || (is_costate(&u.name) == choice.removal.is_some()) && has_constants(choice)
     });
     unknowns.extend(own(scene, choice, question));
     let constants = match (&choice.removal, constants_of(choice, scene)) {
@@ -132,7 +145,7 @@ fn fit_choice(
     Ok((problem, found))
 }
 
-/// Whether a formulation has constants to start from.
-fn choice_starts(choice: &Choice) -> bool {
+/// Whether motions have constants to start from, `μ₀` or `P₀`.
+fn has_constants(choice: &Choice) -> bool {
     choice.formulation.starts_multipliers || choice.removal.is_some()
 }

@@ -9,10 +9,8 @@ use crate::quantity::unit;
 /// What a column of a film shows.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Column {
-    /// Its name.
+    /// Its name: that of an entry of `[film]`, or an expression in `(q, v, t)` and parameters.
     pub name: String,
-    /// It, in `(q, v, t)` and parameters, in the graph of the scene.
-    pub expression: Expr,
     /// Standard deviation of its errors, positive.
     pub sigma: f64,
 }
@@ -137,11 +135,16 @@ fn head(cell: &str) -> Result<(&str, f64), FitError> {
 }
 
 fn column(scene: &Scene, name: &str, deviations: &Deviations) -> Result<Column, FitError> {
+    expression(scene, name)?;
+    let written = scene.film.iter().find(|filmed| filmed.name == name).and_then(|filmed| filmed.sigma);
+    Ok(Column { name: name.into(), sigma: deviations.of(name, written)? })
+}
+
+/// What a column shows, in the graph of this reading of the scene.
+pub(crate) fn expression(scene: &Scene, name: &str) -> Result<Expr, FitError> {
     if let Some(filmed) = scene.film.iter().find(|filmed| filmed.name == name) {
-        let sigma = deviations.of(name, filmed.sigma)?;
-        return Ok(Column { name: name.into(), expression: filmed.expression, sigma });
+        return Ok(filmed.expression);
     }
     let refused = |error: symbolic::ParseError| FitError::Column { column: name.into(), reason: error.to_string() };
-    let expression = scene.system.expression(name).map_err(refused)?;
-    Ok(Column { name: name.into(), expression, sigma: deviations.of(name, None)? })
+    scene.system.expression(name).map_err(refused)
 }

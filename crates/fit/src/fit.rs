@@ -37,7 +37,8 @@ pub struct Estimate {
     pub value: f64,
     /// Standard error to first order.
     pub error: f64,
-    /// The interval that covers with 95 %; infinite where χ² does not rise enough.
+    /// The interval that covers with 95 %; infinite, or to the bound, where χ² does not rise enough or
+    /// motions cannot be followed.
     pub interval: [f64; 2],
     /// Whether the ends are by the profile, where standard errors would be wrong.
     pub profiled: bool,
@@ -183,8 +184,8 @@ fn combination(problem: &Problem, along: &DVector<f64>, lengths: &[f64]) -> Stri
     }
 }
 
-/// Fits `problem` as [`search()`] does. An unknown that changes nothing at
-/// the minimum is held where the search began.
+/// Fits `problem` as [`search()`] does. An unknown that changes nothing at the minimum is held where the
+/// search began.
 ///
 /// # Errors
 /// [`FitError::NoMotion`], and [`FitError::ShowsNothing`] where all unknowns change nothing.
@@ -269,7 +270,7 @@ fn estimate(problem: &Problem, best: &Minimum, errors: &[f64], i: usize, profile
         }
         if side < 0.0 && at <= bound {
             let rise = profile.rise(bound);
-            if value <= bound || rise <= RISE_AT_BOUND {
+            if value <= bound || rise <= RISE_AT_BOUND || rise.is_infinite() {
                 return bound;
             }
             profiled = true;
@@ -283,9 +284,12 @@ fn estimate(problem: &Problem, best: &Minimum, errors: &[f64], i: usize, profile
         profile.end(side, RISE, bound)
     };
     let interval = [end(-1.0), end(1.0)];
-    let at_bound = unknown.bound.filter(|_| interval[0] <= bound || value - 4.0 * error < bound).map(|bound| {
+    let at_bound = unknown.bound.filter(|_| interval[0] <= bound || value - 4.0 * error < bound).and_then(|bound| {
         let rise = if value <= bound { 0.0 } else { profile.rise(bound) };
-        if rise <= 0.0 { 1.0 } else { 0.5 * normal_tails(rise.sqrt()) }
+        if rise.is_infinite() {
+            return None;
+        }
+        Some(if rise <= 0.0 { 1.0 } else { 0.5 * normal_tails(rise.sqrt()) })
     });
     Estimate { name: unknown.label(), value, error, interval, profiled, at_bound }
 }
@@ -328,8 +332,8 @@ impl<'a> Profile<'a> {
         }
     }
 
-    /// Where χ² has risen by `rise` on this side, not beyond `bound`: by secants of the root of the rise,
-    /// which is a straight line where χ² is quadratic.
+    /// Where χ² has risen by `rise` on this side, not beyond `bound`; open where that cannot be found: by
+    /// secants of the root of the rise, which is a straight line where χ² is quadratic.
     fn end(&mut self, side: f64, rise: f64, bound: f64) -> f64 {
         let value = self.best.theta[self.i];
         let (mut inside, mut outside) = ((value, 0.0), None);
@@ -337,6 +341,10 @@ impl<'a> Profile<'a> {
         for step in 0..STEPS {
             x = x.max(bound);
             let found = self.rise(x).max(0.0);
+            // beyond where motions can be followed it is open
+            if found.is_infinite() {
+                return if side < 0.0 { bound } else { f64::INFINITY };
+            }
             if (found - rise).abs() <= CLOSE * rise {
                 return x;
             }
@@ -345,7 +353,7 @@ impl<'a> Profile<'a> {
                     return bound;
                 }
                 if outside.is_none() && step >= OUTWARDS {
-                    return side * f64::INFINITY;
+                    return if side < 0.0 { bound } else { f64::INFINITY };
                 }
                 inside = (x, found.sqrt());
             } else {
@@ -354,11 +362,10 @@ impl<'a> Profile<'a> {
             let goal = rise.sqrt();
             x = match outside {
                 None => value + (inside.0 - value) * (goal / inside.1).clamp(1.2, 3.0),
-                Some((x, root)) if root.is_finite() => {
+                Some((x, root)) => {
                     let part = (goal - inside.1) / (root - inside.1);
                     inside.0 + (x - inside.0) * part.clamp(0.1, 0.9)
                 }
-                Some((x, _)) => 0.5 * (inside.0 + x),
             };
         }
         x

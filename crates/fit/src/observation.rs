@@ -5,7 +5,6 @@ use mechanics::System;
 use symbolic::{Evaluator, Expr, Symbol};
 
 use crate::FitError;
-use crate::film::Column;
 
 /// The columns of a film, `c(t, q, v, p)`, with their derivatives by `q`, `v` and the parameters that vary.
 #[derive(Clone)]
@@ -17,21 +16,21 @@ pub struct Observation {
 }
 
 impl Observation {
-    /// Compiles the columns; `varied` are the parameters that vary, the other ones have their values.
+    /// Compiles columns of these names; `varied` are the parameters that vary, the other ones have their
+    /// values.
     ///
     /// # Errors
     /// [`FitError::Expression`].
-    pub fn new(system: &System, columns: &[Column], varied: &[Symbol]) -> Result<Self, FitError> {
+    pub fn new(system: &System, columns: &[(&str, Expr)], varied: &[Symbol]) -> Result<Self, FitError> {
         let parameters = system.parameters.iter().filter(|p| !varied.contains(&p.symbol)).cloned().collect();
         let system = System { parameters, ..system.clone() };
         let by = [&system.positions()[..], &system.velocities(), varied].concat();
         let inputs = [&[system.time], &by[..]].concat();
-        let row = |column: &Column| -> Vec<Expr> {
-            [vec![column.expression], system.graph.gradient(column.expression, &by)].concat()
-        };
+        let row =
+            |(_, column): &(&str, Expr)| -> Vec<Expr> { [vec![*column], system.graph.gradient(*column, &by)].concat() };
         for column in columns {
             let compiled = system.evaluator::<f64>(&inputs, &row(column));
-            compiled.map_err(|error| FitError::Expression { column: column.name.clone(), error })?;
+            compiled.map_err(|error| FitError::Expression { column: column.0.into(), error })?;
         }
         let all: Vec<Expr> = columns.iter().flat_map(row).collect();
         let program = system.evaluator(&inputs, &all);

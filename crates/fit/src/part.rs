@@ -4,6 +4,7 @@ use deltaq::{Choice, Model, Settings};
 use scene::Scene;
 use symbolic::Symbol;
 
+use crate::film::expression;
 use crate::observation::Observation;
 use crate::{Film, FitError, Unknown};
 
@@ -25,6 +26,9 @@ pub(crate) enum Place {
     Unknown(usize),
     Known(f64),
 }
+
+/// What is done with a cell, given by row and column: with `r`, and its derivatives by unknowns.
+type Reader<'a> = dyn FnMut((usize, usize), f64, &[(usize, f64)]) + 'a;
 
 impl Part {
     /// Film `number`, as a motion of `choice`.
@@ -58,7 +62,9 @@ impl Part {
         let varied: Vec<(usize, Symbol)> =
             names.iter().enumerate().filter_map(|(i, name)| Some((i, symbol(name).filter(is_parameter)?))).collect();
         let (parameters, symbols): (Vec<usize>, Vec<Symbol>) = varied.into_iter().unzip();
-        let seen = Observation::new(&scene.system, &film.columns, &symbols)?;
+        let expressions = film.columns.iter().map(|column| Ok((&column.name[..], expression(scene, &column.name)?)));
+        let expressions = expressions.collect::<Result<Vec<_>, FitError>>()?;
+        let seen = Observation::new(&scene.system, &expressions, &symbols)?;
         Ok(Part { film: film.clone(), model, places, parameters, seen })
     }
 
@@ -73,12 +79,7 @@ impl Part {
 
     /// Calls `with` for every cell that is not empty: its row and column, `r`, and by which unknowns it
     /// moves.
-    pub(crate) fn evaluate(
-        &mut self,
-        theta: &[f64],
-        derivatives: bool,
-        with: &mut dyn FnMut((usize, usize), f64, &[(usize, f64)]),
-    ) -> Result<(), String> {
+    pub(crate) fn evaluate(&mut self, theta: &[f64], derivatives: bool, with: &mut Reader) -> Result<(), String> {
         let row = self.row(theta);
         let read = if derivatives { self.model.derivatives(&row) } else { self.model.outputs(&row) };
         if let Some(reason) = read.ended {

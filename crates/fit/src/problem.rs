@@ -20,6 +20,8 @@ pub struct Problem {
     unknowns: Vec<Unknown>,
     start: Vec<f64>,
     robust: Option<f64>,
+    /// `(θ − mean)/deviation` of unknowns that are held.
+    held: Vec<f64>,
 }
 
 /// One residual.
@@ -63,7 +65,7 @@ impl Problem {
         }
         let value = |unknown: &Unknown| unknown.start.unwrap_or_else(|| value_of(scene, &unknown.name));
         let start = unknowns.iter().map(value).collect();
-        Ok(Problem { parts, unknowns, start, robust: None })
+        Ok(Problem { parts, unknowns, start, robust: None, held: Vec::new() })
     }
 
     /// Residuals above this size count linearly (Huber); 1.345 costs 5 % where errors are normal.
@@ -175,7 +177,8 @@ impl Problem {
     /// Without the unknown `i`, which has this value.
     pub(crate) fn without(&self, i: usize, value: f64) -> Problem {
         let mut less = self.clone();
-        less.unknowns.remove(i);
+        let prior = less.unknowns.remove(i).prior;
+        less.held.extend(prior.map(|prior| (value - prior.mean) / prior.deviation));
         less.start.remove(i);
         for place in less.parts.iter_mut().flat_map(|part| &mut part.places) {
             *place = match *place {
@@ -202,7 +205,8 @@ impl Problem {
 
     /// The number of residuals: those of films, then one per prior.
     pub fn count(&self) -> usize {
-        self.films().map(Film::count).sum::<usize>() + self.unknowns.iter().filter(|u| u.prior.is_some()).count()
+        let priors = self.unknowns.iter().filter(|u| u.prior.is_some()).count();
+        self.films().map(Film::count).sum::<usize>() + priors + self.held.len()
     }
 
     /// The residuals of the films at `theta`, as they are.
@@ -248,6 +252,7 @@ impl Problem {
                 values.push((theta[j] - prior.mean) / prior.deviation);
             }
         }
+        values.extend(&self.held);
         Ok((DVector::from_vec(values), jacobian))
     }
 }

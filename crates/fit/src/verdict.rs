@@ -11,7 +11,7 @@ pub const EXCLUDED: f64 = 15.0;
 /// What films say of a formulation.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Verdict {
-    /// It fits, and all others are excluded.
+    /// It fits, and all others that could be fitted are excluded.
     Supported,
     /// Its χ² is above the least by the square of this.
     Excluded {

@@ -114,6 +114,24 @@ fn a_sledge_is_chetaevs_and_its_epsilon_is_at_the_bound() {
     assert!(fit.chi_squared >= chetaev.fit.as_ref().unwrap().chi_squared - 1e-6);
 }
 
+/// What is known before is a measurement: of two normal ones the weighed mean, with the error of both.
+#[test]
+fn what_is_known_before_counts() {
+    let scene = built_in("sledge");
+    let films = [film(&scene, "x,y,phi", 1e-3, 1, &times(2.0), sledge)];
+    let g = |known: &str| {
+        let free = [&SLEDGE[..5], &[known]].concat();
+        let rows = fitted(&scene, &films, &free, &[]);
+        rows[0].fit.as_ref().unwrap().estimates[5].clone()
+    };
+    let (alone, both) = (g("g~9"), g("g~9.83±0.004"));
+    let (a, b) = (alone.error.powi(-2), 0.004_f64.powi(-2));
+    assert!((both.value - (a * alone.value + b * 9.83) / (a + b)).abs() < 0.02 * both.error, "{alone:?} {both:?}");
+    assert!((both.error * (a + b).sqrt() - 1.0).abs() < 1e-2, "{alone:?} {both:?}");
+    let [low, high] = both.interval;
+    assert!(((high - low) / (2.0 * 1.96 * both.error) - 1.0).abs() < 0.03, "{both:?}");
+}
+
 /// A sledge whose film is wrong: a clock that runs at another rate, an outlier, a column of another motion.
 #[test]
 fn residuals_object_to_what_is_wrong_before_a_verdict_is_given() {

@@ -1,7 +1,7 @@
 //! Films as they are read, unknowns as they are written, and what is refused.
 
 use deltaq::{Settings, choices};
-use fit::{Deviations, Film, FitError, Problem, Unknown};
+use fit::{Deviations, Film, FitError, Problem, Unknown, fit};
 use scene::Scene;
 
 use crate::films::built_in;
@@ -31,7 +31,7 @@ fn a_scene_says_what_columns_show() {
         Film::read(&scene, "film", "t,right,up\n0.1,1,2\n", &deviations).unwrap()
     };
     let sigmas = |film: &Film| film.columns.iter().map(|c| c.sigma).collect::<Vec<_>>();
-    assert_eq!(scene.system.graph.plain(read(&[]).columns[0].expression), "100*x");
+    assert_eq!(scene.system.graph.plain(scene.film[0].expression), "100*x");
     assert_eq!(sigmas(&read(&[])), [0.7 / 10.0, 3.0]);
     assert_eq!(sigmas(&read(&[("right".into(), 2.0)])), [2.0, 3.0]);
     let refused = |text: &str| Scene::parse("sledge", text).unwrap_err().to_string();
@@ -102,14 +102,39 @@ fn films_share_parameters_and_have_starts_of_their_own() {
     assert!(refused(&two, &["g", "g"]).contains("`g` is unknown twice"));
     assert!(refused(&two, &[]).contains("nothing is unknown"));
     assert!(
-        refused(&[film.clone()], &["x", "y", "phi", "x'", "phi'"])
+        refused(std::slice::from_ref(&film), &["x", "y", "phi", "x'", "phi'"])
             .contains("the films have 5 numbers, and there are 5")
     );
     assert!(refused(&two, &["mass"]).contains("mass"));
 }
 
-/// Central differences of the residuals are their derivatives, for a column that contains a parameter, and
-/// two films.
+#[test]
+fn films_that_show_nothing_and_motions_that_end_early_are_refused() {
+    let deviations = Deviations { others: Some(1e-3), ..Deviations::default() };
+    let read = |scene: &Scene, table: &str| Film::read(scene, "film", table, &deviations).unwrap();
+    // the acceleration is no number of a motion's state
+    let sledge = built_in("sledge");
+    let acceleration = read(&sledge, "t,x''\n0.1,0\n0.2,0\n");
+    let error = problem(&sledge, &[acceleration], &["x"]).map(|_| ()).unwrap_err().to_string();
+    assert!(error.starts_with("the column `x''`: `x''` has no value"), "{error}");
+    // the circle of Chetaev's ball is the same whatever its spin
+    let table = built_in("turntable");
+    let film = read(&table, "t,x,y\n0.1,0.65,0\n0.2,0.65,0\n0.3,0.65,0\n");
+    let spin = problem(&table, &[film], &["psi'"]).unwrap();
+    assert_eq!(fit(&spin, &|_| false, 1, false).unwrap_err(), FitError::ShowsNothing);
+    let film = read(&sledge, "t,x\n0.5,0\n1,0\n1.5,0\n2,0\n");
+    let unknowns = ["x".parse::<Unknown>().unwrap(), "phi'".parse().unwrap()];
+    let settings = Settings { max_steps: 1, ..Settings::default() };
+    let short = Problem::new(&sledge, &choices(&sledge)[0], &[film], &unknowns, &settings).unwrap();
+    let error = fit(&short, &|_| false, 2, false).unwrap_err().to_string();
+    assert!(
+        error.starts_with("of 2 starts of the search none leads to a motion") && error.contains("steps"),
+        "{error}"
+    );
+}
+
+/// Central differences of the residuals are their derivatives, in another reading of the scene, for a column
+/// that contains a parameter, and two films.
 #[test]
 fn derivatives_are_those_of_differences() {
     let scene = built_in("sledge");

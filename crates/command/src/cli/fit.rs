@@ -23,7 +23,8 @@ pub struct FitArguments {
     /// unknown anyway.
     #[arg(long, value_name = "NAME,…", value_delimiter = ',', required = true, allow_hyphen_values = true)]
     pub free: Vec<Unknown>,
-    /// Numbers of a constraint law, which adds a row: `eps` (ε ≥ 0), `slip` (1/N), `kappa`; as in `--free`.
+    /// Numbers of the law of first order, which adds a row: `eps` (ε ≥ 0), `slip` (1/N, above 0); as in
+    /// `--free`.
     #[arg(long, value_name = "NAME,…", value_delimiter = ',')]
     pub law: Vec<Unknown>,
     /// Standard deviations of columns: `0.5mm` of all, `x=0.5mm` of one.
