@@ -107,7 +107,7 @@ fn words(verdict: &Verdict) -> String {
         Verdict::CannotTell { from, needs } => {
             let each = from.iter().zip(needs).map(|(label, needs)| match needs {
                 Some(longer) => format!("{label} (if that is right, a film {longer} times as long can)"),
-                None => format!("{label} (if that is right, no film up to 8 times as long can)"),
+                None => format!("{label} (no film up to 8 times as long was found that can)"),
             });
             format!("these films cannot tell it from {}", each.collect::<Vec<_>>().join(", "))
         }

@@ -12,7 +12,7 @@ fn a_table_says_of_each_value_what_is_said_of_it_alone() {
     let (alone, _) = answer(&["integrals", "suslov", "--degree", "1", "--set", "K=0"], 0);
     assert!(alone.contains("linear        5 local ones\n"), "{alone}");
     let (open, _) = answer(&["integrals", "pursuit", "--degree", "0", "--sweep", "time=0:1:1"], 0);
-    assert_eq!(open, "time,measure,why\n0.0,open,\"time stands in L or in the constraints\"\n");
+    assert_eq!(open, "time,measure,multiplier,why\n0.0,open,open,\"time stands in L or in the constraints\"\n");
 }
 
 #[test]

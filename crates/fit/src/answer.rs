@@ -5,7 +5,7 @@ use equations::{Formulation, Needs};
 use mechanics::{ConstantsRule, Parameter};
 use scene::Scene;
 
-use crate::fit::length_that_tells;
+use crate::length::length_that_tells;
 use crate::search::begun;
 use crate::{Film, Fit, FitError, Problem, Row, Unknown, Verdict, fit, verdicts};
 

@@ -5,7 +5,7 @@ use nalgebra::DVector;
 use crate::distribution::normal_tails;
 use crate::residual_tests::{ResidualTest, residual_tests};
 use crate::search::{Found, Minimum, Stage, least, scaled, search};
-use crate::{EXCLUDED, Film, FitError, Problem, Residual, Unknown};
+use crate::{Film, FitError, Problem, Residual, Unknown};
 
 /// χ² by which a number of 95 % rises, and where it is at its bound: `½χ²₀ + ½χ²₁`.
 const RISE: f64 = 3.841_458_820_694_124;
@@ -140,26 +140,6 @@ fn alone(problem: &Problem, theta: &[f64], lengths: &[f64]) -> Vec<usize> {
         if size > 0.0 { size.max(theta[j].abs()) } else { 1.0_f64.max(theta[j].abs()) }
     };
     (0..lengths.len()).filter(|&j| lengths[j] * size(j) < NOTHING).collect()
-}
-
-/// Lengths that are tried, over that of the film.
-const LENGTHS: [f64; 6] = [1.5, 2.0, 3.0, 4.0, 6.0, 8.0];
-
-/// How many times as long a film has to be, where `truth` is the formulation and its best fit are the
-/// numbers, until χ² of `rival` is [`EXCLUDED`] at least, without noise; of a few lengths.
-pub(crate) fn length_that_tells(truth: (&Problem, &Fit), rival: (&Problem, &Fit)) -> Option<f64> {
-    let numbers = |fit: &Fit| fit.estimates.iter().map(|e| e.value).collect::<Vec<_>>();
-    let (at, mut start) = (numbers(truth.1), numbers(rival.1));
-    let scale: Vec<f64> = rival.1.estimates.iter().map(|e| if e.error.is_finite() { e.error } else { 1.0 }).collect();
-    for longer in LENGTHS {
-        let films = truth.0.foreseen(&at, longer).ok()?;
-        let found = least(&rival.0.of_films(films).ok()?, &start, &scale, Stage::Profile).ok()?;
-        if found.chi_squared >= EXCLUDED {
-            return Some(longer);
-        }
-        start = found.theta;
-    }
-    None
 }
 
 /// The unknowns in a direction; parts that change residuals by less than a thousandth of the largest do not

@@ -34,6 +34,7 @@ mod distribution;
 mod error;
 mod film;
 mod fit;
+mod length;
 mod observation;
 mod part;
 mod problem;

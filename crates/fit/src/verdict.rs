@@ -11,19 +11,19 @@ pub const EXCLUDED: f64 = 15.0;
 /// What films say of a formulation.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Verdict {
-    /// It fits, and all others that could be fitted are excluded.
+    /// It fits, and all others are excluded, by the least χ² that was found of each.
     Supported,
     /// Its χ² is above the least by the square of this.
     Excluded {
         /// `√(χ² − least χ²)`.
         sigmas: f64,
     },
-    /// It fits, and so do these.
+    /// It fits, and so do these, or they could not be fitted.
     CannotTell {
         /// Labels of the others.
         from: Vec<String>,
         /// How many times as long a film has to be at least that tells it from each of these, if they are
-        /// right; none where no length up to 8 times does. See [`fit_formulations`](crate::fit_formulations).
+        /// right; none where no length up to 8 times was found. See [`fit_formulations`](crate::fit_formulations).
         needs: Vec<Option<f64>>,
     },
     /// Residuals of the best formulation object: something else is wrong.
@@ -48,9 +48,13 @@ pub fn verdicts(fits: Vec<(Choice, Result<Fit, FitError>)>) -> Vec<Row> {
     let least =
         fits.iter().filter_map(|(_, fit)| fit.as_ref().ok()).min_by(|a, b| a.chi_squared.total_cmp(&b.chi_squared));
     let least = least.map(|fit| (fit.chi_squared, fit.objections().next().is_some()));
-    let fitting: Vec<(String, &'static Formulation)> = fits
+    let is_open = |fit: &Result<Fit, FitError>| match (fit, least) {
+        (Ok(fit), Some((least, _))) => fit.chi_squared - least < EXCLUDED,
+        _ => true,
+    };
+    let open: Vec<(String, &'static Formulation)> = fits
         .iter()
-        .filter(|(_, fit)| fit.as_ref().is_ok_and(|fit| least.is_some_and(|l| fit.chi_squared - l.0 < EXCLUDED)))
+        .filter(|(_, fit)| is_open(fit))
         .map(|(choice, _)| (choice.label.clone(), choice.formulation))
         .collect();
     let verdict = |(choice, fit): &(Choice, Result<Fit, FitError>)| match (fit, least) {
@@ -61,7 +65,7 @@ pub fn verdicts(fits: Vec<(Choice, Result<Fit, FitError>)>) -> Vec<Row> {
             if above >= EXCLUDED {
                 return Verdict::Excluded { sigmas: above.sqrt() };
             }
-            let others = fitting.iter().filter(|(label, f)| *label != choice.label && !is_part(choice.formulation, f));
+            let others = open.iter().filter(|(label, f)| *label != choice.label && !is_part(choice.formulation, f));
             let from: Vec<String> = others.map(|(label, _)| label.clone()).collect();
             if from.is_empty() {
                 Verdict::Supported
@@ -80,4 +84,45 @@ fn is_part(a: &Formulation, b: &Formulation) -> bool {
     let is = |x: &Formulation, y: &Formulation| x.name == y.name;
     let larger = |x: &Formulation| is(x, FIRST_ORDER) || is(x, KAPPA);
     is(a, b) || (larger(a) && is(b, CHETAEV)) || (is(a, CHETAEV) && larger(b)) || (larger(a) && larger(b))
+}
+
+#[cfg(test)]
+mod tests {
+    use deltaq::{CHETAEV, Choice, VAKONOMIC};
+    use mechanics::ConstantsRule;
+
+    use super::{Verdict, verdicts};
+    use crate::{Fit, FitError};
+
+    fn fitted(chi_squared: f64) -> Result<Fit, FitError> {
+        Ok(Fit {
+            estimates: Vec::new(),
+            chi_squared,
+            freedom: 10,
+            bic: chi_squared,
+            hidden: Vec::new(),
+            tests: Vec::new(),
+            minima: vec![chi_squared],
+            starts: 1,
+            residuals: Vec::new(),
+        })
+    }
+
+    /// What could not be fitted is not excluded: nothing is supported beside it.
+    #[test]
+    fn a_formulation_is_supported_where_all_others_are_excluded() {
+        let choice = |formulation: &'static equations::Formulation| Choice {
+            label: formulation.title.into(),
+            formulation,
+            removal: None,
+            constants: ConstantsRule::Zero,
+        };
+        let first = |other: Result<Fit, FitError>| {
+            verdicts(vec![(choice(CHETAEV), fitted(9.0)), (choice(VAKONOMIC), other)])[0].verdict.clone()
+        };
+        let cannot = Verdict::CannotTell { from: vec![VAKONOMIC.title.into()], needs: vec![None] };
+        assert_eq!(first(fitted(24.0)), Verdict::Supported);
+        assert_eq!(first(fitted(23.9)), cannot);
+        assert_eq!(first(Err(FitError::ShowsNothing)), cannot);
+    }
 }

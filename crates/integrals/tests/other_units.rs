@@ -9,8 +9,10 @@ use symbolic::{Expr, Function, Symbol};
 
 use crate::questions::{built_in, start};
 
+type Numbers = &'static [(&'static str, &'static str)];
+
 /// Scenes with numbers, and the same numbers as formulas.
-const SCENES: [(&str, &[(&str, &str)], &[(&str, &str)]); 8] = [
+const SCENES: [(&str, Numbers, Numbers); 8] = [
     ("sleigh", &[], &[("a", "2/5"), ("m", "2/2")]),
     ("sledge", &[("g", "9.81")], &[("g", "981/100")]),
     ("suslov", &[("K", "0")], &[("K", "1/3 - 2/6")]),
