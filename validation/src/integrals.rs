@@ -345,20 +345,17 @@ fn reasons(answers: &[(Integrals, Integrals)]) -> String {
 
 fn literature_text() -> Result<String> {
     let entries = literature()?;
-    let mut table = Table::new(["system", "known", "source", "found: measure", "multiplier", "linear", "agrees"]);
+    let mut table = Table::new(["system", "known", "source", "found", "multiplier", "linear"]);
     let found = parallel::map(&entries, Entry::compared);
     let (mut agree, mut contradict) = (0, 0);
     for (entry, found) in entries.iter().zip(found) {
         let (found, agrees) = found.with_context(|| entry.name.clone())?;
-        let word = match agrees {
-            None => "not asked",
-            Some(true) => "yes",
-            Some(false) => "no",
-        };
         agree += usize::from(agrees == Some(true));
         contradict += usize::from(agrees == Some(false));
         let (cells, _) = found.cells();
-        table.row(&[&entry.name, &entry.claim, &entry.source, &measure(&found.measure), &cells[1], &cells[2], &word]);
+        let word = if agrees == Some(false) { ", CONTRADICTS" } else { "" };
+        let measure = measure(&found.measure) + word;
+        table.row(&[&entry.name, &entry.claim, &entry.source, &measure, &cells[1], &cells[2]]);
     }
     Ok(format!(
         "\n## The literature\n\n{agree} of {} entries agree, {contradict} contradict. The others are affine or have integrable \

@@ -23,7 +23,8 @@ pub enum Verdict {
         /// Labels of the others.
         from: Vec<String>,
         /// How many times as long a film has to be at least that tells it from each of these, if they are
-        /// right; none where no length up to 8 times was found. See [`fit_formulations`](crate::fit_formulations).
+        /// right; none where no length up to 8 times was found. See
+        /// [`fit_formulations`](crate::fit_formulations).
         needs: Vec<Option<f64>>,
     },
     /// Residuals of the best formulation object: something else is wrong.

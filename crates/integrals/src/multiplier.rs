@@ -29,7 +29,7 @@ use crate::density::density;
 use crate::flag::MOST;
 use crate::local::{Local, Reversible, at_random, draws, row_times, straight};
 use crate::ring::{Rays, Ring, Series, count, minus};
-use crate::{Density, Measure, Open};
+use crate::{Density, Open};
 
 /// Seeds of the random points, one per field.
 const SEEDS: [u64; FIELDS.len()] = [0x17e6_0011, 0x17e6_0012, 0x17e6_0013, 0x17e6_0014];
@@ -61,11 +61,12 @@ pub enum Multiplier {
 /// derivatives of a function.
 type Seen = (bool, bool);
 
-/// All choices of `r` for which the system is Chaplygin's; multipliers are made of the measure's density.
+/// All choices of `r` for which the system is Chaplygin's; multipliers are written down where a measure's
+/// density is.
 ///
 /// # Errors
 /// [`Open`].
-pub(crate) fn reductions(system: &Reversible, start: &ExactStart, measure: &Measure) -> Result<Vec<Reduction>, Open> {
+pub(crate) fn reductions(system: &Reversible, start: &ExactStart, has_density: bool) -> Result<Vec<Reduction>, Open> {
     let n = system.coordinates;
     let mut choices: Vec<Vec<usize>> = vec![Vec::new()];
     for _ in 0..system.constraints {
@@ -83,12 +84,10 @@ pub(crate) fn reductions(system: &Reversible, start: &ExactStart, measure: &Meas
         let at = |seed| at_random(start, seed, |point| seen(&solved, point, seed, dependent));
         let (is_chaplygin, is_hamiltonian) = agreed(SEEDS, at, |(is, _)| !is).map_err(Open::or_accident)?;
         if is_chaplygin {
-            let multiplier = match measure {
-                _ if !is_hamiltonian => Multiplier::None,
-                Measure::Local { density: Some(_), .. } => {
-                    Multiplier::Local(density(&solved, start)?.and_then(|density| root(&density)))
-                }
-                _ => Multiplier::Local(None),
+            let multiplier = match is_hamiltonian {
+                false => Multiplier::None,
+                true if !has_density => Multiplier::Local(None),
+                true => Multiplier::Local(density(&solved, start)?.and_then(|density| root(&density))),
             };
             found.push(Reduction { over: (0..n).filter(|i| !dependent.contains(i)).collect(), multiplier });
         }

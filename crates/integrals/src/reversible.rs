@@ -170,7 +170,7 @@ pub fn reversible(system: &System, start: &ExactStart, degree: usize) -> Reverse
     };
     let measure = decide_measure(&reversible, start).unwrap_or_else(Measure::Open);
     Reversed {
-        reductions: reductions(&reversible, start, &measure),
+        reductions: reductions(&reversible, start, matches!(&measure, Measure::Local { density: Some(_), .. })),
         measure,
         integrals: (1..=degree).map(|d| decide_integrals(&reversible, start, d)).collect(),
     }
