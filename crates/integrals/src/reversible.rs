@@ -106,7 +106,8 @@ fn decide_measure(system: &Reversible, start: &ExactStart) -> Result<Measure, Op
     if let Some(proved) = none(&[])? {
         return Ok(Measure::None { proved });
     }
-    let (density, places) = (density(system, start)?, system.cyclic());
+    let places = system.cyclic();
+    let density = density(&system.clone().solved_for(&places), start)?;
     // one that is written down is free of them
     let bound = if density.is_some() || places.is_empty() { None } else { none(&places)? };
     Ok(Measure::Local { density, cyclic: bound.map(|proved| Cyclic { places, proved }) })
