@@ -12,8 +12,7 @@ use symbolic::{Fraction, Scalar};
 use crate::Open;
 use crate::flag::fields_with_rates;
 use crate::killing::nullspace;
-use crate::local::{Reversible, at_random, draws, straight};
-use crate::ring::{Rays, Ring};
+use crate::local::{Reversible, at_random};
 
 /// A density `Π B_k^{c_k}` of `dq ds`, on coordinates and free velocities.
 #[derive(Clone, Debug, PartialEq)]
@@ -74,9 +73,7 @@ fn in_one_field(system: &Reversible, start: &ExactStart, seed: u64) -> Result<Op
 type Logarithms = (Vec<Vec<Modular>>, Vec<usize>);
 
 fn logarithms(system: &Reversible, point: &SeriesStart<Modular>, seed: u64) -> Result<Logarithms, Open> {
-    let ring = Ring::new(&vec![1; system.present.len()], system.present.clone(), 1);
-    let rays = Rays::new(&ring, &mut draws(seed)).ok_or(Open::Accident)?;
-    let local = system.at(point, &ring, &rays, &straight(&ring, system.coordinates, &system.present))?;
+    let (ring, local) = system.near(point, 1, seed)?;
     let angles: Vec<[Modular; 2]> =
         system.present.iter().map(|&i| slopes(&point.positions[i])).collect::<Option<_>>().ok_or(Open::Accident)?;
     let rows = fields_with_rates(&ring, &local).into_iter().map(|x| {

@@ -14,11 +14,8 @@ use decision::SeriesStart;
 use decision::exact::{Echelon, Modular};
 
 use crate::Open;
-use crate::local::{Local, Reversible, draws, row_times, straight};
-use crate::ring::{Rays, Ring, Series, count, minus};
-
-/// Most coefficients of a series.
-pub(crate) const MOST: usize = 1200;
+use crate::local::{Local, Reversible, row_times};
+use crate::ring::{Ring, Series, minus};
 
 /// A vector field, made of `weight` fields of `ker A`; and what `σ` has as its derivative along it.
 #[derive(Clone)]
@@ -58,11 +55,7 @@ impl Flag {
         let n = system.coordinates;
         // every round but the last adds one field at least, and loses one order
         let order = system.constraints + 2;
-        let weights = vec![1; system.present.len()];
-        count(&weights, order, MOST).ok_or(Open::Size { order, most: MOST })?;
-        let ring = Ring::new(&weights, system.present.clone(), order);
-        let rays = Rays::new(&ring, &mut draws(seed)).ok_or(Open::Accident)?;
-        let local = system.at(point, &ring, &rays, &straight(&ring, n, &system.present))?;
+        let (ring, local) = system.near(point, order, seed)?;
         let mut basis = fields_with_rates(&ring, &local);
         for &i in held {
             let unit = |j: usize| ring.constant(if i == j { Modular::one() } else { Modular::ZERO });

@@ -25,9 +25,9 @@ use decision::SeriesStart;
 use decision::exact::{Echelon, Modular};
 
 use crate::Open;
-use crate::flag::{Flag, MOST};
+use crate::flag::Flag;
 use crate::local::{Local, Reversible, draws, over_factorial, row_times};
-use crate::ring::{Rays, Ring, Series, count, minus};
+use crate::ring::{MOST, Rays, Ring, Series, count, minus};
 
 /// `k_I`, one series for each monomial in the velocities.
 pub(crate) type Integral = Vec<Series>;

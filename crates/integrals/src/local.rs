@@ -6,7 +6,7 @@ use mechanics::System;
 use symbolic::Expr;
 
 use crate::Open;
-use crate::ring::{Rays, Ring, Series, minus};
+use crate::ring::{MOST, Rays, Ring, Series, count, minus};
 
 /// `L = ½ vᵀM(q)v − V(q)`, `A(q)v = 0`, as a program.
 #[derive(Clone)]
@@ -83,6 +83,16 @@ impl Reversible {
         (0..self.coordinates).filter(|i| !self.present.contains(i)).collect()
     }
 
+    /// Its series to an order at `point`, in `q − q₀` for the coordinates that are present.
+    pub(crate) fn near(&self, point: &SeriesStart<Modular>, order: usize, seed: u64) -> Result<(Ring, Local), Open> {
+        let weights = vec![1; self.present.len()];
+        count(&weights, order, MOST).ok_or(Open::Size { order, most: MOST })?;
+        let ring = Ring::new(&weights, self.present.clone(), order);
+        let rays = Rays::new(&ring, &mut draws(seed)).ok_or(Open::Accident)?;
+        let local = self.at(point, &ring, &rays, &straight(&ring, self.coordinates, &self.present))?;
+        Ok((ring, local))
+    }
+
     /// Its series at `point`, where `q − q₀ = chart(z)`, without constant terms.
     pub(crate) fn at(
         &self,
@@ -150,7 +160,7 @@ pub(crate) fn draws(seed: u64) -> impl FnMut() -> Modular {
 }
 
 /// `q_i = q₀_i + z_i` for the coordinates that are present, the others held.
-pub(crate) fn straight(ring: &Ring, coordinates: usize, present: &[usize]) -> Vec<Series> {
+fn straight(ring: &Ring, coordinates: usize, present: &[usize]) -> Vec<Series> {
     let variable = |i: usize| {
         let mut series = ring.zero();
         if let Some(place) = present.iter().position(|&p| p == i) {

@@ -26,9 +26,8 @@ use decision::{ExactStart, SeriesStart};
 use symbolic::Fraction;
 
 use crate::density::density;
-use crate::flag::MOST;
-use crate::local::{Local, Reversible, at_random, draws, row_times, straight};
-use crate::ring::{Rays, Ring, Series, count, minus};
+use crate::local::{Local, Reversible, at_random, row_times};
+use crate::ring::{Ring, Series, minus};
 use crate::{Density, Open};
 
 /// Seeds of the random points, one per field.
@@ -107,12 +106,7 @@ fn root(density: &Density) -> Option<Density> {
 }
 
 fn seen(system: &Reversible, point: &SeriesStart<Modular>, seed: u64, dependent: &[usize]) -> Result<Seen, Open> {
-    let n = system.coordinates;
-    let weights = vec![1; system.present.len()];
-    count(&weights, ORDER, MOST).ok_or(Open::Size { order: ORDER, most: MOST })?;
-    let ring = Ring::new(&weights, system.present.clone(), ORDER);
-    let rays = Rays::new(&ring, &mut draws(seed)).ok_or(Open::Accident)?;
-    let local = system.at(point, &ring, &rays, &straight(&ring, n, &system.present))?;
+    let (ring, local) = system.near(point, ORDER, seed)?;
     if local.free.iter().any(|i| dependent.contains(i)) {
         return Ok((false, false));
     }

@@ -4,6 +4,9 @@ use std::collections::HashMap;
 
 use decision::exact::{Modular, inverse};
 
+/// Most coefficients of a series.
+pub(crate) const MOST: usize = 1200;
+
 /// Coefficients of a series, in the order of [`Ring::monomials`].
 pub(crate) type Series = Vec<Modular>;
 
