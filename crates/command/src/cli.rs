@@ -1,6 +1,7 @@
 //! The command line.
 
 mod connect;
+mod design;
 mod ensemble;
 mod fit;
 mod integrals;
@@ -18,6 +19,7 @@ use clap_complete::Shell;
 use bench::MEMBERS;
 pub use connect::ConnectArguments;
 use deltaq::{Fits, Stepping};
+pub use design::DesignArguments;
 pub use ensemble::{EnsembleArguments, FreeArguments, Limits, MotionArguments};
 use equations::Formulation;
 pub use fit::FitArguments;
@@ -71,6 +73,8 @@ pub enum Command {
     Judge(JudgeArguments),
     /// Fit unknown numbers to films: estimates with intervals, and which formulation the films support.
     Fit(FitArguments),
+    /// Choose the film to be made that tells two formulations apart best, or shows a number best.
+    Design(DesignArguments),
     /// Measure error against run time, by every method at every tolerance.
     Bench(BenchArguments),
     /// Print completions for a shell.

@@ -61,7 +61,7 @@ pub fn run(arguments: &FitArguments) -> Result<Answer> {
 }
 
 /// `0.5mm`, `x=0.5mm`.
-fn deviations(written: &[String]) -> Result<Deviations> {
+pub(crate) fn deviations(written: &[String]) -> Result<Deviations> {
     let mut deviations = Deviations::default();
     for text in written {
         match text.split_once('=') {
@@ -82,7 +82,7 @@ fn known(text: &str, films: usize) -> Result<(usize, (String, f64))> {
 }
 
 /// Words of laws: `eps` is `epsilon`, not below 0; a slip begins at 0.01.
-fn of_law(unknown: &Unknown) -> Unknown {
+pub(crate) fn of_law(unknown: &Unknown) -> Unknown {
     let mut unknown = unknown.clone();
     match unknown.name.as_str() {
         "eps" => (unknown.name, unknown.bound) = ("epsilon".into(), unknown.bound.or(Some(0.0))),

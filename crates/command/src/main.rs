@@ -8,6 +8,7 @@ mod cli;
 mod columns;
 mod compare_command;
 mod connect_command;
+mod design_command;
 mod ensemble_command;
 mod explore_command;
 mod fit_command;
@@ -55,6 +56,7 @@ fn run(cli: Cli) -> Result<Answer> {
         }
         Command::Man { command } => manual(command.as_deref())?,
         Command::Integrals(arguments) => return integrals_command::run(&arguments, quiet),
+        Command::Design(arguments) => return design_command::run(&arguments),
         Command::Fit(arguments) => return fit_command::run(&arguments),
         Command::Judge(arguments) => return judge_command::run(&arguments),
         Command::Prove(arguments) => return prove_command::run(&arguments),

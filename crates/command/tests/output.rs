@@ -8,7 +8,7 @@ use crate::support::{all_may_be_left, answer, command, commands, elsewhere, none
 const BAD: &str = concat!(env!("CARGO_TARGET_TMPDIR"), "/bad.toml");
 
 /// One call of every command.
-const ANSWERS: [&[&str]; 19] = [
+const ANSWERS: [&[&str]; 20] = [
     &["new"],
     &["check", "sledge"],
     &["solve", "sledge", "-f", "chetaev", "--times", "0,1"],
@@ -30,6 +30,7 @@ const ANSWERS: [&[&str]; 19] = [
         "--sigma=1mm",
         "--starts=1",
     ],
+    &["design", "heisenberg", "--tell=vakonomic,chetaev", "--film=9Hz,1mm,1s", "--free=x',y'", "--starts=1"],
     &["bench", "bowl", "--set", "duration=0.01", "--seconds", "0.0001", "--quiet"],
     &["completions", "bash"],
     &["man"],

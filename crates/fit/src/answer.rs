@@ -13,7 +13,7 @@ use crate::{Film, Fit, FitError, Problem, Row, Unknown, Verdict, fit, verdicts};
 const MORE_STARTS: usize = 4;
 
 /// Numbers of the law of first order.
-const LAW: [&str; 2] = ["epsilon", "slip"];
+pub(crate) const LAW: [&str; 2] = ["epsilon", "slip"];
 
 /// A fit with what was fitted.
 type Fitted = Result<(Problem, Fit), FitError>;
@@ -89,8 +89,8 @@ pub fn fit_formulations(
     Ok(rows)
 }
 
-/// The scene with the parameters of a law that it lacks.
-fn with_law(scene: &Scene, law: &[Unknown]) -> Scene {
+/// The scene with the parameters of the law of first order that it lacks, so that it has that formulation.
+pub fn with_law(scene: &Scene, law: &[Unknown]) -> Scene {
     let mut scene = scene.clone();
     for unknown in law {
         let symbol = scene.system.graph.symbol(&unknown.name);
@@ -114,8 +114,16 @@ fn own(scene: &Scene, choice: &Choice, question: &Question) -> Vec<Unknown> {
     law.iter().cloned().chain(constants).collect()
 }
 
-fn fit_choice(scene: &Scene, choice: &Choice, films: &[Film], question: &Question, near: Option<&Fit>) -> Fitted {
-    let is_constant = |name: &str| name.starts_with("mu0_") || is_costate(name);
+/// The films as motions of `choice`: constants to start from are unknown, and no others of their kind.
+///
+/// # Errors
+/// As [`Problem::new`].
+pub(crate) fn problem_of(
+    scene: &Scene,
+    choice: &Choice,
+    films: &[Film],
+    question: &Question,
+) -> Result<Problem, FitError> {
     let mut unknowns: Vec<Unknown> = question.unknowns.to_vec();
     unknowns.retain(|u| {
         !is_constant(&u.name) || (is_costate(&u.name) == choice.removal.is_some()) && has_constants(choice)
@@ -126,8 +134,16 @@ fn fit_choice(scene: &Scene, choice: &Choice, films: &[Film], question: &Questio
         (_, rule) => rule,
     };
     let choice = Choice { constants, ..choice.clone() };
-    let problem = Problem::new(scene, &choice, films, &unknowns, &question.settings)?;
-    let mut problem = problem.robust(question.robust);
+    Ok(Problem::new(scene, &choice, films, &unknowns, &question.settings)?.robust(question.robust))
+}
+
+/// Whether a number is one that motions of some formulations start from, `μ₀` or `P₀`.
+pub(crate) fn is_constant(name: &str) -> bool {
+    name.starts_with("mu0_") || is_costate(name)
+}
+
+fn fit_choice(scene: &Scene, choice: &Choice, films: &[Film], question: &Question, near: Option<&Fit>) -> Fitted {
+    let mut problem = problem_of(scene, choice, films, question)?;
     let hidden =
         |name: &str| near.is_some_and(|near| near.estimates.iter().any(|e| e.name == name && e.error.is_infinite()));
     if let Some(near) = near {

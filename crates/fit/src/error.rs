@@ -103,6 +103,22 @@ pub enum FitError {
         /// Why not.
         reason: String,
     },
+    /// When a film looks cannot be read.
+    #[error("`{text}` is no film to be made: {reason}")]
+    Sampling {
+        /// What stands there.
+        text: String,
+        /// Why not.
+        reason: String,
+    },
+    /// A number that is to be chosen cannot be read, or does not belong there.
+    #[error("`{text}` cannot be chosen: {reason}")]
+    Choose {
+        /// What stands there.
+        text: String,
+        /// Why not.
+        reason: String,
+    },
     /// A number of the scene is unknown twice.
     #[error("`{0}` is unknown twice")]
     Twice(String),

@@ -110,12 +110,13 @@ impl Film {
         Ok(film)
     }
 
-    /// Times of a film that is this many times as long, the further ones at the mean distance; no rows.
+    /// Times of a film that is this many times as long, further ones at the mean distance; no rows.
     pub(crate) fn lengthened(&self, longer: f64) -> Film {
         let (first, last) = (self.t[0], self.t[self.t.len() - 1]);
         let step = (last - first) / (self.t.len() - 1).max(1) as f64;
-        let more = ((longer - 1.0) * (last - first) / step).round() as usize;
-        let t: Vec<f64> = self.t.iter().copied().chain((1..=more).map(|k| last + k as f64 * step)).collect();
+        let more = ((longer - 1.0) * (last - first) / step).round().max(0.0) as usize;
+        let kept = self.t.iter().copied().filter(|t| longer >= 1.0 || *t <= first + longer * (last - first));
+        let t: Vec<f64> = kept.chain((1..=more).map(|k| last + k as f64 * step)).collect();
         let lines = (2..).take(t.len()).collect();
         Film { t, lines, rows: Vec::new(), ..self.clone() }
     }
@@ -134,7 +135,7 @@ fn head(cell: &str) -> Result<(&str, f64), FitError> {
     }
 }
 
-fn column(scene: &Scene, name: &str, deviations: &Deviations) -> Result<Column, FitError> {
+pub(crate) fn column(scene: &Scene, name: &str, deviations: &Deviations) -> Result<Column, FitError> {
     expression(scene, name)?;
     let written = scene.film.iter().find(|filmed| filmed.name == name).and_then(|filmed| filmed.sigma);
     Ok(Column { name: name.into(), sigma: deviations.of(name, written)? })

@@ -15,7 +15,7 @@
 //! - [`Problem`]: residuals of several films in one formulation, with shared unknowns and others of their
 //!   own.
 //! - [`fit()`]: estimates, intervals of 95 %, tests on residuals ([`residual_tests`]).
-//! - [`standard_errors`]: what films that are not yet made would show.
+//! - [`standard_errors`]: what films that are not yet made would show; [`Design`]: which ones would show most.
 //! - [`fit_formulations`]: formulations side by side, and the verdict ([`Verdict`]).
 //!
 //! **Intervals.** `± 1.96` standard errors where χ² rises by 3.84 there, to 5 %, all others fitted again;
@@ -30,6 +30,8 @@
 //! residuals of the best formulation object.
 
 mod answer;
+mod choose;
+mod design;
 mod distribution;
 mod error;
 mod film;
@@ -37,6 +39,7 @@ mod fit;
 mod length;
 mod observation;
 mod part;
+mod planned;
 mod problem;
 mod quantity;
 mod residual_tests;
@@ -44,11 +47,14 @@ mod search;
 mod unknown;
 mod verdict;
 
-pub use answer::{Question, fit_formulations};
+pub use answer::{Question, fit_formulations, with_law};
+pub use choose::Best;
+pub use design::{Aim, Chosen, Design, Point, Range};
 pub use distribution::{chi_squared_tail, normal_tails};
 pub use error::FitError;
 pub use film::{Column, Deviations, Film};
 pub use fit::{Estimate, Fit, Shown, fit, standard_errors};
+pub use planned::Sampling;
 pub use problem::{Problem, Residual};
 pub use quantity::{quantity, unit};
 pub use residual_tests::{ResidualTest, residual_tests};

@@ -174,6 +174,18 @@ impl Problem {
         Ok(other)
     }
 
+    /// Where the truth is at `theta`: priors of the unknowns in `at` have their means there.
+    pub(crate) fn true_at(&self, theta: &[f64], at: &[usize]) -> Problem {
+        let mut moved = self.clone();
+        moved.begin_at(theta);
+        for &i in at {
+            if let Some(prior) = &mut moved.unknowns[i].prior {
+                prior.mean = theta[i];
+            }
+        }
+        moved
+    }
+
     /// Without the unknown `i`, which has this value.
     pub(crate) fn without(&self, i: usize, value: f64) -> Problem {
         let mut less = self.clone();

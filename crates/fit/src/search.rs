@@ -162,22 +162,24 @@ fn scales(problem: &mut Problem) -> (Vec<f64>, Option<String>) {
 
 /// Start `number` of the search.
 fn moved(problem: &Problem, scale: &[f64], spread: &dyn Fn(&str) -> bool, number: usize) -> Vec<f64> {
-    // multiples of the roots of x^(k+1) = x + 1, R. 2018, fill a cube evenly
     let which: Vec<bool> = problem.unknowns().iter().map(|u| spread(&u.name)).collect();
-    let k = which.iter().filter(|w| **w).count();
-    let root = (0..60).fold(2.0_f64, |x, _| (1.0 + x).powf(1.0 / (k as f64 + 1.0)));
-    let mut place = 0;
+    let mut parts = evenly(which.iter().filter(|w| **w).count(), number).into_iter();
     let mut along = |i: usize| {
         let start = problem.start()[i];
         if !which[i] || number == 0 {
             return start;
         }
-        place += 1;
-        let part = (0.5 + number as f64 * root.powi(-place)).fract();
-        let x = start + scale[i] * (2.0 * part - 1.0);
+        let x = start + scale[i] * (2.0 * parts.next().expect("one per unknown that is moved") - 1.0);
         problem.unknowns()[i].bound.map_or(x, |bound| bound + (x - bound).abs())
     };
     (0..scale.len()).map(&mut along).collect()
+}
+
+/// Point `number` of a sequence that fills a cube of k axes evenly: multiples of powers of the root of
+/// `x^(k+1) = x + 1` (Roberts 2018). The first is its centre.
+pub(crate) fn evenly(k: usize, number: usize) -> Vec<f64> {
+    let root = (0..60).fold(2.0_f64, |x, _| (1.0 + x).powf(1.0 / (k as f64 + 1.0)));
+    (1..=k as i32).map(|axis| (0.5 + number as f64 * root.powi(-axis)).fract()).collect()
 }
 
 /// The least first, each once.

@@ -17,7 +17,7 @@ const RADIUS: f64 = 0.0667;
 const SIGMA: f64 = 0.5e-3;
 
 /// The built-in table as in a laboratory: a ball of 2 cm whose centre runs on a circle of [`RADIUS`].
-fn scene() -> Scene {
+pub fn laboratory() -> Scene {
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../catalogue/scenes/turntable.toml");
     let forces = "forces = { x = \"m*tilt_x - drag*m*x'\", y = \"m*tilt_y - drag*m*y'\" }\n\n[start.velocities]";
     let text = std::fs::read_to_string(path).unwrap();
@@ -42,7 +42,7 @@ const SHARED: [&str; 4] = ["Omega", "tilt_x", "tilt_y", "epsilon"];
 
 /// The standard error of ε by films of these spins, and what they do not show; `drag` as it is written.
 fn found(spins: &[f64], drag: Option<&str>) -> (f64, Vec<String>) {
-    let scene = scene();
+    let scene = laboratory();
     let choice = choices(&scene).into_iter().find(|c| c.formulation == FIRST_ORDER).unwrap();
     let mut unknowns: Vec<Unknown> = STARTS.iter().chain(&SHARED).map(|name| Unknown::named(name)).collect();
     unknowns.extend(drag.map(|drag| drag.parse::<Unknown>().unwrap()));
@@ -53,7 +53,7 @@ fn found(spins: &[f64], drag: Option<&str>) -> (f64, Vec<String>) {
 }
 
 /// The same by the closed form; the deviation of what is known of the drag.
-fn closed(spins: &[f64], drag: Option<f64>) -> f64 {
+pub fn closed(spins: &[f64], drag: Option<f64>) -> f64 {
     type C = Complex<f64>;
     let alpha = C::new(0.0, 2.0 * OMEGA / 7.0);
     let start = C::new(0.0, 2.0 * OMEGA / 7.0 * RADIUS);

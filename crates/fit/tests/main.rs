@@ -1,6 +1,7 @@
 //! Films with known numbers, made by code that shares nothing with the fit; tables that cannot be read.
 
 mod bounds;
+mod design;
 mod films;
 mod noise;
 mod tables;

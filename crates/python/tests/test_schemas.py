@@ -33,6 +33,7 @@ ANSWERS = {
     "integrals-certificate": {f"integrals {scene} --degree 1 --certificates FOLDER": 0 for scene in ("suslov", "heisenberg")},
     "judge": {"judge sledge FOLDER/motion.csv": 0, "judge sledge FOLDER/motion.csv FOLDER/motion.csv FOLDER/motion.csv --set g=5": 3},
     "fit": {"fit sledge FOLDER/film.csv --free x,y,phi,x',phi',g~9 --law eps --sigma 1mm": 0, "fit sledge FOLDER/film.csv --free x,y --sigma 1cm": 3},
+    "design": {"design heisenberg --tell vakonomic,chetaev --film 9Hz,1mm,1s --free x',y' --over mu0_1=0.1:1 --points 4": 0, "design disc --estimate eps --law eps --film 9Hz,1mm,1s": 0},
     "certificate": {"prove sledge --out -": 0},
     "linearize": {"linearize bicycle --free lean,steer --sweep v=4:5:2": 0, "linearize sledge --at 1": 0},
     "random": {"random --count 3": 0},

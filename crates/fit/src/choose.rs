@@ -1,0 +1,150 @@
+//! The search for the best film.
+
+use std::sync::{Mutex, PoisonError};
+
+use deltaq::over_threads;
+
+use crate::search::evenly;
+use crate::{Design, FitError, Point};
+
+/// Points of the scan from which the search goes on.
+const FOLLOWED: usize = 3;
+/// The first step along an axis, and the last one, as parts of the way between the bounds.
+const FIRST_STEP: f64 = 0.25;
+const LAST_STEP: f64 = 1.0 / 64.0;
+
+/// What a search for the best film saw.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Best {
+    /// Films of the scene's own numbers, which may lie outside the bounds.
+    pub own: Result<Point, FitError>,
+    /// The best one, looked at again from four times as many starts.
+    pub best: Point,
+    /// Other ends of the search, the best first; by fewer starts.
+    pub others: Vec<Point>,
+    /// Points that were looked at.
+    pub tried: usize,
+    /// Points of these without a motion through the whole film; they say nothing.
+    pub without_motion: usize,
+}
+
+impl Design {
+    /// The best films that were found; the scene's own where nothing can be chosen. From a scan of `points` beside the corners; over this many threads
+    /// (0: as many as there are processors), on which no result depends.
+    ///
+    /// # Errors
+    /// The first reason where no point has motions.
+    pub fn best(&self, points: usize, threads: usize) -> Result<Best, FitError> {
+        let mut seen = Seen { design: self, threads, points: Vec::new(), without_motion: 0, reason: None };
+        let at: Vec<f64> = self.chosen().iter().map(|chosen| chosen.own).collect();
+        if at.is_empty() {
+            let best = self.point_again(&at)?;
+            return Ok(Best { own: Ok(best.clone()), best, others: Vec::new(), tried: 1, without_motion: 0 });
+        }
+        let own = self.point(&at);
+        let width = self.chosen().len();
+        let corners = if width < 8 && 1 << width <= points { 1 << width } else { 0 };
+        let corner = |number: usize| (0..width).map(|i| f64::from(number >> i & 1 == 1)).collect::<Vec<_>>();
+        let mut scan: Vec<Vec<f64>> = (0..corners).map(corner).collect();
+        scan.extend((0..points).map(|number| evenly(width, number)));
+        seen.look_at(scan);
+        let mut starts: Vec<usize> = (0..seen.points.len()).collect();
+        starts.sort_by(|a, b| seen.order(*a, *b));
+        let mut ends: Vec<usize> = Vec::new();
+        for start in starts.into_iter().take(FOLLOWED) {
+            let end = seen.follow(start);
+            if !ends.contains(&end) {
+                ends.push(end);
+            }
+        }
+        ends.sort_by(|a, b| seen.order(*a, *b));
+        let (tried, without_motion) = (seen.points.len() + seen.without_motion, seen.without_motion);
+        let mut found: Vec<Point> = ends.into_iter().map(|end| seen.points[end].1.clone()).collect();
+        let Some(first) = found.first() else {
+            return Err(seen.reason.unwrap_or(FitError::NoUnknown));
+        };
+        // a value that more starts make worse was none
+        let mut best = self.point_again(&first.at)?;
+        for other in found.iter_mut().skip(1) {
+            if self.is_better(other, &best) {
+                let again = self.point_again(&other.at)?;
+                if self.is_better(&again, &best) {
+                    *other = std::mem::replace(&mut best, again);
+                } else {
+                    *other = again;
+                }
+            }
+        }
+        let others = found.into_iter().skip(1).collect();
+        Ok(Best { own, best, others, tried, without_motion })
+    }
+}
+
+/// Points that were looked at, in parts of the way between the bounds.
+struct Seen<'a> {
+    design: &'a Design,
+    threads: usize,
+    points: Vec<(Vec<f64>, Point)>,
+    without_motion: usize,
+    reason: Option<FitError>,
+}
+
+impl Seen<'_> {
+    /// Adds those of these points that are new and have a motion.
+    fn look_at(&mut self, parts: Vec<Vec<f64>>) {
+        let new: Vec<Vec<f64>> =
+            parts.into_iter().filter(|part| self.points.iter().all(|(known, _)| known != part)).collect();
+        let ends: Vec<[f64; 2]> = self.design.chosen().iter().map(|chosen| chosen.ends).collect();
+        let number = |(part, [low, high]): (&f64, &[f64; 2])| low + part * (high - low);
+        // a scene is no one's at the same time
+        let design = Mutex::new(self.design.clone());
+        let found = over_threads(self.threads, new.len(), |i| {
+            let own = design.lock().unwrap_or_else(PoisonError::into_inner).clone();
+            own.point(&new[i].iter().zip(&ends).map(number).collect::<Vec<_>>())
+        });
+        for (part, found) in new.into_iter().zip(found) {
+            match found {
+                Ok(point) => self.points.push((part, point)),
+                Err(reason) => {
+                    self.without_motion += 1;
+                    self.reason.get_or_insert(reason);
+                }
+            }
+        }
+    }
+
+    /// The better one first.
+    fn order(&self, a: usize, b: usize) -> std::cmp::Ordering {
+        let [a, b] = [a, b].map(|i| &self.points[i].1);
+        if self.design.is_better(a, b) {
+            std::cmp::Ordering::Less
+        } else if self.design.is_better(b, a) {
+            std::cmp::Ordering::Greater
+        } else {
+            std::cmp::Ordering::Equal
+        }
+    }
+
+    /// Along the axes to better points, until none is better at the shortest step.
+    fn follow(&mut self, start: usize) -> usize {
+        let (mut at, mut step) = (start, FIRST_STEP);
+        while step >= LAST_STEP {
+            let here = self.points[at].0.clone();
+            let mut around = Vec::new();
+            for i in 0..here.len() {
+                for side in [-step, step] {
+                    let mut part = here.clone();
+                    part[i] = (part[i] + side).clamp(0.0, 1.0);
+                    around.push(part);
+                }
+            }
+            self.look_at(around.clone());
+            let near = (0..self.points.len()).filter(|&i| around.contains(&self.points[i].0));
+            match near.min_by(|a, b| self.order(*a, *b)).filter(|&i| self.order(i, at).is_lt()) {
+                Some(better) => at = better,
+                None => step *= 0.5,
+            }
+        }
+        at
+    }
+}

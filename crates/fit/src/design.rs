@@ -1,0 +1,281 @@
+//! Which film would show most: numbers d of the motion, each between two bounds, that
+//!
+//! ```text
+//! tell two formulations apart:   max over d of  min over θ of  χ²(d, θ) ,
+//! show a number θ_j:             min over d of  σ_j ,   σ² = diag (JᵀJ)⁻¹ .
+//! ```
+//!
+//! `χ²(d, θ)` is that of the second formulation with the unknowns θ on a film of the first one without noise,
+//! priors included: what it lies above the number of residuals on average. Each inner minimum is the least
+//! that several starts found. The search over d: the scene's own numbers, corners, and points that fill the
+//! box evenly; then from the best of these along the axes, by steps that become shorter.
+
+use std::str::FromStr;
+
+use deltaq::Choice;
+use scene::Scene;
+
+use crate::answer::{LAW, is_constant, problem_of, with_law};
+use crate::search::search;
+use crate::{EXCLUDED, Film, FitError, Problem, Question, quantity, standard_errors};
+
+/// Lengths over that of the film, at which a film that tells is looked for.
+const LENGTHS: [f64; 7] = [1.0, 1.5, 2.0, 3.0, 4.0, 6.0, 8.0];
+/// The shortest film is found to this part.
+const CLOSE: f64 = 0.02;
+
+/// A number that can be chosen, `NAME=LOW:HIGH`, `NAME@2=LOW:HIGH` for the second film alone.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Range {
+    /// Its name in the scene.
+    pub name: String,
+    /// The film, from 0; otherwise each film has its own start value, and all share a parameter.
+    pub film: Option<usize>,
+    /// The bounds.
+    pub ends: [f64; 2],
+}
+
+impl FromStr for Range {
+    type Err = FitError;
+
+    fn from_str(text: &str) -> Result<Self, FitError> {
+        let refused = |reason: &str| FitError::Choose { text: text.into(), reason: reason.into() };
+        let parts = text.split_once('=').and_then(|(name, ends)| Some((name, ends.split_once(':')?)));
+        let (name, (low, high)) = parts.ok_or_else(|| refused("it is not NAME=LOW:HIGH"))?;
+        let unknown: crate::Unknown = name.parse()?;
+        let ends = [quantity(low)?, quantity(high)?];
+        if ends[0] >= ends[1] {
+            return Err(refused("the first bound has to be below the second"));
+        }
+        Ok(Range { name: unknown.name, film: unknown.film, ends })
+    }
+}
+
+/// What a film is to show.
+#[derive(Clone, Copy)]
+pub enum Aim<'a> {
+    /// That the first formulation is right and not the second, by their choices.
+    Tell(&'a Choice, &'a Choice),
+    /// This unknown, in this formulation.
+    Estimate(&'a Choice, &'a str),
+}
+
+/// Films that can be chosen.
+#[derive(Clone)]
+pub struct Design {
+    truth: Side,
+    /// The formulation that is to be told apart.
+    rival: Option<Side>,
+    /// Place of the number that is to be estimated.
+    unknown: usize,
+    chosen: Vec<Chosen>,
+    starts: usize,
+    /// Time from the start to the last sample.
+    length: f64,
+}
+
+/// A number that is chosen.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Chosen {
+    /// As it is written: `x@2`.
+    pub label: String,
+    /// The bounds.
+    pub ends: [f64; 2],
+    /// The scene's own number.
+    pub own: f64,
+}
+
+/// What films of one d show.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Point {
+    /// The chosen numbers.
+    pub at: Vec<f64>,
+    /// The least χ² of the second formulation, or the standard error; infinite where films do not show it.
+    pub value: f64,
+    /// Numbers of the second formulation at its least χ².
+    pub numbers: Vec<(String, f64)>,
+    /// Minima that the search for it saw.
+    pub minima: usize,
+    /// Combinations of unknowns that such films do not show.
+    pub hidden: Vec<String>,
+}
+
+/// A formulation, its unknowns, and which of these are chosen.
+#[derive(Clone)]
+struct Side {
+    problem: Problem,
+    /// By unknown: its place among the chosen numbers.
+    places: Vec<Option<usize>>,
+    /// Unknowns that are known in fact: chosen, and not free.
+    known: Vec<usize>,
+}
+
+impl Side {
+    fn new(
+        scene: &Scene,
+        choice: &Choice,
+        films: &[Film],
+        question: &Question,
+        over: &[Range],
+    ) -> Result<(Side, Vec<Chosen>), FitError> {
+        let is_free = |name: &str, film: Option<usize>| {
+            question.unknowns.iter().any(|u| u.name == name && (u.film.is_none() || u.film == film))
+        };
+        let mut unknowns = question.unknowns.to_vec();
+        for range in over.iter().filter(|range| !is_free(&range.name, range.film)) {
+            unknowns.push(crate::Unknown { film: range.film, ..crate::Unknown::named(&range.name) });
+        }
+        let asked = Question { unknowns: &unknowns, ..question.clone() };
+        let problem = problem_of(scene, choice, films, &asked)?;
+        let (mut chosen, mut places, mut known): (Vec<Chosen>, _, _) = (Vec::new(), Vec::new(), Vec::new());
+        for (i, unknown) in problem.unknowns().iter().enumerate() {
+            let of =
+                |range: &&Range| range.name == unknown.name && (range.film.is_none() || range.film == unknown.film);
+            let Some(range) = over.iter().rev().find(of) else {
+                places.push(None);
+                continue;
+            };
+            places.push(Some(chosen.len()));
+            chosen.push(Chosen { label: unknown.label(), ends: range.ends, own: problem.start()[i] });
+            if !is_free(&unknown.name, unknown.film) {
+                known.push(i);
+            }
+        }
+        Ok((Side { problem, places, known }, chosen))
+    }
+
+    /// The unknowns where the truth is d.
+    fn theta(&self, d: &[f64]) -> Vec<f64> {
+        let own = self.problem.start().iter().zip(&self.places);
+        own.map(|(own, place)| place.map_or(*own, |i| d[i])).collect()
+    }
+
+    /// The problem where the truth is d.
+    fn at(&self, d: &[f64]) -> Problem {
+        let theta = self.theta(d);
+        let chosen: Vec<usize> = (0..theta.len()).filter(|&i| self.places[i].is_some()).collect();
+        let mut problem = self.problem.true_at(&theta, &chosen);
+        for &i in self.known.iter().rev() {
+            problem = problem.without(i, theta[i]);
+        }
+        problem
+    }
+}
+
+impl Design {
+    /// Films of `scene` whose columns and times are those of `films`; what is filled in there does not
+    /// matter. Free are `question.unknowns`, and the constants that formulations start from.
+    ///
+    /// # Errors
+    /// [`FitError`]: of [`Problem::new`]; a number that is chosen and is none of the scene; an unknown to be
+    /// estimated that is not free.
+    pub fn new(
+        scene: &Scene,
+        films: &[Film],
+        question: &Question,
+        over: &[Range],
+        aim: Aim,
+    ) -> Result<Design, FitError> {
+        let scene = &with_law(scene, question.law);
+        let (choice, rival) = match aim {
+            Aim::Tell(truth, rival) => (truth, Some(rival)),
+            Aim::Estimate(choice, _) => (choice, None),
+        };
+        let (truth, chosen) = Side::new(scene, choice, films, question, over)?;
+        let missing = |range: &&Range| {
+            let of = |u: &crate::Unknown| u.name == range.name && (range.film.is_none() || range.film == u.film);
+            !truth.problem.unknowns().iter().any(of)
+        };
+        if let Some(range) = over.iter().find(missing) {
+            let reason = "it is no number of this formulation".to_string();
+            return Err(FitError::Choose { text: range.name.clone(), reason });
+        }
+        let mut unknown = 0;
+        if let Aim::Estimate(_, name) = aim {
+            let of = |i: &usize| truth.problem.unknowns()[*i].label() == name && !truth.known.contains(i);
+            let place = (0..truth.problem.unknowns().len()).find(of).ok_or_else(|| FitError::Unknown {
+                text: name.into(),
+                reason: "it is not free, so that no film has to show it".into(),
+            })?;
+            unknown = place - truth.known.iter().filter(|known| **known < place).count();
+        }
+        let rival = rival.map(|rival| Side::new(scene, rival, films, question, over)).transpose()?;
+        let rival = rival.map(|(side, others)| {
+            // in the order of the first formulation
+            let place = |i: usize| chosen.iter().position(|own| own.label == others[i].label);
+            Side { places: side.places.iter().map(|at| at.and_then(place)).collect(), ..side }
+        });
+        let ends = films.iter().filter_map(|film| film.t.last());
+        let length = ends.fold(0.0, |length: f64, end| length.max(end - scene.start.t));
+        Ok(Design { truth, rival, unknown, chosen, starts: question.starts, length })
+    }
+
+    /// The numbers that are chosen, in the order of [`Point::at`].
+    pub fn chosen(&self) -> &[Chosen] {
+        &self.chosen
+    }
+
+    /// What films of the motion with the numbers d show.
+    ///
+    /// # Errors
+    /// [`FitError::NoMotion`].
+    pub fn point(&self, d: &[f64]) -> Result<Point, FitError> {
+        self.tried(d, 1.0, self.starts)
+    }
+
+    /// The same by four times as many starts: the least χ² that is found is less or equal.
+    ///
+    /// # Errors
+    /// As [`Design::point`].
+    pub fn point_again(&self, d: &[f64]) -> Result<Point, FitError> {
+        self.tried(d, 1.0, 4 * self.starts)
+    }
+
+    fn tried(&self, d: &[f64], longer: f64, starts: usize) -> Result<Point, FitError> {
+        let Some(rival) = &self.rival else {
+            let problem = self.truth.at(d);
+            let shown = standard_errors(&problem, problem.start())?;
+            let value = shown.errors[self.unknown];
+            return Ok(Point { at: d.to_vec(), value, numbers: Vec::new(), minima: 1, hidden: shown.hidden });
+        };
+        let films = self.truth.problem.foreseen(&self.truth.theta(d), longer);
+        let films = films.map_err(|reason| FitError::NoMotion { starts: 1, reason })?;
+        let problem = rival.at(d).of_films(films)?;
+        let spread = |name: &str| is_constant(name) || LAW.contains(&name);
+        let found = search(&problem, &spread, starts, false)?;
+        let labels = problem.unknowns().iter().map(crate::Unknown::label);
+        let (value, minima) = (found.best.chi_squared, found.minima.len());
+        let numbers = labels.zip(found.best.theta).collect();
+        Ok(Point { at: d.to_vec(), value, numbers, minima, hidden: Vec::new() })
+    }
+
+    /// Whether a is better than b.
+    pub(crate) fn is_better(&self, a: &Point, b: &Point) -> bool {
+        if self.rival.is_some() { a.value > b.value } else { a.value < b.value }
+    }
+
+    /// The length of the shortest film of the motion with the numbers d that tells the formulations apart,
+    /// χ² ≥ [`EXCLUDED`], to 2 %, up to eight times as long as the films; none where none was found.
+    pub fn shortest(&self, d: &[f64]) -> Option<f64> {
+        self.rival.as_ref()?;
+        let tells = |longer: f64| Some(self.tried(d, longer, self.starts).ok()?.value >= EXCLUDED);
+        let (mut low, mut high) = (0.0, None);
+        for longer in LENGTHS {
+            if tells(longer)? {
+                high = Some(longer);
+                break;
+            }
+            low = longer;
+        }
+        let mut high = high?;
+        while high - low > CLOSE * high {
+            // a film that is too short for its unknowns does not tell
+            let middle = if low > 0.0 { 0.5 * (low + high) } else { high / 1.5 };
+            match tells(middle).unwrap_or(false) {
+                true => high = middle,
+                false => low = middle,
+            }
+        }
+        Some(high * self.length)
+    }
+}
