@@ -15,7 +15,7 @@
 //! - [`Problem`]: residuals of several films in one formulation, with shared unknowns and others of their
 //!   own.
 //! - [`fit()`]: estimates, intervals of 95 %, tests on residuals ([`residual_tests`]).
-//! - [`standard_errors`]: what films that are not yet made would show; [`Design`]: which ones would show most.
+//! - [`standard_errors`]: what films that are not yet made would show; [`Design`]: which would show most.
 //! - [`fit_formulations`]: formulations side by side, and the verdict ([`Verdict`]).
 //!
 //! **Intervals.** `± 1.96` standard errors where χ² rises by 3.84 there, to 5 %, all others fitted again;

@@ -29,8 +29,8 @@ fn question(unknowns: &[Unknown], starts: usize) -> Question<'_> {
     Question { unknowns, law: &[], starts, robust: None, settings: Settings { tolerance: 1e-9, ..Settings::default() } }
 }
 
-/// With an unknown drag two balls without spin show almost nothing of ε: one that spins as fast as it may, and
-/// one that spins the other way, show it some fifty times as well.
+/// With an unknown drag two balls without spin show almost nothing of ε: one without spin beside one with twice
+/// the rate of the table show it some fifty times as well.
 #[test]
 fn the_second_ball_is_spun_without_a_hint() {
     let scene = laboratory();
@@ -53,9 +53,8 @@ fn the_second_ball_is_spun_without_a_hint() {
     assert_eq!(best.without_motion, 0);
 }
 
-/// χ² of the straight line that is closest to an arc of rate μ and unit speed, whose start and velocity are free:
-/// the film shows `μ t²/2` across it, and of the part orthogonal to 1 and t, `t²/2 − …`, the integral over T is
-/// `T⁵/720`.
+/// χ² of the straight line closest to an arc of rate μ and unit speed, start and velocity free: it misses
+/// `μ t²/2` across, and the square of the part of `t²/2` orthogonal to 1 and t has the integral `T⁵/720`.
 fn arc(mu: f64, samples: f64, length: f64, sigma: f64) -> f64 {
     samples * (mu * length * length / sigma).powi(2) / 720.0
 }
