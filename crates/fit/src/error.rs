@@ -1,14 +1,15 @@
 //! Why there is no fit.
 
 use deltaq::SolveError;
+use scene::TableError;
 use symbolic::CompileError;
 
 /// A film that cannot be read, or a question that cannot be asked.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum FitError {
-    /// The table has no column of times.
-    #[error("there is no column `t`")]
-    NoTime,
+    /// The table cannot be read.
+    #[error(transparent)]
+    Table(#[from] TableError),
     /// The table shows nothing.
     #[error("there is no column but `t`")]
     NoColumn,
@@ -38,36 +39,6 @@ pub enum FitError {
         of: String,
         /// What was given.
         found: f64,
-    },
-    /// A cell is no number.
-    #[error("line {line}, column `{column}`: `{text}` is no finite number, and no empty cell")]
-    NotANumber {
-        /// Line of the file, the header being the first.
-        line: usize,
-        /// Name of the column.
-        column: String,
-        /// What stands there.
-        text: String,
-    },
-    /// A line has another number of cells than the header.
-    #[error("line {line} has {found} cells, and the header has {expected}")]
-    Ragged {
-        /// Line of the file.
-        line: usize,
-        /// Cells there.
-        found: usize,
-        /// Cells of the header.
-        expected: usize,
-    },
-    /// Times do not grow.
-    #[error("line {line}: t = {t} is not later than t = {before} of the sample before")]
-    TimesNotGrowing {
-        /// Line of the file.
-        line: usize,
-        /// The time there.
-        t: f64,
-        /// The time before.
-        before: f64,
     },
     /// A film begins before the scene.
     #[error("line {line}: t = {t} is before the start of the scene, t = {start}")]

@@ -1,6 +1,6 @@
 //! A film as a table: times, and what is seen of the motion.
 
-use scene::Scene;
+use scene::{Scene, Table, TableError};
 use symbolic::Expr;
 
 use crate::FitError;
@@ -57,9 +57,6 @@ pub(crate) fn positive(of: &str, found: f64) -> Result<f64, FitError> {
     }
 }
 
-/// Cells that show nothing.
-const EMPTY: [&str; 3] = ["", "nan", "na"];
-
 impl Film {
     /// Reads a table, CSV, with a column `t`. Every other column has the name of an entry of `[film]`, or is
     /// an expression of coordinates, velocities and parameters: `x`, `x'`, `a*theta`. A unit may follow:
@@ -68,38 +65,24 @@ impl Film {
     /// # Errors
     /// [`FitError`] with the line where there is one.
     pub fn read(scene: &Scene, name: &str, text: &str, deviations: &Deviations) -> Result<Film, FitError> {
-        let cells =
-            |line: &str| -> Vec<String> { line.split(',').map(|c| c.trim().trim_matches('"').into()).collect() };
-        let mut lines = text.lines().enumerate().filter(|(_, line)| !line.trim().is_empty());
-        let header = lines.next().map(|(_, line)| cells(line.trim_start_matches('\u{feff}'))).unwrap_or_default();
-        let heads = header.iter().map(|cell| head(cell)).collect::<Result<Vec<_>, _>>()?;
-        let time = heads.iter().position(|(name, _)| *name == "t").ok_or(FitError::NoTime)?;
+        let table = Table::read(text)?;
+        let heads = table.columns.iter().map(|cell| head(cell)).collect::<Result<Vec<_>, _>>()?;
+        let time = heads.iter().position(|(name, _)| *name == "t");
+        let time = time.ok_or_else(|| TableError::ColumnMissing("t".into()))?;
         let seen: Vec<usize> = (0..heads.len()).filter(|&i| i != time).collect();
         let columns = seen.iter().map(|&i| column(scene, heads[i].0, deviations)).collect::<Result<Vec<_>, _>>()?;
         if columns.is_empty() {
             return Err(FitError::NoColumn);
         }
+        let times = table.times(time)?;
         let (rows, known, t) = (Vec::new(), Vec::new(), Vec::new());
         let mut film = Film { name: name.into(), t, columns, rows, lines: Vec::new(), known };
-        for (index, line) in lines {
-            let (line, row) = (index + 1, cells(line));
-            if row.len() != header.len() {
-                return Err(FitError::Ragged { line, found: row.len(), expected: header.len() });
-            }
-            let number = |i: usize| {
-                let wrong = || FitError::NotANumber { line, column: heads[i].0.to_string(), text: row[i].clone() };
-                let value = row[i].parse::<f64>().ok().filter(|x| x.is_finite()).ok_or_else(wrong)?;
-                Ok(value * heads[i].1)
-            };
-            let t = number(time)?;
-            if let Some(&before) = film.t.last().filter(|&&before| before >= t) {
-                return Err(FitError::TimesNotGrowing { line, t, before });
-            }
+        for (row, (&line, t)) in table.lines.iter().zip(times).enumerate() {
+            let t = t * heads[time].1;
             if t < scene.start.t {
                 return Err(FitError::BeforeTheStart { line, t, start: scene.start.t });
             }
-            let is_gap = |i: usize| EMPTY.contains(&row[i].to_lowercase().as_str());
-            let value = |&i: &usize| if is_gap(i) { Ok(None) } else { number(i).map(Some) };
+            let value = |&i: &usize| Ok(table.number_or_gap(row, i)?.map(|x| x * heads[i].1));
             let values = seen.iter().map(value).collect::<Result<Vec<_>, FitError>>()?;
             if values.iter().any(Option::is_some) {
                 film.t.push(t);

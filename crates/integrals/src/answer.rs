@@ -6,7 +6,7 @@ use decision::{DecisionError, ExactStart};
 use deltaq::{CHETAEV, Choice, Contradicted, Settings, SolveError, derive, solve_choice};
 use mechanics::{System, Watched};
 use scene::Scene;
-use symbolic::{Expr, Symbol};
+use symbolic::{Expr, Graph, Symbol};
 
 use crate::ansatz::{self, ansatz};
 use crate::{Ansatz, Open, Printed, Reversed, constants, reversible};
@@ -114,13 +114,17 @@ pub fn watched(scene: &Scene, choice: &Choice) -> Result<Vec<Watched>, NoAnswer>
     let is_seen = |printed: &&Printed| {
         !printed.is_energy && multipliers.iter().all(|(mu, _)| !equations.graph.depends_on(printed.expression, *mu))
     };
-    let g = &system.graph;
-    let known = |name: &str| g.find_symbol(name).map(|symbol| g.variable(symbol));
     let read = found.printed.iter().filter(is_seen).map(|printed| {
-        let expression = g.parse(&printed.text, &known, &[]).map_err(|fault| Open::Other(fault.to_string()))?;
+        let expression = again(&system.graph, &printed.text).map_err(Open::Other)?;
         Ok(Watched { name: printed.text.clone(), expression, constant: true })
     });
     read.collect::<Result<_, _>>().map_err(NoAnswer::Open)
+}
+
+/// What is printed, read again with the symbols of `g`.
+fn again(g: &Graph, text: &str) -> Result<Expr, String> {
+    let known = |name: &str| g.find_symbol(name).map(|symbol| g.variable(symbol));
+    g.parse(text, &known, &[]).map_err(|fault| fault.to_string())
 }
 
 fn drifts(scene: &Scene, choice: &Choice, printed: &[Printed]) -> Result<Vec<f64>, String> {
@@ -131,11 +135,8 @@ fn drifts(scene: &Scene, choice: &Choice, printed: &[Printed]) -> Result<Vec<f64
     let settings = Settings { tolerance: TOLERANCE, ..Settings::default() };
     let mut motion = solve_choice(scene, choice, &settings).map_err(|fault| fault.to_string())?;
     let g = motion.equations.graph.clone();
-    let known = |name: &str| g.find_symbol(name).map(|symbol| g.variable(symbol));
-    let texts = printed.iter().map(|p| [p.text.clone(), p.without_signs()]);
-    let read = |text: String| g.parse(&text, &known, &[]).map_err(|fault| fault.to_string());
-    let pairs: Vec<[Expr; 2]> =
-        texts.map(|[own, size]| Ok([read(own)?, read(size)?])).collect::<Result<_, String>>()?;
+    let both = |p: &Printed| Ok([again(&g, &p.text)?, again(&g, &p.without_signs())?]);
+    let pairs: Vec<[Expr; 2]> = printed.iter().map(both).collect::<Result<_, String>>()?;
     let symbols: Vec<Symbol> = system.positions().into_iter().chain(system.velocities()).chain([system.time]).collect();
     let multipliers: Vec<Option<Symbol>> =
         motion.equations.multipliers.iter().map(|m| g.find_symbol(&m.name)).collect();

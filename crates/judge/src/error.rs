@@ -1,13 +1,14 @@
 //! Why there is no judgement.
 
+use scene::TableError;
 use symbolic::CompileError;
 
 /// A judgement that there is not.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum JudgeError {
-    /// The table has no such column.
-    #[error("there is no column `{0}`")]
-    ColumnMissing(String),
+    /// The table cannot be read.
+    #[error(transparent)]
+    Table(#[from] TableError),
     /// Rates are given of some coordinates only.
     #[error("there are rates of {given} of {of} coordinates: column `{missing}` is missing")]
     SomeRates {
@@ -17,36 +18,6 @@ pub enum JudgeError {
         of: usize,
         /// The first rate that is missing.
         missing: String,
-    },
-    /// A cell is no finite number.
-    #[error("line {line}, column `{column}`: `{text}` is no finite number")]
-    NotANumber {
-        /// Line of the file, the header being the first.
-        line: usize,
-        /// Name of the column.
-        column: String,
-        /// What stands there.
-        text: String,
-    },
-    /// A line has another number of cells than the header.
-    #[error("line {line} has {found} cells, and the header has {expected}")]
-    Ragged {
-        /// Line of the file, the header being the first.
-        line: usize,
-        /// Cells there.
-        found: usize,
-        /// Cells of the header.
-        expected: usize,
-    },
-    /// Times do not grow.
-    #[error("line {line}: t = {t} is not later than t = {before}, one line before")]
-    TimesNotGrowing {
-        /// Line of the file.
-        line: usize,
-        /// The time there.
-        t: f64,
-        /// The time before.
-        before: f64,
     },
     /// There are too few samples for differences.
     #[error("there are {found} samples, and {needed} are needed")]

@@ -1,9 +1,7 @@
 //! A motion as a table: times, coordinates, perhaps rates.
-//!
-//! The table is read by hand: cells are numbers, and names of columns need no quotes, so that nothing of a
-//! crate for CSV would be used but the comma.
 
 use mechanics::System;
+use scene::{Table, TableError};
 
 use crate::JudgeError;
 
@@ -25,43 +23,23 @@ impl Samples {
     /// # Errors
     /// [`JudgeError`] where a column is missing or a cell is no number, with its place.
     pub fn read(system: &System, text: &str) -> Result<Samples, JudgeError> {
-        let cells =
-            |line: &str| -> Vec<String> { line.split(',').map(|c| c.trim().trim_matches('"').into()).collect() };
-        let mut lines = text.lines().enumerate().filter(|(_, line)| !line.trim().is_empty());
-        let header = lines.next().map(|(_, line)| cells(line.trim_start_matches('\u{feff}'))).unwrap_or_default();
-        let column = |name: &str| header.iter().position(|h| h == name);
-        let needed = |name: &str| column(name).ok_or_else(|| JudgeError::ColumnMissing(name.into()));
-        let time = needed("t")?;
+        let table = Table::read(text)?;
+        let time = table.column("t")?;
         let names = || system.coordinates.iter().map(|c| &c.name);
-        let places = names().map(|name| needed(name)).collect::<Result<Vec<_>, _>>()?;
-        let rates: Vec<Option<usize>> = names().map(|name| column(&format!("{name}'"))).collect();
+        let places = names().map(|name| table.column(name)).collect::<Result<Vec<_>, _>>()?;
+        let rates: Vec<Option<usize>> = names().map(|name| table.column(&format!("{name}'")).ok()).collect();
         let given = rates.iter().flatten().count();
         if let (1.., Some(i)) = (given, rates.iter().position(Option::is_none)) {
             let missing = format!("{}'", system.coordinates[i].name);
             return Err(JudgeError::SomeRates { given, of: rates.len(), missing });
         }
         let rates: Option<Vec<usize>> = rates.into_iter().collect();
-        let mut samples = Samples { t: Vec::new(), q: Vec::new(), v: rates.is_some().then(Vec::new) };
-        for (index, line) in lines {
-            let (line, row) = (index + 1, cells(line));
-            if row.len() != header.len() {
-                return Err(JudgeError::Ragged { line, found: row.len(), expected: header.len() });
-            }
-            let number = |&i: &usize| {
-                let wrong = || JudgeError::NotANumber { line, column: header[i].clone(), text: row[i].clone() };
-                row[i].parse::<f64>().ok().filter(|x| x.is_finite()).ok_or_else(wrong)
-            };
-            let t = number(&time)?;
-            if let Some(&before) = samples.t.last().filter(|&&before| before >= t) {
-                return Err(JudgeError::TimesNotGrowing { line, t, before });
-            }
-            samples.t.push(t);
-            samples.q.push(places.iter().map(number).collect::<Result<_, _>>()?);
-            if let (Some(v), Some(rates)) = (&mut samples.v, &rates) {
-                v.push(rates.iter().map(number).collect::<Result<_, _>>()?);
-            }
-        }
-        Ok(samples)
+        let rows = |places: &[usize]| -> Result<Vec<Vec<f64>>, TableError> {
+            let row = |row| places.iter().map(|&place| table.number(row, place)).collect();
+            (0..table.lines.len()).map(row).collect()
+        };
+        let v = rates.map(|rates| rows(&rates)).transpose()?;
+        Ok(Samples { t: table.times(time)?, q: rows(&places)?, v })
     }
 
     /// Mean distance of two times, in `T`.

@@ -30,7 +30,7 @@ fn what_is_no_table_is_refused_with_its_place() {
         ("t,x,y\n0,1,2\n1,1\n", "line 3 has 2 cells, and the header has 3"),
         ("t,x,y\n0,1,2\n1,one,2\n", "line 3, column `x`: `one` is no finite number"),
         ("t,x,y\n0,1,inf\n", "line 2, column `y`: `inf` is no finite number"),
-        ("t,x,y\n0,1,2\n0,1,2\n", "line 3: t = 0 is not later than t = 0, one line before"),
+        ("t,x,y\n0,1,2\n0,1,2\n", "line 3: t = 0 is not later than t = 0 of the row before"),
     ] {
         assert_eq!(refused(table), said);
     }

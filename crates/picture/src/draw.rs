@@ -230,6 +230,10 @@ fn curves(out: &mut String, plot: &Framed, coarseness: Coarseness) {
             band(out, &runs, plot.extent);
             continue;
         }
+        if curve.style == Style::Samples {
+            samples(out, &runs, plot.extent);
+            continue;
+        }
         let mut trace = Trace::new(&runs, plot.extent, coarseness);
         if plot.every > 0 {
             let Extent { width: w, height: h } = plot.extent;
@@ -330,6 +334,18 @@ fn strokes(out: &mut String, style: Style, trace: &Trace) {
             let radius = px(2.0 + width / 2.0);
             out.push_str(&format!("<circle cx=\"{}\" cy=\"{}\" r=\"{radius}\" fill=\"{colour}\"/>\n", px(x), px(y)));
         }
+    }
+}
+
+/// A dot per point, as lines without length.
+fn samples(out: &mut String, runs: &[Vec<Place>], extent: Extent) {
+    let seen = |&(x, y): &Place| (0.0..=extent.width).contains(&x) && (0.0..=extent.height).contains(&y);
+    let dots = runs.iter().flatten().copied().filter(seen).map(|dot| vec![dot, dot]).collect();
+    let path = Trace { lines: dots, dots: Vec::new() }.path();
+    if let ([Stroke { colour, width, .. }], false) = (&Style::Samples.strokes()[..], path.is_empty()) {
+        out.push_str(&format!(
+            "<path d=\"{path}\" fill=\"none\" stroke=\"{colour}\" stroke-width=\"{width}\" stroke-linecap=\"round\"/>\n"
+        ));
     }
 }
 

@@ -27,6 +27,8 @@ pub enum Style {
     RemovedConstraint,
     /// One of several of a kind, such as methods: four colours, and four dashes after them.
     Member(u8),
+    /// What was measured: a dot per point (grey).
+    Samples,
 }
 
 /// One pass of the pen along a curve.
@@ -109,6 +111,7 @@ impl Style {
                 vec![stroke(colour, 2.2, dash)]
             }
             Self::Threshold => vec![stroke(INK, 1.0, "7 4")],
+            Self::Samples => vec![Stroke { round: true, ..stroke(INK, 2.6, "0.1 6") }],
         }
     }
 }

@@ -62,6 +62,7 @@ mod start;
 mod start_equations;
 mod starts;
 mod system;
+mod table;
 mod view;
 mod write;
 
@@ -71,4 +72,5 @@ pub use number::Number;
 pub use reasons::{NameFault, Unavailable};
 pub use scene::{Filmed, Scene};
 pub use starts::{Start, Starts};
+pub use table::{Table, TableError};
 pub use write::quoted;
