@@ -1,11 +1,10 @@
-"""Motions of three systems from equations written by hand, in SciPy: nothing is shared with what is judged.
+"""Equations of motion of three systems, longhand, in SciPy: the check of those that `systems.py` derives.
 
-Each system: names of what is unknown, a draw of their true values, its laws as rates of states, the columns that
-are filmed with their units, and the command line of `deltaq fit`. Chetaev's law has the number eps.
+Each is a function of the law, `chetaev` or `vakonomic`, and numbers by name, `eps` among them: rates of states, a
+start, and the places of filmed columns among the states.
 """
 
 import numpy as np
-from scipy.integrate import solve_ivp
 
 
 def sledge(law, p):
@@ -22,7 +21,7 @@ def sledge(law, p):
         return [vx, vy, w, slope - (n + eps * w * c) * force, (c - eps * w * n) * force, eps * u * force / k2, 0.0]
 
     start = [p["x"], p["y"], p["phi"], p["x'"], p["x'"] * np.tan(p["phi"]), p["phi'"], p.get("mu0_1", 0.0)]
-    return rates, start
+    return rates, start, [0, 1, 2]
 
 
 def oscillator(law, p):
@@ -38,7 +37,7 @@ def oscillator(law, p):
         return [vx, vy, vz, -(y + eps * vy) * force, -k * y + eps * vx * force, force, 0.0]
 
     start = [p["x"], p["y"], p["z"], p["x'"], p["y'"], p["y"] * p["x'"], p.get("mu0_1", 0.0)]
-    return rates, start
+    return rates, start, [0, 1, 2]
 
 
 def turntable(law, p):
@@ -47,8 +46,8 @@ def turntable(law, p):
     f = (x' − a ω_y + Ω y, y' + a ω_x − Ω x); along (δx, δy) and a turn δθ seen from the room
     C λ = (−Ω λ₂, Ω λ₁; a (λ₁ ω_z, λ₂ ω_z, −λ₁ ω_x − λ₂ ω_y)).
     """
-    a, inertia, table, eps = 0.1, 0.4 * 0.01, p["Omega"], p.get("eps", 0.0)
-    k = a * a / inertia
+    a, table, eps = p.get("a", 0.1), p["Omega"], p.get("eps", 0.0)
+    inertia, k = 0.4 * a * a, 2.5
 
     def rates(t, s):
         x, y, vx, vy, wz, m1, m2 = s
@@ -64,43 +63,7 @@ def turntable(law, p):
         return [vx, vy, pull.real, pull.imag, turn, 0.0, 0.0]
 
     start = [p["x"], p["y"], p["x'"], p["y'"], p["psi'"], p.get("mu0_1", 0.0), p.get("mu0_2", 0.0)]
-    return rates, start
+    return rates, start, [0, 1]
 
 
-def sledge_numbers(rng):
-    return {"x": 0.02 * rng.normal(), "y": 0.02 * rng.normal(), "phi": 0.3 + 0.1 * rng.normal(), "x'": 0.5 + 0.1 * rng.normal(),
-            "phi'": 1.1 + 0.2 * rng.normal(), "g": 9.81 + 0.2 * rng.normal()}  # fmt: skip
-
-
-def oscillator_numbers(rng):
-    return {"x": 0.05 * rng.normal(), "y": -1 + 0.1 * rng.normal(), "z": 0.05 * rng.normal(), "x'": 1 + 0.2 * rng.normal(),
-            "y'": 0.5 + 0.2 * rng.normal(), "k": 1.5 + 0.1 * rng.normal()}  # fmt: skip
-
-
-def turntable_numbers(rng):
-    return {"x": 0.65 + 0.05 * rng.normal(), "y": 0.05 * rng.normal(), "x'": 0.02 * rng.normal(), "y'": 0.12 + 0.02 * rng.normal(),
-            "Omega": 0.7 + 0.05 * rng.normal(), "psi'": 0.2 + 0.2 * rng.normal()}  # fmt: skip
-
-
-# scene, equations, true numbers, multipliers, columns and their places among states, seconds, sizes of ε
-SYSTEMS = {
-    "sledge": (sledge, sledge_numbers, 1, ["x", "y", "phi"], [0, 1, 2], 2.0, 2e-3),
-    "nonholonomic-oscillator": (oscillator, oscillator_numbers, 1, ["x", "y", "z"], [0, 1, 2], 4.0, 5e-2),
-    "turntable": (turntable, turntable_numbers, 2, ["x", "y"], [0, 1], 6.0, 0.3),
-}
-
-
-def film(system, law, sigma, rng):
-    """The true numbers of a film, its times, and rows of its columns with noise; none for a motion that goes too far."""
-    equations, numbers, multipliers, _, places, seconds, size = SYSTEMS[system]
-    truth = numbers(rng)
-    if law == "vakonomic":
-        truth |= {f"mu0_{i + 1}": 0.3 * rng.normal() for i in range(multipliers)}
-    if law == "eps":
-        truth["eps"] = size * rng.uniform(0, 1)
-    rates, start = equations(law, truth)
-    times = np.arange(1, int(60 * seconds) + 1) / 60
-    motion = solve_ivp(rates, (0, seconds), start, "DOP853", times, rtol=1e-11, atol=1e-12)
-    assert motion.success
-    seen = motion.y[places].T
-    return truth, times, seen + sigma * rng.normal(size=seen.shape)
+LONGHAND = {"sledge": sledge, "nonholonomic-oscillator": oscillator, "turntable": turntable}

@@ -2,16 +2,14 @@
 
 use std::fmt::Write;
 
-use anyhow::{Result, bail};
+use anyhow::{Context, Result, bail};
 use deltaq::{CHETAEV, Choice, FIRST_ORDER, Settings, choices_among};
 use equations::Formulation;
-use fit::{Aim, Best, Design, EXCLUDED, Film, Point, Question, Unknown, with_law};
+use fit::{Aim, Best, Design, Deviations, EXCLUDED, Film, Point, Question, Unknown, design_value, with_law};
 use program::{Answer, TextOrJson, parallel, pretty};
 use scene::Scene;
-use serde_json::{Value, json};
 
 use crate::cli::DesignArguments;
-use crate::fit_command::{deviations, of_law};
 
 /// Other ends of the search that are printed in text.
 const PRINTED: usize = 2;
@@ -22,10 +20,11 @@ const PRINTED: usize = 2;
 /// A scene, column or number that makes no sense; films without motions.
 pub fn run(arguments: &DesignArguments) -> Result<Answer> {
     let scene = arguments.scene.find()?;
-    let film = Film::planned(&scene, &arguments.columns, arguments.film, &deviations(&arguments.sigma)?)?;
+    let deviations = Deviations::written(&arguments.sigma).context("--sigma")?;
+    let film = Film::planned(&scene, &arguments.columns, arguments.film, &deviations)?;
     let films = vec![film; usize::from(arguments.films)];
-    let mut law: Vec<Unknown> = arguments.law.iter().map(of_law).collect();
-    let estimated = arguments.estimate.as_ref().map(|name| of_law(&Unknown::named(name)));
+    let mut law: Vec<Unknown> = arguments.law.iter().map(Unknown::of_law).collect();
+    let estimated = arguments.estimate.as_ref().map(|name| Unknown::named(name).of_law());
     law.extend(estimated.clone().filter(|u| u.name != "eps" && ["epsilon", "slip"].contains(&u.name.as_str())));
     law.dedup_by(|b, a| a.name == b.name);
     let scene = with_law(&scene, &law);
@@ -52,7 +51,7 @@ pub fn run(arguments: &DesignArguments) -> Result<Answer> {
     let found = Found { scene: &scene, films: &films, design: &design, aim, best, shortest };
     Ok(match arguments.format {
         TextOrJson::Text => found.text(),
-        TextOrJson::Json => pretty("design", &found.value()),
+        TextOrJson::Json => pretty("design", &design_value(&scene, &films, (&design, aim), &found.best, shortest)),
     }
     .into())
 }
@@ -142,39 +141,4 @@ impl Found<'_> {
             }
         }
     }
-
-    fn value(&self) -> Value {
-        let film = &self.films[0];
-        let columns = film.columns.iter().map(|c| json!({ "name": c.name, "sigma": c.sigma })).collect::<Vec<_>>();
-        let chosen = self.design.chosen().iter();
-        let chosen = chosen.map(|c| json!({ "name": c.label, "low": c.ends[0], "high": c.ends[1], "own": c.own }));
-        let (tell, estimate) = match self.aim {
-            Aim::Tell(truth, rival) => (json!([truth.label, rival.label]), Value::Null),
-            Aim::Estimate(_, name) => (Value::Null, json!(name)),
-        };
-        json!({
-            "scene": self.scene.name,
-            "films": self.films.len(),
-            "samples": film.t.len(),
-            "columns": columns,
-            "tell": tell,
-            "estimate": estimate,
-            "chosen": chosen.collect::<Vec<_>>(),
-            "best": point(&self.best.best),
-            "own": self.best.own.as_ref().ok().map(point),
-            "others": self.best.others.iter().map(point).collect::<Vec<_>>(),
-            "shortest": self.shortest,
-            "tried": self.best.tried,
-            "without_motion": self.best.without_motion,
-        })
-    }
-}
-
-/// What is infinite is null.
-fn point(point: &Point) -> Value {
-    let numbers = point.numbers.iter().map(|(name, value)| json!({ "name": name, "value": value }));
-    json!({
-        "at": point.at, "value": point.value, "numbers": numbers.collect::<Vec<_>>(), "minima": point.minima,
-        "hidden": point.hidden,
-    })
 }

@@ -12,6 +12,7 @@ mod design_command;
 mod ensemble_command;
 mod explore_command;
 mod fit_command;
+mod fit_pictures;
 mod grid;
 mod integrals_command;
 mod judge_command;

@@ -1,10 +1,15 @@
 //! Formulations side by side.
 
-use deltaq::{CHETAEV, Choice, FIRST_ORDER, Settings, choices_among, constants_of, costate_names, is_costate};
+use std::sync::Mutex;
+
+use deltaq::{
+    CHETAEV, Choice, FIRST_ORDER, Settings, choices_among, constants_of, costate_names, is_costate, over_threads,
+};
 use equations::{Formulation, Needs};
 use mechanics::{ConstantsRule, Parameter};
 use scene::Scene;
 
+use crate::creep;
 use crate::length::length_that_tells;
 use crate::search::begun;
 use crate::{Film, Fit, FitError, Problem, Row, Unknown, Verdict, fit, verdicts};
@@ -13,7 +18,8 @@ use crate::{Film, Fit, FitError, Problem, Row, Unknown, Verdict, fit, verdicts};
 const MORE_STARTS: usize = 4;
 
 /// Numbers of the law of first order.
-pub(crate) const LAW: [&str; 2] = ["epsilon", "slip"];
+pub(crate) const LAW: [&str; 2] = ["epsilon", SLIP];
+const SLIP: &str = "slip";
 
 /// A fit with what was fitted.
 type Fitted = Result<(Problem, Fit), FitError>;
@@ -52,22 +58,28 @@ pub fn fit_formulations(
     let is_law = |f: &Formulation| matches!(f.needs, Needs::Parameters(_));
     let has_law = !question.law.is_empty();
     let choices = choices_among(&scene, |f| if is_law(f) { *f == *FIRST_ORDER && has_law } else { wanted(f) });
-    let mut fits: Vec<(Choice, Fitted)> = Vec::new();
-    for choice in choices {
-        // a law that contains Chetaev's begins there
-        let contains = is_law(choice.formulation);
-        let near = fits.iter().find(|(known, _)| contains && known.formulation == CHETAEV);
-        let near = near.and_then(|(_, fit)| fit.as_ref().ok()).map(|(_, fit)| fit);
-        let found = fit_choice(&scene, &choice, films, question, near);
-        fits.push((choice, found));
-    }
-    // before nothing fits, more starts
+    // a law that contains Chetaev's begins there
+    let (laws, plain): (Vec<Choice>, Vec<Choice>) = choices.into_iter().partition(|c| is_law(c.formulation));
+    let mut fits = fit_choices(&scene, plain, films, question, None);
+    let near = fits.iter().find(|(known, _)| known.formulation == CHETAEV);
+    let near = near.and_then(|(_, fit)| fit.as_ref().ok()).map(|(_, fit)| fit.clone());
+    let law = |choice: &Choice, near: Option<&Fit>| fit_law(&scene, choice, films, question, near);
+    fits.extend(laws.into_iter().map(|choice| (choice.clone(), law(&choice, near.as_ref()))));
+    // before nothing fits, more starts, and those of laws not from Chetaev's numbers
     let fits_well = |(_, fit): &(Choice, Fitted)| fit.as_ref().is_ok_and(|(_, fit)| fit.objections().next().is_none());
     if !fits.iter().any(fits_well) {
         let more = Question { starts: MORE_STARTS * question.starts, ..question.clone() };
-        for (choice, fit) in fits.iter_mut().filter(|(choice, _)| has_constants(choice)) {
-            let again = fit_choice(&scene, choice, films, &more, None);
+        let again = fits.iter().map(|(choice, _)| choice).filter(|choice| has_constants(choice)).cloned().collect();
+        let again = fit_choices(&scene, again, films, &more, None);
+        for ((_, fit), (_, again)) in fits.iter_mut().filter(|(choice, _)| has_constants(choice)).zip(again) {
             let least = fit.as_ref().map_or(f64::INFINITY, |(_, fit)| fit.chi_squared);
+            if again.as_ref().is_ok_and(|(_, again)| again.chi_squared < least) {
+                *fit = again;
+            }
+        }
+        for (choice, fit) in fits.iter_mut().filter(|(choice, _)| is_law(choice.formulation)) {
+            let least = fit.as_ref().map_or(f64::INFINITY, |(_, fit)| fit.chi_squared);
+            let again = law(choice, None);
             if again.as_ref().is_ok_and(|(_, again)| again.chi_squared < least) {
                 *fit = again;
             }
@@ -79,6 +91,7 @@ pub fn fit_formulations(
     let mut rows = verdicts(fits.iter().map(plain).collect());
     let labels: Vec<String> = rows.iter().map(|row| row.choice.label.clone()).collect();
     for (row, (_, own)) in rows.iter_mut().zip(&fits) {
+        row.problem = own.as_ref().ok().map(|(problem, _)| problem.clone());
         let (Verdict::CannotTell { from, needs }, Ok((problem, fit))) = (&mut row.verdict, own) else { continue };
         let of = |label: &String| labels.iter().position(|own| own == label).and_then(|i| fits[i].1.as_ref().ok());
         *needs = from
@@ -114,6 +127,46 @@ fn own(scene: &Scene, choice: &Choice, question: &Question) -> Vec<Unknown> {
     law.iter().cloned().chain(constants).collect()
 }
 
+/// Each of these fitted, over threads: what they find does not depend on how many there are. All begin where
+/// those of a law that they contain are `near`.
+fn fit_choices(
+    scene: &Scene,
+    choices: Vec<Choice>,
+    films: &[Film],
+    question: &Question,
+    near: Option<&Fit>,
+) -> Vec<(Choice, Fitted)> {
+    let problems: Vec<_> =
+        choices.iter().map(|choice| Mutex::new(Some(problem_of(scene, choice, films, question)))).collect();
+    let is_of_law = |name: &str| question.law.iter().any(|u| u.name == name);
+    let (starts, is_of_law): (usize, &(dyn Fn(&str) -> bool + Sync)) = (question.starts, &is_of_law);
+    let fits = over_threads(0, choices.len(), |i| {
+        let problem = problems[i].lock().ok().and_then(|mut own| own.take()).expect("each is taken once")?;
+        fit_one(problem, near, is_of_law, starts)
+    });
+    choices.into_iter().zip(fits).collect()
+}
+
+/// The law of first order fitted: with slip, constraints that are kept are its bound.
+fn fit_law(scene: &Scene, choice: &Choice, films: &[Film], question: &Question, near: Option<&Fit>) -> Fitted {
+    let is_of_law = |name: &str| question.law.iter().any(|u| u.name == name);
+    let problem = problem_of(scene, choice, films, question)?;
+    let Some(slip) = problem.unknowns().iter().position(|u| u.name == SLIP) else {
+        return fit_one(problem, near, &is_of_law, question.starts);
+    };
+    let mut unmoved = scene.clone();
+    let symbol = scene.system.graph.symbol(SLIP);
+    unmoved.system.parameters.iter_mut().filter(|p| p.symbol == symbol).for_each(|p| p.value = 0.0);
+    let law: Vec<Unknown> = question.law.iter().filter(|u| u.name != SLIP).cloned().collect();
+    let kept = problem_of(&unmoved, choice, films, &Question { law: &law, ..question.clone() });
+    let kept = kept.and_then(|problem| fit_one(problem, near, &is_of_law, question.starts));
+    let fine = kept.as_ref().ok().map(|(_, fit)| fit).filter(|fit| fit.objections().next().is_none());
+    let near = fine.or(near).cloned();
+    let problem = creep::followed(&problem, slip);
+    let creeping = fit_one(problem.clone(), near.as_ref(), &is_of_law, question.starts);
+    creep::joined(kept, (problem, slip), creeping.map(|(_, fit)| fit))
+}
+
 /// The films as motions of `choice`: constants to start from are unknown, and no others of their kind.
 ///
 /// # Errors
@@ -137,13 +190,8 @@ pub(crate) fn problem_of(
     Ok(Problem::new(scene, &choice, films, &unknowns, &question.settings)?.robust(question.robust))
 }
 
-/// Whether a number is one that motions of some formulations start from, `μ₀` or `P₀`.
-pub(crate) fn is_constant(name: &str) -> bool {
-    name.starts_with("mu0_") || is_costate(name)
-}
-
-fn fit_choice(scene: &Scene, choice: &Choice, films: &[Film], question: &Question, near: Option<&Fit>) -> Fitted {
-    let mut problem = problem_of(scene, choice, films, question)?;
+fn fit_one(problem: Problem, near: Option<&Fit>, is_of_law: &dyn Fn(&str) -> bool, starts: usize) -> Fitted {
+    let mut problem = problem;
     let hidden =
         |name: &str| near.is_some_and(|near| near.estimates.iter().any(|e| e.name == name && e.error.is_infinite()));
     if let Some(near) = near {
@@ -155,10 +203,14 @@ fn fit_choice(scene: &Scene, choice: &Choice, films: &[Film], question: &Questio
         let held: Vec<usize> = (0..start.len()).filter(|&i| hidden(&problem.unknowns()[i].name)).collect();
         problem.begin_at(&begun(&problem, &held));
     }
-    let of_law = |name: &str| question.law.iter().any(|u| u.name == name);
-    let spread = |name: &str| is_constant(name) || of_law(name) || hidden(name);
-    let found = fit(&problem, &spread, question.starts, near.is_some())?;
+    let spread = |name: &str| is_constant(name) || is_of_law(name) || hidden(name);
+    let found = fit(&problem, &spread, starts, near.is_some())?;
     Ok((problem, found))
+}
+
+/// Whether a number is a multiplier or a costate at the start.
+pub(crate) fn is_constant(name: &str) -> bool {
+    name.starts_with("mu0_") || is_costate(name)
 }
 
 /// Whether motions have constants to start from, `μ₀` or `P₀`.

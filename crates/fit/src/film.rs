@@ -4,7 +4,7 @@ use scene::{Scene, Table, TableError};
 use symbolic::Expr;
 
 use crate::FitError;
-use crate::quantity::unit;
+use crate::quantity::{quantity, unit};
 
 /// What a column of a film shows.
 #[derive(Clone, Debug, PartialEq)]
@@ -42,6 +42,21 @@ pub struct Deviations {
 }
 
 impl Deviations {
+    /// From `0.5mm` of all columns that have no other, `x=0.5mm` of one.
+    ///
+    /// # Errors
+    /// [`FitError::Quantity`].
+    pub fn written(list: &[String]) -> Result<Deviations, FitError> {
+        let mut deviations = Deviations::default();
+        for text in list {
+            match text.split_once('=') {
+                Some((name, sigma)) => deviations.by_name.push((name.trim().into(), quantity(sigma)?)),
+                None => deviations.others = Some(quantity(text)?),
+            }
+        }
+        Ok(deviations)
+    }
+
     fn of(&self, name: &str, written: Option<f64>) -> Result<f64, FitError> {
         let named = self.by_name.iter().find(|(known, _)| known == name).map(|(_, sigma)| *sigma);
         let found = named.or(written).or(self.others).ok_or_else(|| FitError::NoDeviation(name.into()))?;

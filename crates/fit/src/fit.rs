@@ -1,20 +1,22 @@
 //! One formulation fitted to films: estimates with intervals, and what residuals say.
 
-use nalgebra::DVector;
+use nalgebra::{DMatrix, DVector};
 
 use crate::distribution::normal_tails;
+use crate::minimum::Minimum;
+use crate::profile::Profile;
 use crate::residual_tests::{ResidualTest, residual_tests};
-use crate::search::{Found, Minimum, Stage, least, scaled, search};
+use crate::search::{Found, Stage, least, scaled, search};
 use crate::{Film, FitError, Problem, Residual, Unknown};
 
 /// χ² by which a number of 95 % rises, and where it is at its bound: `½χ²₀ + ½χ²₁`.
-const RISE: f64 = 3.841_458_820_694_124;
-const RISE_AT_BOUND: f64 = 2.705_543_454_095_404;
+pub(crate) const RISE: f64 = 3.841_458_820_694_124;
+pub(crate) const RISE_AT_BOUND: f64 = 2.705_543_454_095_404;
 /// Standard deviations of 95 %.
-const NORMAL: f64 = 1.959_963_984_540_054;
+pub(crate) const NORMAL: f64 = 1.959_963_984_540_054;
 /// Smallest singular value over the largest, of a Jacobian with columns of length one, below which unknowns
 /// are not shown: what is left of derivatives that carry errors of 1e-9.
-const SHOWN: f64 = 1e-7;
+pub(crate) const SHOWN: f64 = 1e-7;
 /// A change of residuals, as the length of a vector, that is none.
 const NOTHING: f64 = 1e-3;
 /// χ² at the ends of an interval of standard errors may be off by this part for them to be taken.
@@ -23,10 +25,6 @@ const QUADRATIC: f64 = 0.05;
 const SAME_CHI_SQUARED: f64 = 0.01;
 /// Times the steps of the best motion that one of a profile may take.
 const PROFILE_STEPS: usize = 5;
-/// Steps outwards and steps in all to the end of a profile, and the part of the rise that they come to.
-const OUTWARDS: usize = 5;
-const STEPS: usize = 15;
-const CLOSE: f64 = 0.02;
 
 /// An unknown as it is estimated.
 #[derive(Clone, Debug, PartialEq)]
@@ -74,6 +72,8 @@ pub struct Fit {
     pub minima: Vec<f64>,
     /// Starts of the search.
     pub starts: usize,
+    /// How many of these led to the least minimum.
+    pub reached: usize,
     /// The residuals.
     pub residuals: Vec<Residual>,
 }
@@ -102,7 +102,12 @@ pub struct Shown {
 pub fn standard_errors(problem: &Problem, theta: &[f64]) -> Result<Shown, FitError> {
     let derivatives = problem.clone().weighed(theta, true);
     let (_, jacobian) = derivatives.map_err(|reason| FitError::NoMotion { starts: 1, reason })?;
-    let (matrix, lengths) = scaled(&jacobian);
+    Ok(shown(problem, theta, &jacobian))
+}
+
+/// The same where residuals have this Jacobian.
+fn shown(problem: &Problem, theta: &[f64], jacobian: &DMatrix<f64>) -> Shown {
+    let (matrix, lengths) = scaled(jacobian);
     let width = lengths.len();
     let alone = alone(problem, theta, &lengths);
     let seen: Vec<usize> = (0..width).filter(|j| !alone.contains(j)).collect();
@@ -129,7 +134,7 @@ pub fn standard_errors(problem: &Problem, theta: &[f64]) -> Result<Shown, FitErr
     for along in &hidden {
         parts(along, &lengths).into_iter().for_each(|i| errors[i] = f64::INFINITY);
     }
-    Ok(Shown { errors, hidden: hidden.iter().map(|along| combination(problem, along, &lengths)).collect() })
+    Shown { errors, hidden: hidden.iter().map(|along| combination(problem, along, &lengths)).collect() }
 }
 
 /// The unknowns that change nothing: a change by their own size, 1 for zero, changes residuals by less than
@@ -171,18 +176,21 @@ fn combination(problem: &Problem, along: &DVector<f64>, lengths: &[f64]) -> Stri
 /// [`FitError::NoMotion`], and [`FitError::ShowsNothing`] where all unknowns change nothing.
 pub fn fit(problem: &Problem, spread: &dyn Fn(&str) -> bool, starts: usize, known: bool) -> Result<Fit, FitError> {
     let Found { best, minima, starts } = search(problem, spread, starts, known)?;
-    let (held, shown, best) = without_hidden(problem, &best)?;
-    let Shown { errors, hidden } = standard_errors(&shown, &best.theta)?;
+    let (held, less, best) = without_hidden(problem, &best)?;
     let no_motion = |reason| FitError::NoMotion { starts, reason };
-    let residuals = shown.clone().residuals(&best.theta).map_err(no_motion)?;
+    let (_, jacobian) = less.clone().weighed(&best.theta, true).map_err(no_motion)?;
+    let Shown { errors, hidden } = shown(&less, &best.theta, &jacobian);
+    let residuals = less.clone().residuals(&best.theta).map_err(no_motion)?;
     let films: Vec<&Film> = problem.films().collect();
     let (count, unknowns) = (problem.count(), errors.len());
     let fitted = unknowns - hidden.len();
     let tests = residual_tests(&films, &residuals, fitted.saturating_sub(priors(problem)), problem.is_robust());
     // what does not fit has no intervals to look for
     let profiles = !tests.iter().any(|test| test.objects);
-    let near = shown.limited(&best.theta, PROFILE_STEPS);
-    let mut estimates: Vec<Estimate> = (0..unknowns).map(|i| estimate(&near, &best, &errors, i, profiles)).collect();
+    let near = less.limited(&best.theta, PROFILE_STEPS);
+    let profile = |i| Profile::new(&near, &jacobian, &best, &errors, i);
+    let mut estimates: Vec<Estimate> =
+        (0..unknowns).map(|i| estimate(&near, &best, &errors, i, profiles.then(|| profile(i)))).collect();
     let mut names = Vec::new();
     for i in held {
         let unknown = &problem.unknowns()[i];
@@ -198,6 +206,7 @@ pub fn fit(problem: &Problem, spread: &dyn Fn(&str) -> bool, starts: usize, know
         tests,
         minima,
         starts,
+        reached: best.reached,
         residuals,
     })
 }
@@ -226,28 +235,25 @@ fn without_hidden(problem: &Problem, best: &Minimum) -> Result<(Vec<usize>, Prob
     if found.chi_squared > best.chi_squared + SAME_CHI_SQUARED {
         return Ok((Vec::new(), problem.clone(), best.clone()));
     }
-    Ok((held, shown, found))
+    Ok((held, shown, Minimum { reached: best.reached, ..found }))
 }
 
 fn priors(problem: &Problem) -> usize {
     problem.unknowns().iter().filter(|u| u.prior.is_some()).count()
 }
 
-/// The interval of unknown `i`; by standard errors alone unless profiles are asked for.
-fn estimate(problem: &Problem, best: &Minimum, errors: &[f64], i: usize, profiles: bool) -> Estimate {
+/// The interval of unknown `i`; by standard errors alone without a profile.
+fn estimate(problem: &Problem, best: &Minimum, errors: &[f64], i: usize, profile: Option<Profile>) -> Estimate {
     let unknown = &problem.unknowns()[i];
     let (value, error) = (best.theta[i], errors[i]);
     let bound = unknown.bound.unwrap_or(f64::NEG_INFINITY);
     if error.is_infinite() {
         return Estimate::hidden(unknown, value);
     }
-    let mut profile = Profile::new(problem, best, errors, i);
-    let mut profiled = false;
+    let (mut profile, mut profiled) = (profile, false);
     let mut end = |side: f64| -> f64 {
         let at = value + side * NORMAL * error;
-        if !profiles {
-            return at.max(bound);
-        }
+        let Some(profile) = &mut profile else { return at.max(bound) };
         if side < 0.0 && at <= bound {
             let rise = profile.rise(bound);
             if value <= bound || rise <= RISE_AT_BOUND || rise.is_infinite() {
@@ -265,89 +271,15 @@ fn estimate(problem: &Problem, best: &Minimum, errors: &[f64], i: usize, profile
     };
     let interval = [end(-1.0), end(1.0)];
     let at_bound = unknown.bound.filter(|_| interval[0] <= bound || value - 4.0 * error < bound).and_then(|bound| {
-        let rise = if value <= bound { 0.0 } else { profile.rise(bound) };
+        let rise = match &mut profile {
+            Some(profile) if value > bound => profile.rise(bound),
+            None if value > bound => ((value - bound) / error).powi(2),
+            _ => 0.0,
+        };
         if rise.is_infinite() {
             return None;
         }
         Some(if rise <= 0.0 { 1.0 } else { 0.5 * normal_tails(rise.sqrt()) })
     });
     Estimate { name: unknown.label(), value, error, interval, profiled, at_bound }
-}
-
-/// How χ² rises where one unknown is held and the others are fitted.
-struct Profile<'a> {
-    problem: &'a Problem,
-    best: &'a Minimum,
-    errors: &'a [f64],
-    i: usize,
-    /// Points that were looked at: the unknown, the others there, the rise.
-    known: Vec<(f64, Vec<f64>, f64)>,
-}
-
-impl<'a> Profile<'a> {
-    fn new(problem: &'a Problem, best: &'a Minimum, errors: &'a [f64], i: usize) -> Self {
-        let mut others = best.theta.clone();
-        others.remove(i);
-        Profile { problem, best, errors, i, known: vec![(best.theta[i], others, 0.0)] }
-    }
-
-    /// The rise at `x`; infinite where there is no motion.
-    fn rise(&mut self, x: f64) -> f64 {
-        if let Some((_, _, rise)) = self.known.iter().find(|(known, _, _)| *known == x) {
-            return *rise;
-        }
-        let nearest = self.known.iter().min_by(|a, b| (a.0 - x).abs().total_cmp(&(b.0 - x).abs()));
-        let start = nearest.map(|(_, others, _)| others.clone()).unwrap_or_default();
-        let mut scale = self.errors.to_vec();
-        scale.remove(self.i);
-        scale.iter_mut().filter(|x| x.is_infinite()).for_each(|x| *x = 1.0);
-        let found = least(&self.problem.without(self.i, x), &start, &scale, Stage::Profile);
-        match found {
-            Ok(Minimum { theta, chi_squared }) => {
-                let rise = chi_squared - self.best.chi_squared;
-                self.known.push((x, theta, rise));
-                rise
-            }
-            Err(_) => f64::INFINITY,
-        }
-    }
-
-    /// Where χ² has risen by `rise` on this side, not beyond `bound`; open where that cannot be found: by
-    /// secants of the root of the rise, which is a straight line where χ² is quadratic.
-    fn end(&mut self, side: f64, rise: f64, bound: f64) -> f64 {
-        let value = self.best.theta[self.i];
-        let (mut inside, mut outside) = ((value, 0.0), None);
-        let mut x = value + side * NORMAL * self.errors[self.i];
-        for step in 0..STEPS {
-            x = x.max(bound);
-            let found = self.rise(x).max(0.0);
-            // beyond where motions can be followed it is open
-            if found.is_infinite() {
-                return if side < 0.0 { bound } else { f64::INFINITY };
-            }
-            if (found - rise).abs() <= CLOSE * rise {
-                return x;
-            }
-            if found < rise {
-                if x <= bound {
-                    return bound;
-                }
-                if outside.is_none() && step >= OUTWARDS {
-                    return if side < 0.0 { bound } else { f64::INFINITY };
-                }
-                inside = (x, found.sqrt());
-            } else {
-                outside = Some((x, found.sqrt()));
-            }
-            let goal = rise.sqrt();
-            x = match outside {
-                None => value + (inside.0 - value) * (goal / inside.1).clamp(1.2, 3.0),
-                Some((x, root)) => {
-                    let part = (goal - inside.1) / (root - inside.1);
-                    inside.0 + (x - inside.0) * part.clamp(0.1, 0.9)
-                }
-            };
-        }
-        x
-    }
 }

@@ -186,6 +186,13 @@ impl Problem {
         moved
     }
 
+    /// With this bound for the unknown `i`.
+    pub(crate) fn bounded(&self, i: usize, bound: f64) -> Problem {
+        let mut bounded = self.clone();
+        bounded.unknowns[i].bound = Some(bound);
+        bounded
+    }
+
     /// Without the unknown `i`, which has this value.
     pub(crate) fn without(&self, i: usize, value: f64) -> Problem {
         let mut less = self.clone();

@@ -8,40 +8,40 @@
 use integrate::{BoundaryError, Residuals, ShootOptions};
 use nalgebra::DMatrix;
 
-use crate::{FitError, Problem};
+use crate::minimum::{Minimum, distinct, spread_out};
+use crate::residual_tests::residual_tests;
+use crate::{FitError, Problem, Residual};
 
 /// Samples of the first beginning, and the factor from one to the next.
 const FIRST: usize = 20;
 const LONGER: f64 = 1.5;
-/// Starts that are followed from one beginning to the next.
-const FOLLOWED: usize = 4;
+/// Starts that are followed from one beginning to the next, by its number: short ones tell little of them.
+const FOLLOWED: [usize; 4] = [12, 10, 8, 4];
 /// Least gain, as a part of χ², for which an iteration goes on, by [`Stage`].
-const GAINS: [f64; 4] = [1e-2, 1e-4, 1e-10, 1e-6];
+const GAINS: [f64; 5] = [1e-2, 1e-4, 1e-10, 1e-6, 1e-4];
 /// Iterations by [`Stage`].
-const ITERATIONS: [usize; 4] = [10, 20, 50, 12];
+const ITERATIONS: [usize; 5] = [10, 20, 100, 12, 50];
 /// Starts for the whole film are up to this many times halfway to the first one.
 const NEARER: i32 = 8;
 /// Starts that are fitted to the whole film at once beside the first one.
 const SCREENED: usize = 2;
 /// Times the steps of the first motion that one may take.
 const STEPS: usize = 40;
+/// Times the steps of its own first motion, over the whole film.
+const NEAR_STEPS: usize = 8;
 /// Halvings of the way back to the start, where unknowns have gone where a longer motion cannot follow.
 const HALVINGS: i32 = 10;
 /// A beginning is fitted where χ² is within this many standard deviations; then a start is given up whose χ²
 /// is this much above.
 const FITS: f64 = 4.0;
 const HOPELESS: f64 = 100.0;
+/// χ² per residual above which digits of χ² are nothing to look for.
+const POOR: f64 = 100.0;
+/// Minima up to this many times the least are looked at to the last digit, and where residuals are many
+/// deviations.
+const CLOSE: [f64; 2] = [1.5, 1.05];
 /// Two minima are one where χ² differs by no more than this, beside this part of it.
 const SAME: [f64; 2] = [0.1, 1e-3];
-
-/// A local minimum.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Minimum {
-    /// The unknowns.
-    pub theta: Vec<f64>,
-    /// The sum of squares there, priors included.
-    pub chi_squared: f64,
-}
 
 /// What a search saw.
 #[derive(Clone, Debug, PartialEq)]
@@ -50,45 +50,105 @@ pub struct Found {
     pub best: Minimum,
     /// χ² of every minimum that was seen over the whole film, the least first.
     pub minima: Vec<f64>,
-    /// Starts that were tried.
+    /// Starts that were followed: fewer than were asked for where they are the same.
     pub starts: usize,
 }
 
 /// The least minimum from several starts: the first is [`Problem::start`]; in the others unknowns for which
 /// `spread` says so are moved, by parts of their scales that no period fits. Beginnings are left out where
-/// the first start is `known` to come close.
+/// the first start is `known` to come close. Starts for the whole film at once are left out where beginnings
+/// of several lead to residuals of noise.
 ///
 /// # Errors
 /// [`FitError::NoMotion`].
 pub fn search(problem: &Problem, spread: &dyn Fn(&str) -> bool, starts: usize, known: bool) -> Result<Found, FitError> {
-    let starts = starts.max(1);
+    // where nothing is moved all starts are one
+    let starts = if problem.unknowns().iter().any(|u| spread(&u.name)) { starts.max(1) } else { 1 };
     let problem = &problem.limited(problem.start(), STEPS);
     let short = problem.beginning(FIRST.max(2 * problem.unknowns().len()))?;
     let (scale, mut reason) = scales(&mut short.clone());
-    let mut begun = screened(problem, spread, starts);
+    let (mut minima, mut tried) = (Vec::new(), 0);
     if !known {
-        let starts = (0..starts).map(|number| moved(problem, &scale, spread, number));
-        begun.extend(followed(problem, short, &scale, starts.collect(), &mut reason)?);
+        let begun = (0..starts).map(|number| moved(problem, &scale, spread, number));
+        tried += starts;
+        minima = followed(problem, short, &scale, begun.collect(), &mut reason)?;
+        minima = refined(problem, minima, &scale, Stage::Rough, &mut reason);
     }
-    let mut rough = Vec::new();
-    for start in &begun {
-        match least(problem, start, &scale, Stage::Rough) {
-            Ok(minimum) => rough.push(minimum),
-            Err(error) => reason = reason.or(Some(error)),
+    if starts == 1 || !minima.first().is_some_and(|least| fits(problem, least)) {
+        let begun = screened(problem, spread, starts);
+        tried += begun.len();
+        minima.extend(refined(problem, begun, &scale, Stage::Rough, &mut reason));
+    }
+    distinct(&mut minima, &scale);
+    let least = minima.first().map_or(f64::INFINITY, |m| m.chi_squared);
+    let close = if is_poor(problem, least) { CLOSE[1] * least } else { CLOSE[0] * least + HOPELESS };
+    let hopeless = minima.split_off(minima.partition_point(|m| m.chi_squared < close));
+    let mut minima = refined(problem, minima, &scale, Stage::Whole, &mut reason);
+    minima.extend(hopeless);
+    distinct(&mut minima, &scale);
+    minima.dedup_by(|b, a| {
+        let same = b.chi_squared - a.chi_squared <= SAME[0] + SAME[1] * a.chi_squared;
+        a.reached += if same { b.reached } else { 0 };
+        same
+    });
+    let no_motion = || FitError::NoMotion { starts: tried, reason: reason.unwrap_or_else(|| "no minimum".into()) };
+    let best = minima.first().cloned().ok_or_else(no_motion)?;
+    Ok(Found { best, minima: minima.iter().map(|m| m.chi_squared).collect(), starts: tried })
+}
+
+/// The minima near others, the least first; those that cannot be found are left out, but for the last stage.
+fn refined(
+    problem: &Problem,
+    rough: Vec<Minimum>,
+    scale: &[f64],
+    stage: Stage,
+    reason: &mut Option<String>,
+) -> Vec<Minimum> {
+    let mut found: Vec<Minimum> = Vec::new();
+    for begun in rough {
+        // beside one that fits
+        let enough =
+            found.iter().any(|m| is_noise(problem, m.chi_squared) && m.chi_squared + HOPELESS < begun.chi_squared);
+        if stage == Stage::Rough && begun.chi_squared.is_finite() && enough {
+            found.push(begun);
+            continue;
+        }
+        let near = match stage {
+            Stage::Beginning => None,
+            _ => Some(problem.limited(&begun.theta, NEAR_STEPS)),
+        };
+        let poor = stage == Stage::Whole && is_poor(problem, begun.chi_squared);
+        let stage = if poor { Stage::Poor } else { stage };
+        match least(near.as_ref().unwrap_or(problem), &begun.theta, scale, stage) {
+            Ok(minimum) => found.push(Minimum { reached: begun.reached, ..minimum }),
+            Err(_) if stage != Stage::Beginning && begun.chi_squared.is_finite() => found.push(begun),
+            Err(error) => *reason = reason.take().or(Some(error)),
         }
     }
-    distinct(&mut rough, &scale);
-    let close = 1.5 * rough.first().map_or(f64::INFINITY, |m| m.chi_squared) + HOPELESS;
-    let fine = |minimum: Minimum| match minimum.chi_squared < close {
-        true => least(problem, &minimum.theta, &scale, Stage::Whole).unwrap_or(minimum),
-        false => minimum,
+    distinct(&mut found, scale);
+    found
+}
+
+/// Whether χ² is that of noise, and no test on residuals objects.
+fn fits(problem: &Problem, found: &Minimum) -> bool {
+    let unknowns = problem.unknowns().len();
+    let films: Vec<_> = problem.films().collect();
+    let content = |residuals: Vec<Residual>| {
+        let tests = residual_tests(&films, &residuals, unknowns, problem.is_robust());
+        !tests.iter().any(|test| test.objects)
     };
-    let mut minima: Vec<Minimum> = rough.into_iter().map(fine).collect();
-    distinct(&mut minima, &scale);
-    minima.dedup_by(|b, a| b.chi_squared - a.chi_squared <= SAME[0] + SAME[1] * a.chi_squared);
-    let no_motion = || FitError::NoMotion { starts, reason: reason.unwrap_or_else(|| "no minimum".into()) };
-    let best = minima.first().cloned().ok_or_else(no_motion)?;
-    Ok(Found { best, minima: minima.iter().map(|m| m.chi_squared).collect(), starts })
+    is_noise(problem, found.chi_squared) && problem.clone().residuals(&found.theta).is_ok_and(content)
+}
+
+/// Whether residuals are many deviations.
+fn is_poor(problem: &Problem, chi_squared: f64) -> bool {
+    chi_squared > POOR * problem.count() as f64
+}
+
+/// Whether this χ² is no further above the number of residuals than noise can be.
+fn is_noise(problem: &Problem, chi_squared: f64) -> bool {
+    let count = problem.count() as f64;
+    chi_squared < count + FITS * (2.0 * count).sqrt()
 }
 
 /// Minima over beginnings that become longer, from these starts: where the search over the whole film begins.
@@ -96,33 +156,27 @@ fn followed(
     problem: &Problem,
     short: Problem,
     scale: &[f64],
-    starts: Vec<Vec<f64>>,
+    starts: Vec<Minimum>,
     reason: &mut Option<String>,
-) -> Result<Vec<Vec<f64>>, FitError> {
+) -> Result<Vec<Minimum>, FitError> {
     let (mut part, mut starts) = (short, starts);
-    loop {
-        let mut found = Vec::new();
-        for start in &starts {
-            let start = within(&part, problem.start(), start);
-            match least(&part, &start, scale, Stage::Beginning) {
-                Ok(minimum) => found.push(minimum),
-                Err(error) => *reason = reason.take().or(Some(error)),
-            }
+    for number in 0.. {
+        for start in &mut starts {
+            start.theta = within(&part, problem.start(), &start.theta);
         }
-        distinct(&mut found, scale);
-        found.truncate(FOLLOWED);
+        let mut found = refined(&part, starts, scale, Stage::Beginning, reason);
         // beside one that fits no other can be the least
-        let count = part.count() as f64;
-        if let Some(least) = found.first().map(|m| m.chi_squared).filter(|x| *x < count + FITS * (2.0 * count).sqrt()) {
+        if let Some(least) = found.first().map(|m| m.chi_squared).filter(|x| is_noise(&part, *x)) {
             found.retain(|m| m.chi_squared < least + HOPELESS);
         }
-        starts = found.into_iter().map(|m| m.theta).collect();
+        starts = spread_out(&|x| is_noise(&part, x), found, scale, FOLLOWED[number.min(FOLLOWED.len() - 1)]);
         if part.samples() >= problem.samples() {
-            return Ok(starts);
+            break;
         }
         let samples = (part.samples() as f64 * LONGER) as usize;
         part = problem.beginning(samples.min(problem.samples()))?;
     }
+    Ok(starts)
 }
 
 /// A start of the search: the minimum near its own with these unknowns held, ascending, or else its own.
@@ -161,7 +215,7 @@ fn scales(problem: &mut Problem) -> (Vec<f64>, Option<String>) {
 }
 
 /// Start `number` of the search.
-fn moved(problem: &Problem, scale: &[f64], spread: &dyn Fn(&str) -> bool, number: usize) -> Vec<f64> {
+fn moved(problem: &Problem, scale: &[f64], spread: &dyn Fn(&str) -> bool, number: usize) -> Minimum {
     let which: Vec<bool> = problem.unknowns().iter().map(|u| spread(&u.name)).collect();
     let mut parts = evenly(which.iter().filter(|w| **w).count(), number).into_iter();
     let mut along = |i: usize| {
@@ -172,7 +226,7 @@ fn moved(problem: &Problem, scale: &[f64], spread: &dyn Fn(&str) -> bool, number
         let x = start + scale[i] * (2.0 * parts.next().expect("one per unknown that is moved") - 1.0);
         problem.unknowns()[i].bound.map_or(x, |bound| bound + (x - bound).abs())
     };
-    (0..scale.len()).map(&mut along).collect()
+    Minimum::unseen((0..scale.len()).map(&mut along).collect())
 }
 
 /// Point `number` of a sequence that fills a cube of k axes evenly: multiples of powers of the root of
@@ -182,38 +236,22 @@ pub(crate) fn evenly(k: usize, number: usize) -> Vec<f64> {
     (1..=k as i32).map(|axis| (0.5 + number as f64 * root.powi(-axis)).fract()).collect()
 }
 
-/// The least first, each once.
-fn distinct(minima: &mut Vec<Minimum>, scale: &[f64]) {
-    minima.sort_by(|a, b| a.chi_squared.total_cmp(&b.chi_squared));
-    let near = |a: &Minimum, b: &Minimum| {
-        let distances = a.theta.iter().zip(&b.theta).zip(scale).map(|((a, b), s)| ((a - b) / s).abs());
-        distances.fold(0.0, f64::max) < 1e-3
-    };
-    let mut kept: Vec<Minimum> = Vec::new();
-    for minimum in minima.drain(..) {
-        if !kept.iter().any(|other| near(other, &minimum)) {
-            kept.push(minimum);
-        }
-    }
-    *minima = kept;
-}
-
 /// Starts for the whole film at once: the first one, and those of the others that come closest to it.
-fn screened(problem: &Problem, spread: &dyn Fn(&str) -> bool, starts: usize) -> Vec<Vec<f64>> {
+fn screened(problem: &Problem, spread: &dyn Fn(&str) -> bool, starts: usize) -> Vec<Minimum> {
     let mut evaluated = problem.clone();
     let (scale, _) = scales(&mut evaluated);
-    let mut others: Vec<(f64, Vec<f64>)> = Vec::new();
+    let mut others: Vec<Minimum> = Vec::new();
     for number in 1..starts {
         // far ones and near ones: nothing is linear as far as the extent of the film
         let nearer: Vec<f64> = scale.iter().map(|s| s * 0.5_f64.powi(number as i32 % NEARER)).collect();
         let start = moved(problem, &nearer, spread, number);
-        if let Ok((values, _)) = evaluated.weighed(&start, false) {
-            others.push((values.norm_squared(), start));
+        if let Ok((values, _)) = evaluated.weighed(&start.theta, false) {
+            others.push(Minimum { chi_squared: values.norm_squared(), ..start });
         }
     }
-    others.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let others = others.into_iter().map(|(_, start)| start).take(SCREENED);
-    [problem.start().to_vec()].into_iter().chain(others).collect()
+    others.sort_by(|a, b| a.chi_squared.total_cmp(&b.chi_squared));
+    others.truncate(SCREENED);
+    [Minimum::unseen(problem.start().to_vec())].into_iter().chain(others).collect()
 }
 
 /// Where motions reach the ends of their films: `theta`, or the first point halfway back to `origin`.
@@ -237,6 +275,8 @@ pub(crate) enum Stage {
     Whole,
     /// The whole film, with one unknown held beside a minimum.
     Profile,
+    /// The whole film, coarsely, where residuals are many deviations.
+    Poor,
 }
 
 /// The minimum near `start`, no unknown below its bound: one that would be is at it.
@@ -244,7 +284,7 @@ pub(crate) fn least(problem: &Problem, start: &[f64], scale: &[f64], stage: Stag
     let mut found = match start {
         [] => {
             let (values, _) = problem.clone().weighed(&[], false)?;
-            return Ok(Minimum { theta: Vec::new(), chi_squared: values.norm_squared() });
+            return Ok(Minimum { chi_squared: values.norm_squared(), ..Minimum::unseen(Vec::new()) });
         }
         _ => minimise(&mut problem.clone(), start, scale, stage)?,
     };
@@ -275,7 +315,7 @@ fn minimise(problem: &mut Problem, start: &[f64], scale: &[f64], stage: Stage) -
     let shot = integrate::fit(&mut squares, rows, &guess, &options).map_err(|error| error.to_string())?;
     let theta: Vec<f64> = shot.unknowns.iter().zip(scale).map(|(x, s)| x * s).collect();
     let (values, _) = problem.weighed(&theta, false)?;
-    Ok(Minimum { theta, chi_squared: values.norm_squared() })
+    Ok(Minimum { chi_squared: values.norm_squared(), ..Minimum::unseen(theta) })
 }
 
 /// Residuals as functions of unknowns over their scales.

@@ -3,7 +3,7 @@
 use deltaq::{CHETAEV, Choice, FIRST_ORDER, KAPPA};
 use equations::Formulation;
 
-use crate::{Fit, FitError};
+use crate::{Fit, FitError, Problem};
 
 /// A formulation is excluded where its χ² is this much above the least.
 pub const EXCLUDED: f64 = 15.0;
@@ -27,7 +27,7 @@ pub enum Verdict {
         /// [`fit_formulations`](crate::fit_formulations).
         needs: Vec<Option<f64>>,
     },
-    /// Residuals of the best formulation object: something else is wrong.
+    /// Residuals object to every formulation that is not excluded: something else is wrong.
     None,
     /// It could not be fitted.
     NotFitted(FitError),
@@ -40,15 +40,20 @@ pub struct Row {
     pub choice: Choice,
     /// The fit.
     pub fit: Result<Fit, FitError>,
+    /// What was fitted, to ask further; its unknowns are the first of [`Fit::estimates`].
+    pub problem: Option<Problem>,
     /// The verdict.
     pub verdict: Verdict,
 }
 
 /// Verdicts on fits of formulations to the same films.
 pub fn verdicts(fits: Vec<(Choice, Result<Fit, FitError>)>) -> Vec<Row> {
-    let least =
-        fits.iter().filter_map(|(_, fit)| fit.as_ref().ok()).min_by(|a, b| a.chi_squared.total_cmp(&b.chi_squared));
-    let least = least.map(|fit| (fit.chi_squared, fit.objections().next().is_some()));
+    let fitted = || fits.iter().filter_map(|(_, fit)| fit.as_ref().ok());
+    let of = |fit: &Fit| (fit.chi_squared, fit.objections().next().is_some());
+    let least = fitted().map(of).min_by(|a, b| a.0.total_cmp(&b.0));
+    // one that fits, and that the least does not exclude
+    let fine = fitted().map(of).any(|(x, objects)| !objects && least.is_some_and(|(least, _)| x - least < EXCLUDED));
+    let least = least.map(|(least, _)| (least, !fine));
     let is_open = |fit: &Result<Fit, FitError>| match (fit, least) {
         (Ok(fit), Some((least, _))) => fit.chi_squared - least < EXCLUDED,
         _ => true,
@@ -76,7 +81,7 @@ pub fn verdicts(fits: Vec<(Choice, Result<Fit, FitError>)>) -> Vec<Row> {
         }
     };
     let verdicts: Vec<Verdict> = fits.iter().map(verdict).collect();
-    fits.into_iter().zip(verdicts).map(|((choice, fit), verdict)| Row { choice, fit, verdict }).collect()
+    fits.into_iter().zip(verdicts).map(|((choice, fit), verdict)| Row { choice, fit, problem: None, verdict }).collect()
 }
 
 /// Whether one of two formulations is the other with more numbers, so that both can be right: Chetaev's law
@@ -105,6 +110,7 @@ mod tests {
             tests: Vec::new(),
             minima: vec![chi_squared],
             starts: 1,
+            reached: 1,
             residuals: Vec::new(),
         })
     }

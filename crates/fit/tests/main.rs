@@ -4,4 +4,5 @@ mod bounds;
 mod design;
 mod films;
 mod noise;
+mod search;
 mod tables;

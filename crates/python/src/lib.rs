@@ -13,6 +13,7 @@ mod connect;
 mod ensemble;
 mod equations;
 mod errors;
+mod films;
 mod kept;
 mod linearization;
 mod motion;
@@ -43,6 +44,8 @@ mod _native {
         BoundaryError, CallError, CompileError, DeltaqError, DerivationError, EvaluationError, RemovalError,
         SceneError, SolveError, StartError,
     };
+    #[pymodule_export]
+    use crate::films::_Fitted;
     #[pymodule_export]
     use crate::linearization::{Linearization, LinearizationSweep, StabilityChange};
     #[pymodule_export]

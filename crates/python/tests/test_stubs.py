@@ -13,7 +13,7 @@ STUBS = Path(deltaq.__file__).with_name("_native.pyi")
 TREE = ast.parse(STUBS.read_text())
 CLASSES = {node.name: node for node in TREE.body if isinstance(node, ast.ClassDef)}
 FUNCTIONS = {node.name: node for node in TREE.body if isinstance(node, ast.FunctionDef)}
-PYTHON = {"Proof", "Sweep", "ensemble", "from_sympy", "sweep"}
+PYTHON = {"FilmFit", "FormulationFit", "Profile", "Proof", "Sweep", "ensemble", "from_sympy", "sweep"}
 VALUES = {node.target.id for node in TREE.body if isinstance(node, ast.AnnAssign) and not node.target.id.startswith("_")}
 
 
@@ -89,7 +89,8 @@ def same_parameters(stub, real, without=0):
     arguments = stub.args
     positional = [a.arg for a in arguments.args][without:]
     found = inspect.signature(real).parameters.values()
-    assert positional == [p.name for p in found if p.kind is not p.KEYWORD_ONLY], stub.name
+    assert positional == [p.name for p in found if p.kind not in (p.KEYWORD_ONLY, p.VAR_POSITIONAL)], stub.name
+    assert [a.arg for a in [arguments.vararg] if a] == [p.name for p in found if p.kind is p.VAR_POSITIONAL], stub.name
     assert [a.arg for a in arguments.kwonlyargs] == [p.name for p in found if p.kind is p.KEYWORD_ONLY], stub.name
     defaults = [p.default for p in found if p.kind is p.KEYWORD_ONLY]
     for node, default in zip(arguments.kw_defaults, defaults):

@@ -44,6 +44,8 @@ pub struct Starts {
     numbers: StartNumbers,
     /// The parameters that vary, `t` and the positions.
     values: Vec<f64>,
+    /// The start of the row before: rows that differ by multipliers alone have one start.
+    known: Option<(StartNumbers, State)>,
 }
 
 #[derive(Clone)]
@@ -144,6 +146,7 @@ impl Starts {
             given,
             guess,
             varied_multipliers,
+            known: None,
         })
     }
 
@@ -178,7 +181,11 @@ impl Starts {
                 into.push(quantity.value(row, values)?);
             }
         }
-        let (state, _) = self.program.complete(numbers).map_err(SceneErrorKind::Start)?;
+        let state = match &self.known {
+            Some((known, state)) if same(known, numbers) => state.clone(),
+            _ => self.program.complete(numbers).map_err(SceneErrorKind::Start)?.0,
+        };
+        self.known = Some((numbers.clone(), state.clone()));
         let mut multipliers = self.multipliers.clone();
         for (multiplier, place) in &self.varied_multipliers {
             multipliers[*multiplier] = row[*place];
@@ -195,6 +202,15 @@ impl Starts {
     pub fn vary_multipliers(&self) -> bool {
         !self.varied_multipliers.is_empty()
     }
+}
+
+/// Whether two starts have the same numbers, bit by bit.
+fn same(a: &StartNumbers, b: &StartNumbers) -> bool {
+    let numbers = |x: &StartNumbers| -> Vec<u64> {
+        let lists = [&x.positions, &x.given, &x.guess, &x.varied];
+        std::iter::once(&x.time).chain(lists.into_iter().flatten()).map(|x| x.to_bits()).collect()
+    };
+    numbers(a) == numbers(b)
 }
 
 impl Quantity {

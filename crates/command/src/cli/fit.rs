@@ -48,6 +48,9 @@ pub struct FitArguments {
     /// Most steps of a motion: a search that goes where motions take more comes back.
     #[arg(long, default_value_t = 2_000)]
     pub max_steps: usize,
+    /// Folder for pictures, SVG: the films with the fitted motions, residuals, profiles of the law's numbers.
+    #[arg(long, value_name = "FOLDER")]
+    pub pictures: Option<PathBuf>,
     /// Output format.
     #[arg(long, value_enum, default_value_t = TextOrJson::Text)]
     pub format: TextOrJson,

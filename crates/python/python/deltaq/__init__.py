@@ -6,6 +6,7 @@
     many = system.ensemble("chetaev", vary={"g": [1.6, 9.8]})   # Ensemble: as a motion, one axis more
     equations = system.equations("vakonomic")     # Equations: text, latex, rates(t, y), jacobian(t, y), ...
     steady = system.linearize(find=True)          # Linearization: eigenvalues about a steady motion
+    fit = system.fit(film, free=["g"], sigma=1e-3)      # FilmFit: which formulation a film supports, numbers with intervals
     comparison = system.compare()                 # Comparison: pairs with verdicts, fits of the free constants
     where = deltaq.sweep(system, {"k": [0.5, 1.0]})     # Sweep: where two motions part, on all cores or a cluster
     table = deltaq.ensemble(system, vary={"g": [1.6]})  # a table of Arrow, or Parquet files
@@ -17,7 +18,7 @@ All arrays are of float64. Results cannot be written to, and can be pickled. Eve
 DeltaqError, an unknown name an UnknownNameError; a wrong shape is a ValueError, a missing file a FileNotFoundError.
 """
 
-from . import _animate, _notebook, _plots, _proof, _tables
+from . import _animate, _films, _notebook, _plots, _proof, _tables
 from ._native import (
     FORMULATIONS,
     METHODS,
@@ -55,11 +56,13 @@ from ._native import (
     UnknownNameError,
     __version__,
     _again,
+    _Fitted,
     _read_again,
     built_in,
     load,
     parse,
 )
+from ._films import FilmFit, FormulationFit, Profile
 from ._proof import Proof
 from ._sweep import Sweep, ensemble, sweep
 from ._sympy import from_sympy
@@ -80,7 +83,9 @@ __all__ = [
     "Ensemble",
     "Equations",
     "EvaluationError",
+    "FilmFit",
     "Fit",
+    "FormulationFit",
     "Growth",
     "LeadingTerm",
     "Linearization",
@@ -88,6 +93,7 @@ __all__ = [
     "Motion",
     "Outputs",
     "Pair",
+    "Profile",
     "Proof",
     "RemovalError",
     "Residuals",
@@ -121,3 +127,5 @@ for _class, _module in ((Motion, "motion"), (Ensemble, "ensemble"), (Comparison,
 
 setattr(System, "prove", _proof.prove)
 setattr(System, "integrals", _proof.integrals)
+setattr(System, "fit", _films.fit)
+setattr(System, "design", _films.design)

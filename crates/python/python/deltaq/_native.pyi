@@ -5,6 +5,7 @@ from typing import Any, Final, Literal, TypeAlias, final
 import numpy as np
 import numpy.typing as npt
 
+from ._films import FilmFit
 from ._proof import Proof
 
 _Array: TypeAlias = npt.NDArray[np.float64]
@@ -270,6 +271,91 @@ class System:
         >>> sledge.integrals(degree=1)["polynomials"][0]["answer"]
         'local'
         """
+    def fit(
+        self,
+        film: Any,
+        *more: Any,
+        free: Iterable[str],
+        sigma: float | str | Mapping[str, float | str] | None = None,
+        law: Iterable[str] = (),
+        known: Mapping[str, float] | None = None,
+        formulations: Iterable[str] = ("chetaev", "vakonomic"),
+        starts: int = 16,
+        robust: bool = False,
+        tolerance: float = 1e-9,
+        max_steps: int = 2_000,
+    ) -> FilmFit:
+        """Fits what is not known of the system to films of its motions, in each formulation: `deltaq fit`.
+
+        film: path of a CSV file, or a mapping (a dict, a DataFrame) with "t" and columns that are expressions by their names,
+        shape (k,) each; NaN for a gap. free: unknowns, "g", "x~0.1", "Omega~0.7±0.01", "x@2". sigma: standard deviation of all
+        columns, or by column. law: "eps", "slip". known: "psi'@2" to a number of one film. Else as in the command.
+
+        >>> times = np.linspace(0.05, 2, 40)
+        >>> motion = sledge.solve("chetaev", times)
+        >>> noise = 1e-3 * np.random.default_rng(2).normal(size=(2, 40))
+        >>> film = {"t": times, "x": motion.coordinates[:, 0] + noise[0], "y": motion.coordinates[:, 1] + noise[1]}
+        >>> found = sledge.fit(film, free=["g", "phi'"], sigma=1e-3)
+        >>> found["chetaev"].verdict, found["vakonomic"].verdict
+        ('supported', 'excluded')
+        """
+    def design(
+        self,
+        tell: Sequence[str] | None = None,
+        *,
+        film: str,
+        estimate: str | None = None,
+        over: Mapping[str, tuple[float, float]] | None = None,
+        free: Iterable[str] = (),
+        films: int = 1,
+        columns: Iterable[str] = (),
+        sigma: float | str | Mapping[str, float | str] | None = None,
+        law: Iterable[str] = (),
+        starts: int = 8,
+        points: int = 32,
+        tolerance: float = 1e-9,
+        max_steps: int = 2_000,
+        threads: int = 0,
+    ) -> dict[str, Any]:
+        """The film that would tell two formulations apart best, or show a number best: `deltaq design`, and its schema.
+
+        tell: the formulation that is right, and the other one. estimate: the number, in place of tell. film: "60Hz,0.5mm,10s".
+        over: what can be chosen, by name its bounds. free, sigma, law: as in `fit`.
+
+        >>> heisenberg = deltaq.built_in("heisenberg")
+        >>> found = heisenberg.design(("vakonomic", "chetaev"), film="20Hz,1mm,1s", over={"mu0_1": (0.1, 1)}, free=["x'", "y'"], points=4)
+        >>> found["best"]["at"], found["best"]["value"] > 15
+        ([1.0], True)
+        """
+    def _fit(
+        self,
+        tables: list[tuple[str, str]],
+        free: list[str],
+        law: list[str],
+        sigma: list[str],
+        known: list[tuple[int, str, float]],
+        formulations: list[str],
+        starts: int,
+        robust: bool,
+        tolerance: float,
+        max_steps: int,
+    ) -> _Fitted: ...
+    def _design(
+        self,
+        aim: list[str],
+        over: list[str],
+        film: str,
+        films: int,
+        columns: list[str],
+        sigma: list[str],
+        free: list[str],
+        law: list[str],
+        starts: int,
+        points: int,
+        tolerance: float,
+        max_steps: int,
+        threads: int,
+    ) -> str: ...
     def _certificate(self, almost_every_start: bool) -> tuple[str | None, str | None]: ...
     def _integrals(self, formulation: str, degree: int, names: list[str]) -> str: ...
     def connect(
@@ -580,6 +666,26 @@ class Linearization:
     """The same in words: "like t" where an eigenvalue on the imaginary axis has too few eigenvectors,
     "undecided" where errors leave it open or all eigenvalues are zero.
     """
+
+@final
+class _Fitted:
+    """Fits of formulations to films, to be asked further."""
+    answer: Final[str]
+    """The answer as JSON."""
+    films: Final[list[tuple[str, list[float], list[tuple[str, float, list[float]]]]]]
+    """By film: name, times of shape (k,), columns with their standard deviations, and what was seen, shape (k,)."""
+    def unknowns(self, place: int) -> list[tuple[str, float | None]]:
+        """Names of the unknowns of formulation `place`, in the order of theta, with the least that each can be."""
+    def chi_squared(self, place: int, theta: _Floats) -> float:
+        """χ² with priors; infinite where there is no motion."""
+    def slopes(self, place: int, theta: _Floats) -> _Array:
+        """Its derivatives, shape (P,); zero where there is no motion."""
+    def rises(self, place: int, name: str, at: list[float]) -> list[float] | None:
+        """How χ² rises above its least where an unknown has these values, shape (k,), and the others are fitted again;
+        None where it has none of this name.
+        """
+    def residuals(self, place: int) -> list[tuple[int, int, float, float]]:
+        """Residuals of formulation `place`: film, column, time, (fitted - seen)/sigma."""
 
 @final
 class Connections:

@@ -142,3 +142,31 @@ def sweep(self: Any, column: str, ax: Any) -> Any:
     axis.set_xlabel(_with_unit(names[-1], self.units))
     axis.set_title(_plain(self.title), loc="right", fontsize="small")
     return figure
+
+
+def profile(self: Any, ax: Any) -> Any:
+    """See `Profile.plot`."""
+    [axis] = _columns(1, ax)
+    finite = np.isfinite(self.rise)
+    axis.plot(self.at[finite], self.rise[finite], color=COLOURS["chetaev"])
+    axis.axhline(3.84, linestyle=":", color="grey", linewidth=0.8)
+    axis.set(xlabel=_plain(self.name), ylabel="rise of chi squared")
+    axis.set_title(_plain(self.label), loc="left")
+    return axis.figure
+
+
+def films(self: Any, ax: Any) -> Any:
+    """See `FilmFit.plot`."""
+    seen = self._fitted.films
+    places = [(number, name, sigma, np.array(t), np.array(x)) for number, (_, t, own) in enumerate(seen, 1) for name, sigma, x in own]
+    axes = _columns(len(places), ax)
+    for (number, name, sigma, t, x), axis in zip(places, axes):
+        axis.plot(t, x, ".", color="grey", markersize=3, label="film")
+        for row in self.rows:
+            times, residuals = row.residuals().get((number, name), (np.empty(0), np.empty(0)))
+            fitted = np.interp(times, t[np.isfinite(x)], x[np.isfinite(x)]) + sigma * residuals
+            axis.plot(times, fitted, label=_plain(f"{row.label}: {row.verdict}"), **_look(row.formulation))
+        axis.set_ylabel(_plain(name if len(seen) == 1 else f"{name}, film {number}"))
+    axes[0].legend(frameon=False, fontsize="small", loc="lower left", bbox_to_anchor=(0, 1))
+    axes[-1].set_xlabel("t")
+    return axes[0].figure

@@ -1,0 +1,118 @@
+//! Answers as JSON: what the command prints, and Python reads. What is infinite is null.
+
+use scene::Scene;
+use serde_json::{Value, json};
+
+use crate::{Aim, Best, Design, Film, Fit, Point, Row, Verdict};
+
+impl Verdict {
+    /// In words.
+    pub fn words(&self) -> String {
+        match self {
+            Verdict::Supported => "supported".into(),
+            Verdict::Excluded { sigmas } => format!("excluded at {sigmas:.1} σ"),
+            Verdict::CannotTell { from, needs } => {
+                let each = from.iter().zip(needs).map(|(label, needs)| match needs {
+                    Some(longer) => format!("{label} (if that is right, a film {longer} times as long can)"),
+                    None => format!("{label} (no film up to 8 times as long was found that can)"),
+                });
+                format!("these films cannot tell it from {}", each.collect::<Vec<_>>().join(", "))
+            }
+            Verdict::None => "no verdict".into(),
+            Verdict::NotFitted(error) => format!("not fitted: {error}"),
+        }
+    }
+}
+
+/// The answer of `deltaq fit`, by its schema.
+pub fn fit_value(scene: &Scene, films: &[Film], rows: &[Row]) -> Value {
+    let films: Vec<Value> = films.iter().map(film).collect();
+    let rows: Vec<Value> = rows.iter().map(row).collect();
+    json!({ "scene": scene.name, "films": films, "formulations": rows })
+}
+
+fn columns(film: &Film) -> Vec<Value> {
+    film.columns.iter().map(|c| json!({ "name": c.name, "sigma": c.sigma })).collect()
+}
+
+fn film(film: &Film) -> Value {
+    json!({ "file": film.name, "samples": film.t.len(), "numbers": film.count(), "columns": columns(film) })
+}
+
+fn row(row: &Row) -> Value {
+    let verdict = match &row.verdict {
+        Verdict::Supported => "supported",
+        Verdict::Excluded { .. } => "excluded",
+        Verdict::CannotTell { .. } => "cannot-tell",
+        Verdict::None => "none",
+        Verdict::NotFitted(_) => "not-fitted",
+    };
+    json!({
+        "formulation": row.choice.formulation.name,
+        "label": row.choice.label,
+        "verdict": verdict,
+        "words": row.verdict.words(),
+        "from": match &row.verdict { Verdict::CannotTell { from, .. } => from.clone(), _ => Vec::new() },
+        "needs": match &row.verdict { Verdict::CannotTell { needs, .. } => needs.clone(), _ => Vec::new() },
+        "sigmas": match row.verdict { Verdict::Excluded { sigmas } => Some(sigmas), _ => None },
+        "fit": row.fit.as_ref().ok().map(fitted),
+    })
+}
+
+fn fitted(fit: &Fit) -> Value {
+    let estimates = fit.estimates.iter().map(|e| {
+        json!({
+            "name": e.name, "value": e.value, "error": e.error, "low": e.interval[0], "high": e.interval[1],
+            "profiled": e.profiled, "at_bound": e.at_bound,
+        })
+    });
+    let tests = fit.tests.iter().map(|t| {
+        json!({
+            "name": t.name, "found": t.found, "expected": t.expected, "probability": t.probability, "objects": t.objects,
+        })
+    });
+    json!({
+        "estimates": estimates.collect::<Vec<_>>(), "tests": tests.collect::<Vec<_>>(), "chi_squared": fit.chi_squared,
+        "freedom": fit.freedom, "bic": fit.bic, "hidden": fit.hidden, "minima": fit.minima, "starts": fit.starts,
+        "reached": fit.reached,
+    })
+}
+
+/// The answer of `deltaq design`, by its schema.
+pub fn design_value(
+    scene: &Scene,
+    films: &[Film],
+    (design, aim): (&Design, Aim),
+    best: &Best,
+    shortest: Option<f64>,
+) -> Value {
+    let chosen = design.chosen().iter();
+    let chosen = chosen.map(|c| json!({ "name": c.label, "low": c.ends[0], "high": c.ends[1], "own": c.own }));
+    let (tell, estimate) = match aim {
+        Aim::Tell(truth, rival) => (json!([truth.label, rival.label]), Value::Null),
+        Aim::Estimate(_, name) => (Value::Null, json!(name)),
+    };
+    json!({
+        "scene": scene.name,
+        "films": films.len(),
+        "samples": films[0].t.len(),
+        "columns": columns(&films[0]),
+        "tell": tell,
+        "estimate": estimate,
+        "chosen": chosen.collect::<Vec<_>>(),
+        "best": point(&best.best),
+        "own": best.own.as_ref().ok().map(point),
+        "others": best.others.iter().map(point).collect::<Vec<_>>(),
+        "shortest": shortest,
+        "tried": best.tried,
+        "without_motion": best.without_motion,
+    })
+}
+
+fn point(point: &Point) -> Value {
+    let numbers = point.numbers.iter().map(|(name, value)| json!({ "name": name, "value": value }));
+    json!({
+        "at": point.at, "value": point.value, "numbers": numbers.collect::<Vec<_>>(), "minima": point.minima,
+        "hidden": point.hidden,
+    })
+}

@@ -1,0 +1,253 @@
+"""Films of motions: estimates with intervals, and which formulation a film supports."""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Iterable, Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from ._native import System, UnknownNameError, _Fitted
+
+
+class Profile:
+    """How chi squared rises beside the estimate of a number, all others fitted again.
+
+    `at`: values of the number, shape (k,). `rise`: above the least chi squared, shape (k,); 3.84 at the ends of an interval
+    of 95 %; inf where there is no motion.
+    """
+
+    def __init__(self, name: str, label: str, at: npt.NDArray[np.float64], rise: npt.NDArray[np.float64]):
+        self.name, self.label, self.at, self.rise = name, label, at, rise
+
+    def plot(self, ax: Any = None) -> Any:
+        """The rise over the number, with that of 95 %; a Figure of matplotlib."""
+        from ._plots import profile
+
+        return profile(self, ax)
+
+    def __repr__(self) -> str:
+        return f"<deltaq.Profile of {self.name}, {self.label}>"
+
+
+class FormulationFit:
+    """A formulation fitted to films; `FilmFit` has one per formulation.
+
+    `label`, `formulation`: its name. `verdict`: "supported", "excluded", "cannot-tell", "none" or "not-fitted", in `words`.
+    `names`: of the unknowns, in the order of theta. `estimates`: by name value, error, low, high (of 95 %), profiled and
+    at_bound, None for infinite. `chi_squared`, `freedom`, `bic`, `tests`, `hidden`, `minima`, `starts`, `reached` as in
+    the schema of `deltaq fit`; without a fit `estimates` is empty.
+    """
+
+    def __init__(self, fitted: _Fitted, place: int, answer: Mapping[str, Any]):
+        self._fitted, self._place = fitted, place
+        self.label: str = answer["label"]
+        self.formulation: str = answer["formulation"]
+        self.verdict: str = answer["verdict"]
+        self.words: str = answer["words"]
+        fit = answer["fit"] or {}
+        self.estimates: dict[str, dict[str, Any]] = {own["name"]: own for own in fit.get("estimates", [])}
+        self.chi_squared: float = fit.get("chi_squared", np.inf)
+        self.freedom: int = fit.get("freedom", 0)
+        self.bic: float = fit.get("bic", np.inf)
+        self.tests: list[dict[str, Any]] = fit.get("tests", [])
+        self.hidden: list[str] = fit.get("hidden", [])
+        self.minima: list[float] = fit.get("minima", [])
+        self.starts: int = fit.get("starts", 0)
+        self.reached: int = fit.get("reached", 0)
+        self._bounds = dict(fitted.unknowns(place))
+        self.names: list[str] = list(self._bounds)
+
+    @property
+    def theta(self) -> npt.NDArray[np.float64]:
+        """The estimates in the order of `names`, shape (P,)."""
+        return np.array([self.estimates[name]["value"] for name in self.names])
+
+    def logp(self, theta: npt.ArrayLike) -> float:
+        """Logarithm of the likelihood with priors, -chi^2/2, for samplers; -inf where there is no motion."""
+        return -0.5 * self._fitted.chi_squared(self._place, np.asarray(theta, dtype=float))
+
+    def grad(self, theta: npt.ArrayLike) -> npt.NDArray[np.float64]:
+        """Its derivatives by theta, shape (P,), exact; zero where there is no motion."""
+        return -0.5 * self._fitted.slopes(self._place, np.asarray(theta, dtype=float))
+
+    def profile(self, name: str, at: npt.ArrayLike | None = None) -> Profile:
+        """How chi squared rises where a number has these values, shape (k,); about its interval if left out."""
+        name = {"eps": "epsilon"}.get(name, name)
+        if name not in self.names:
+            raise UnknownNameError(f"no unknown {name!r}; there are {', '.join(self.names)}")
+        if at is None:
+            low, high = self.estimates[name]["low"], self.estimates[name]["high"]
+            if low is None or high is None:
+                raise ValueError(f"the interval of {name} is open: say where the profile is wanted")
+            bound = self._bounds[name]
+            first = low - 0.5 * (high - low)
+            at = np.linspace(first if bound is None else max(first, bound), high + 0.5 * (high - low), 41)
+        values = np.atleast_1d(np.asarray(at, dtype=float))
+        rise = self._fitted.rises(self._place, name, values.tolist())
+        return Profile(name, self.label, values, np.array(rise, dtype=float))
+
+    def residuals(self) -> dict[tuple[int, str], tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]]:
+        """By film, from 1, and column: times and (fitted - seen)/sigma, each of shape (k,)."""
+        found: dict[tuple[int, str], list[tuple[float, float]]] = {}
+        for film, column, t, value in self._fitted.residuals(self._place):
+            found.setdefault((film + 1, self._fitted.films[film][2][column][0]), []).append((t, value))
+        return {place: (np.array(list(zip(*own))[0]), np.array(list(zip(*own))[1])) for place, own in found.items()}
+
+    def __repr__(self) -> str:
+        return f"<deltaq.FormulationFit {self.label}: {self.words}>"
+
+
+class FilmFit:
+    """Formulations fitted to films, the answer of `System.fit`: `fit["vakonomic"]` is one of them, `fit.best` the least.
+
+    `answer` is that of `deltaq fit --format json`. `logp`, `grad` and `profile` are those of `best`, of the law of first
+    order where it was asked for.
+    """
+
+    def __init__(self, system: System, call: dict[str, Any]):
+        self.system, self._call = system, call
+        self._fitted = system._fit(**call)
+        self.answer: dict[str, Any] = {"schema": "deltaq/fit/1"} | json.loads(self._fitted.answer)
+        self.rows = [FormulationFit(self._fitted, place, row) for place, row in enumerate(self.answer["formulations"])]
+
+    @property
+    def best(self) -> FormulationFit:
+        """The formulation of the least chi squared; the law of first order, where it was asked for and is within 15 of it."""
+        least = min(self.rows, key=lambda row: row.chi_squared)
+        law = [row for row in self.rows if row.formulation == "first-order" and row.chi_squared < least.chi_squared + 15]
+        return (law or [least])[0]
+
+    def __getitem__(self, name: str) -> FormulationFit:
+        for row in self.rows:
+            if name in (row.label, row.formulation):
+                return row
+        raise UnknownNameError(f"no formulation {name!r}; there are {', '.join(row.label for row in self.rows)}")
+
+    def logp(self, theta: npt.ArrayLike) -> float:
+        """See `FormulationFit.logp`."""
+        return self.best.logp(theta)
+
+    def grad(self, theta: npt.ArrayLike) -> npt.NDArray[np.float64]:
+        """See `FormulationFit.grad`."""
+        return self.best.grad(theta)
+
+    def profile(self, name: str, at: npt.ArrayLike | None = None) -> Profile:
+        """See `FormulationFit.profile`."""
+        return self.best.profile(name, at)
+
+    def plot(self, ax: Any = None) -> Any:
+        """The films' columns over time with the fitted motions, one above the other; a Figure. ax: as many axes."""
+        from ._plots import films
+
+        return films(self, ax)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return FilmFit, (self.system, self._call)
+
+    def __repr__(self) -> str:
+        return f"<deltaq.FilmFit {'; '.join(f'{row.label}: {row.verdict}' for row in self.rows)}>"
+
+
+def _table(table: Any) -> str:
+    """A film as CSV: numbers to their last digit."""
+    columns = {str(name): np.asarray(table[name], dtype=float) for name in table}
+    if len({len(values) for values in columns.values()}) > 1:
+        raise ValueError(f"columns have different lengths: {', '.join(f'{name} {len(x)}' for name, x in columns.items())}")
+    rows = zip(*columns.values())
+    return "\n".join([",".join(columns), *(",".join(repr(float(x)) for x in row) for row in rows)]) + "\n"
+
+
+def _read(film: Any, place: int) -> tuple[str, str]:
+    if isinstance(film, (str, os.PathLike)):
+        return str(film), Path(film).read_text("utf-8")
+    return f"film {place}", _table(film)
+
+
+def _sigmas(sigma: float | str | Mapping[str, float | str] | None) -> list[str]:
+    if sigma is None:
+        return []
+    if isinstance(sigma, Mapping):
+        return [f"{name}={value}" for name, value in sigma.items()]
+    return [str(sigma)]
+
+
+def fit(
+    self: System,
+    film: Any,
+    *more: Any,
+    free: Iterable[str],
+    sigma: float | str | Mapping[str, float | str] | None = None,
+    law: Iterable[str] = (),
+    known: Mapping[str, float] | None = None,
+    formulations: Iterable[str] = ("chetaev", "vakonomic"),
+    starts: int = 16,
+    robust: bool = False,
+    tolerance: float = 1e-9,
+    max_steps: int = 2_000,
+) -> FilmFit:
+    """Fits what is not known of the system to films of its motions, in each formulation: `deltaq fit`.
+
+    film: path of a CSV file, or a mapping (a dict, a DataFrame) with "t" and columns that are expressions by their names,
+    shape (k,) each; NaN for a gap. free: unknowns, "g", "x~0.1", "Omega~0.7±0.01", "x@2". sigma: standard deviation of all
+    columns, or by column. law: "eps", "slip". known: "psi'@2" to a number of one film. Else as in the command.
+
+    >>> times = np.linspace(0.05, 2, 40)
+    >>> motion = sledge.solve("chetaev", times)
+    >>> noise = 1e-3 * np.random.default_rng(2).normal(size=(2, 40))
+    >>> film = {"t": times, "x": motion.coordinates[:, 0] + noise[0], "y": motion.coordinates[:, 1] + noise[1]}
+    >>> found = sledge.fit(film, free=["g", "phi'"], sigma=1e-3)
+    >>> found["chetaev"].verdict, found["vakonomic"].verdict
+    ('supported', 'excluded')
+    """
+    places = [(int(name.rpartition("@")[2]), name.rpartition("@")[0], float(x)) for name, x in (known or {}).items()]
+    tables = [_read(own, place + 1) for place, own in enumerate((film, *more))]
+    call = dict(tables=tables, free=list(free), law=list(law), sigma=_sigmas(sigma), known=places, formulations=list(formulations))
+    return FilmFit(self, call | dict(starts=starts, robust=robust, tolerance=tolerance, max_steps=max_steps))
+
+
+def design(
+    self: System,
+    tell: Sequence[str] | None = None,
+    *,
+    film: str,
+    estimate: str | None = None,
+    over: Mapping[str, tuple[float, float]] | None = None,
+    free: Iterable[str] = (),
+    films: int = 1,
+    columns: Iterable[str] = (),
+    sigma: float | str | Mapping[str, float | str] | None = None,
+    law: Iterable[str] = (),
+    starts: int = 8,
+    points: int = 32,
+    tolerance: float = 1e-9,
+    max_steps: int = 2_000,
+    threads: int = 0,
+) -> dict[str, Any]:
+    """The film that would tell two formulations apart best, or show a number best: `deltaq design`, and its schema.
+
+    tell: the formulation that is right, and the other one. estimate: the number, in place of tell. film: "60Hz,0.5mm,10s".
+    over: what can be chosen, by name its bounds. free, sigma, law: as in `fit`.
+
+    >>> heisenberg = deltaq.built_in("heisenberg")
+    >>> found = heisenberg.design(("vakonomic", "chetaev"), film="20Hz,1mm,1s", over={"mu0_1": (0.1, 1)}, free=["x'", "y'"], points=4)
+    >>> found["best"]["at"], found["best"]["value"] > 15
+    ([1.0], True)
+    """
+    if (tell is None) == (estimate is None):
+        raise ValueError("design asks for tell or for estimate")
+    aim = [str(estimate)] if tell is None else list(tell)
+    numbers = list(law)
+    if tell is None and str(estimate) in ("eps", "epsilon", "slip") and estimate not in numbers:
+        numbers.append(str(estimate))
+    if tell is not None and len(aim) != 2:
+        raise ValueError(f"tell: two formulations are needed, there are {len(aim)}")
+    ranges = [f"{name}={low!r}:{high!r}" for name, (low, high) in (over or {}).items()]
+    found: dict[str, Any] = json.loads(
+        self._design(aim, ranges, film, films, list(columns), _sigmas(sigma), list(free), numbers, starts, points, tolerance, max_steps, threads)
+    )
+    return {"schema": "deltaq/design/1"} | found

@@ -1,0 +1,230 @@
+//! Films of motions, fitted.
+
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
+use deltaq::{Settings, VAKONOMIC_COSTATE};
+use equations::Formulation;
+use fit::{
+    Aim, Design, Deviations, EXCLUDED, Film, FitError, Question, Range, Row, Sampling, Unknown, design_value,
+    fit_formulations, fit_value, profile, with_law,
+};
+use integrate::Interrupt;
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+
+use crate::arrays::{Array, Floats, array};
+use crate::system::System;
+use crate::{arguments, background, errors};
+
+/// Residuals above this size count linearly where outliers are to count little.
+const ROBUST: f64 = 1.345;
+
+/// Fits of formulations to films, to be asked further.
+#[pyclass(frozen, module = "deltaq")]
+pub(crate) struct _Fitted {
+    rows: Mutex<Vec<Row>>,
+    /// The answer as JSON.
+    #[pyo3(get)]
+    answer: String,
+    /// By film: name, times of shape (k,), columns with their standard deviations, and what was seen, shape (k,).
+    #[pyo3(get)]
+    films: Vec<Seen>,
+}
+
+/// A film as Python reads it: its name, times, and columns: name, standard deviation, values; NaN for a gap.
+type Seen = (String, Vec<f64>, Vec<(String, f64, Vec<f64>)>);
+
+fn refused(error: FitError) -> PyErr {
+    match error {
+        FitError::Motion(error) => errors::solve(error),
+        other => PyValueError::new_err(other.to_string()),
+    }
+}
+
+fn read<T>(list: &[String]) -> PyResult<Vec<T>>
+where
+    T: std::str::FromStr<Err = FitError>,
+{
+    list.iter().map(|text| text.parse::<T>().map_err(refused)).collect()
+}
+
+impl _Fitted {
+    fn rows(&self) -> MutexGuard<'_, Vec<Row>> {
+        self.rows.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// χ² of formulation `place` at these unknowns, and half its slopes; none where there is no motion.
+    fn squares(&self, place: usize, theta: &[f64], slopes: bool) -> PyResult<Option<(f64, Vec<f64>)>> {
+        let mut rows = self.rows();
+        let problem = rows[place].problem.as_mut().ok_or_else(|| PyValueError::new_err("it was not fitted"))?;
+        if theta.len() != problem.unknowns().len() {
+            let (found, needed) = (theta.len(), problem.unknowns().len());
+            return Err(PyValueError::new_err(format!("theta has {found} entries; {needed} are needed")));
+        }
+        let found = problem.weighed(theta, slopes).ok();
+        Ok(found.map(|(values, jacobian)| {
+            let by = if slopes { jacobian.tr_mul(&values).iter().copied().collect() } else { Vec::new() };
+            (values.norm_squared(), by)
+        }))
+    }
+}
+
+#[pymethods]
+impl _Fitted {
+    /// Names of the unknowns of formulation `place`, in the order of theta, with the least that each can be.
+    fn unknowns(&self, place: usize) -> Vec<(String, Option<f64>)> {
+        let rows = self.rows();
+        let problem = rows[place].problem.as_ref();
+        problem.map_or(Vec::new(), |problem| problem.unknowns().iter().map(|u| (u.label(), u.bound)).collect())
+    }
+
+    /// χ² with priors; infinite where there is no motion.
+    fn chi_squared(&self, py: Python<'_>, place: usize, theta: Floats<'_>) -> PyResult<f64> {
+        let theta: Vec<f64> = theta.as_array().iter().copied().collect();
+        let found = py.detach(|| self.squares(place, &theta, false))?;
+        Ok(found.map_or(f64::INFINITY, |(value, _)| value))
+    }
+
+    /// Its derivatives, shape (P,); zero where there is no motion.
+    fn slopes<'py>(&self, py: Python<'py>, place: usize, theta: Floats<'py>) -> Array<'py> {
+        let theta: Vec<f64> = theta.as_array().iter().copied().collect();
+        let found = py.detach(|| self.squares(place, &theta, true))?;
+        let slopes = found.map_or(vec![0.0; theta.len()], |(_, by)| by.into_iter().map(|x| 2.0 * x).collect());
+        let width = slopes.len();
+        array(py, slopes, None, &[width])
+    }
+
+    /// How χ² rises above its least where an unknown has these values, shape (k,), and the others are fitted again;
+    /// None where it has none of this name.
+    fn rises(&self, py: Python<'_>, place: usize, name: &str, at: Vec<f64>) -> Option<Vec<f64>> {
+        py.detach(|| {
+            let rows = self.rows();
+            let (problem, fit) = (rows[place].problem.as_ref()?, rows[place].fit.as_ref().ok()?);
+            profile(problem, fit, name, &at)
+        })
+    }
+
+    /// Residuals of formulation `place`: film, column, time, (fitted - seen)/sigma.
+    fn residuals(&self, place: usize) -> Vec<(usize, usize, f64, f64)> {
+        let rows = self.rows();
+        let fit = rows[place].fit.as_ref().ok();
+        fit.map_or(Vec::new(), |fit| fit.residuals.iter().map(|r| (r.film, r.column, r.t, r.value)).collect())
+    }
+}
+
+#[pymethods]
+impl System {
+    /// Tables (name, text) fitted: see `fit`.
+    #[expect(clippy::too_many_arguments, reason = "called by name from Python")]
+    #[pyo3(signature = (tables, free, law, sigma, known, formulations, starts, robust, tolerance, max_steps))]
+    fn _fit(
+        &self,
+        py: Python<'_>,
+        tables: Vec<(String, String)>,
+        free: Vec<String>,
+        law: Vec<String>,
+        sigma: Vec<String>,
+        known: Vec<(usize, String, f64)>,
+        formulations: Vec<String>,
+        starts: usize,
+        robust: bool,
+        tolerance: f64,
+        max_steps: usize,
+    ) -> PyResult<_Fitted> {
+        let scene = self.scene().clone();
+        let deviations = Deviations::written(&sigma).map_err(refused)?;
+        let film = |(name, text): &(String, String)| Film::read(&scene, name, text, &deviations).map_err(refused);
+        let mut films = tables.iter().map(film).collect::<PyResult<Vec<_>>>()?;
+        for (film, name, value) in known {
+            let count = films.len();
+            let film = film.checked_sub(1).and_then(|film| films.get_mut(film));
+            let film =
+                film.ok_or_else(|| PyValueError::new_err(format!("known: there are {count} films, from 1 on")))?;
+            film.known.push((name, value));
+        }
+        let unknowns: Vec<Unknown> = read(&free)?;
+        let law: Vec<Unknown> = read::<Unknown>(&law)?.iter().map(Unknown::of_law).collect();
+        let all = formulations.iter().any(|name| name == "all");
+        let named = formulations.iter().filter(|name| *name != "all").map(|name| arguments::formulation(name));
+        let named = named.collect::<PyResult<Vec<_>>>()?;
+        let settings = settings(tolerance, max_steps)?;
+        let interrupt = Interrupt::default();
+        let robust = robust.then_some(ROBUST);
+        let own = films.clone();
+        let work = move || {
+            let question = Question { unknowns: &unknowns, law: &law, starts, robust, settings };
+            let wanted =
+                |f: &Formulation| if all { *f != *VAKONOMIC_COSTATE } else { named.iter().any(|own| **own == *f) };
+            let rows = fit_formulations(&scene, &own, &question, &wanted)?;
+            let answer = fit_value(&scene, &own, &rows).to_string();
+            Ok::<_, FitError>((rows, answer))
+        };
+        let (rows, answer) = background::run(py, &interrupt, work)?.map_err(refused)?;
+        let seen = |film: &Film| -> Seen {
+            let column = |c: usize| film.rows.iter().map(|row| row[c].unwrap_or(f64::NAN)).collect();
+            let columns = film.columns.iter().enumerate().map(|(c, own)| (own.name.clone(), own.sigma, column(c)));
+            (film.name.clone(), film.t.clone(), columns.collect())
+        };
+        Ok(_Fitted { rows: Mutex::new(rows), answer, films: films.iter().map(seen).collect() })
+    }
+
+    /// The film that would show most, as JSON: see `design`.
+    #[expect(clippy::too_many_arguments, reason = "called by name from Python")]
+    #[pyo3(signature = (aim, over, film, films, columns, sigma, free, law, starts, points, tolerance, max_steps, threads))]
+    fn _design(
+        &self,
+        py: Python<'_>,
+        aim: Vec<String>,
+        over: Vec<String>,
+        film: &str,
+        films: usize,
+        columns: Vec<String>,
+        sigma: Vec<String>,
+        free: Vec<String>,
+        law: Vec<String>,
+        starts: usize,
+        points: usize,
+        tolerance: f64,
+        max_steps: usize,
+        threads: usize,
+    ) -> PyResult<String> {
+        let law: Vec<Unknown> = read::<Unknown>(&law)?.iter().map(Unknown::of_law).collect();
+        let scene = with_law(&self.scene(), &law);
+        let deviations = Deviations::written(&sigma).map_err(refused)?;
+        let times: Sampling = film.parse().map_err(refused)?;
+        let film = Film::planned(&scene, &columns, times, &deviations).map_err(refused)?;
+        let films = vec![film; films.max(1)];
+        let (unknowns, over): (Vec<Unknown>, Vec<Range>) = (read(&free)?, read(&over)?);
+        let settings = settings(tolerance, max_steps)?;
+        let first = |name: &str| {
+            let wanted = arguments::formulation(name)?;
+            let choice = deltaq::choices_among(&scene, |f| *f == *wanted).into_iter().next();
+            choice.ok_or_else(|| PyValueError::new_err(format!("the system has no {name} motion")))
+        };
+        let choices = match &aim[..] {
+            [_] => vec![first(if law.is_empty() { "chetaev" } else { "first-order" })?],
+            both => both.iter().map(|name| first(name)).collect::<PyResult<Vec<_>>>()?,
+        };
+        let unknown = aim.first().map(|name| Unknown::named(name).of_law().name).unwrap_or_default();
+        let work = move || {
+            let scene = &scene;
+            let aim = match &choices[..] {
+                [truth, rival] => Aim::Tell(truth, rival),
+                [own, ..] => Aim::Estimate(own, &unknown),
+                [] => return Err(FitError::NoUnknown),
+            };
+            let question = Question { unknowns: &unknowns, law: &law, starts, robust: None, settings };
+            let design = Design::new(scene, &films, &question, &over, aim)?;
+            let best = design.best(points, threads)?;
+            let shortest = (best.best.value >= EXCLUDED).then(|| design.shortest(&best.best.at)).flatten();
+            Ok(design_value(scene, &films, (&design, aim), &best, shortest).to_string())
+        };
+        background::run(py, &Interrupt::default(), work)?.map_err(refused)
+    }
+}
+
+fn settings(tolerance: f64, max_steps: usize) -> PyResult<Settings> {
+    let settings = Settings { tolerance, max_steps, ..Settings::default() };
+    settings.check().map_err(errors::solve)?;
+    Ok(settings)
+}
