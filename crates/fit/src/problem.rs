@@ -19,6 +19,8 @@ pub struct Problem {
     parts: Vec<Part>,
     unknowns: Vec<Unknown>,
     start: Vec<f64>,
+    /// By unknown, whether it is a parameter of the scene.
+    parameters: Vec<bool>,
     robust: Option<f64>,
     /// `(θ − mean)/deviation` of unknowns that are held.
     held: Vec<f64>,
@@ -65,7 +67,8 @@ impl Problem {
         }
         let value = |unknown: &Unknown| unknown.start.unwrap_or_else(|| value_of(scene, &unknown.name));
         let start = unknowns.iter().map(value).collect();
-        Ok(Problem { parts, unknowns, start, robust: None, held: Vec::new() })
+        let parameters = unknowns.iter().map(|unknown| is_parameter(scene, &unknown.name)).collect();
+        Ok(Problem { parts, unknowns, start, parameters, robust: None, held: Vec::new() })
     }
 
     /// Residuals above this size count linearly (Huber); 1.345 costs 5 % where errors are normal.
@@ -87,6 +90,16 @@ impl Problem {
     /// Where the search begins.
     pub fn start(&self) -> &[f64] {
         &self.start
+    }
+
+    /// How far a parameter may be from where the search begins for another start: its own size, or three
+    /// deviations of what is known before; 0 for another unknown.
+    pub(crate) fn doubt(&self, i: usize) -> f64 {
+        match self.unknowns[i].prior {
+            _ if !self.parameters[i] => 0.0,
+            Some(prior) => self.start[i].abs().min(3.0 * prior.deviation),
+            None => self.start[i].abs(),
+        }
     }
 
     /// Sets where the search begins.
@@ -199,6 +212,7 @@ impl Problem {
         let prior = less.unknowns.remove(i).prior;
         less.held.extend(prior.map(|prior| (value - prior.mean) / prior.deviation));
         less.start.remove(i);
+        less.parameters.remove(i);
         for place in less.parts.iter_mut().flat_map(|part| &mut part.places) {
             *place = match *place {
                 Place::Unknown(j) if j == i => Place::Known(value),
@@ -287,10 +301,12 @@ fn huber(r: f64, limit: Option<f64>) -> (f64, f64) {
     }
 }
 
+fn is_parameter(scene: &Scene, name: &str) -> bool {
+    scene.system.parameters.iter().any(|p| scene.system.graph.name(p.symbol) == name)
+}
+
 /// Each film has its own start values, multipliers and costates; all share a parameter.
 fn expanded(scene: &Scene, unknowns: &[Unknown], films: usize) -> Result<Vec<Unknown>, FitError> {
-    let g = &scene.system.graph;
-    let is_shared = |name: &str| scene.system.parameters.iter().any(|p| g.name(p.symbol) == name);
     let mut all: Vec<Unknown> = Vec::new();
     for unknown in unknowns {
         if let Some(film) = unknown.film.filter(|film| *film >= films) {
@@ -298,7 +314,7 @@ fn expanded(scene: &Scene, unknowns: &[Unknown], films: usize) -> Result<Vec<Unk
             return Err(FitError::Unknown { text: unknown.label(), reason });
         }
         let named = |film: usize| unknowns.iter().any(|u| u.name == unknown.name && u.film == Some(film));
-        if unknown.film.is_some() || films == 1 || is_shared(&unknown.name) {
+        if unknown.film.is_some() || films == 1 || is_parameter(scene, &unknown.name) {
             let film = unknown.film.filter(|_| films > 1);
             all.push(Unknown { film, ..unknown.clone() });
         } else {

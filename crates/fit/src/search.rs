@@ -214,16 +214,22 @@ fn scales(problem: &mut Problem) -> (Vec<f64>, Option<String>) {
     }
 }
 
-/// Start `number` of the search.
+/// Start `number` of the search; in every other one parameters are others, too: formulations agree where a
+/// parameter is none of theirs.
 fn moved(problem: &Problem, scale: &[f64], spread: &dyn Fn(&str) -> bool, number: usize) -> Minimum {
-    let which: Vec<bool> = problem.unknowns().iter().map(|u| spread(&u.name)).collect();
-    let mut parts = evenly(which.iter().filter(|w| **w).count(), number).into_iter();
+    let width = |i: usize| match spread(&problem.unknowns()[i].name) {
+        true => scale[i],
+        false if number % 2 == 1 => problem.doubt(i),
+        false => 0.0,
+    };
+    let widths: Vec<f64> = (0..scale.len()).map(width).collect();
+    let mut parts = evenly(widths.iter().filter(|w| **w > 0.0).count(), number).into_iter();
     let mut along = |i: usize| {
         let start = problem.start()[i];
-        if !which[i] || number == 0 {
+        if widths[i] <= 0.0 || number == 0 {
             return start;
         }
-        let x = start + scale[i] * (2.0 * parts.next().expect("one per unknown that is moved") - 1.0);
+        let x = start + widths[i] * (2.0 * parts.next().expect("one per unknown that is moved") - 1.0);
         problem.unknowns()[i].bound.map_or(x, |bound| bound + (x - bound).abs())
     };
     Minimum::unseen((0..scale.len()).map(&mut along).collect())
