@@ -3,6 +3,7 @@
 pub mod audit;
 pub mod benchmark;
 pub mod casadi_job;
+pub mod films;
 pub mod integrals;
 pub mod report;
 pub mod scaling;

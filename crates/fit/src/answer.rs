@@ -12,6 +12,7 @@ use scene::Scene;
 use crate::creep;
 use crate::length::length_that_tells;
 use crate::search::begun;
+use crate::unknown::with_start;
 use crate::{Film, Fit, FitError, Problem, Row, Unknown, Verdict, fit, verdicts};
 
 /// Times as many starts of a search for constants, where no formulation fits.
@@ -28,7 +29,7 @@ type Fitted = Result<(Problem, Fit), FitError>;
 #[derive(Clone)]
 pub struct Question<'a> {
     /// What is not known, whatever the formulation. Multipliers and costates at the start are unknown where a
-    /// formulation has them, and need not be named.
+    /// formulation has them, and need not be named. `start` stands for coordinates and given velocities.
     pub unknowns: &'a [Unknown],
     /// Numbers of the law of first order that are not known, `epsilon` or `slip`: a further row.
     pub law: &'a [Unknown],
@@ -55,6 +56,8 @@ pub fn fit_formulations(
         return Err(FitError::Unknown { text: unknown.name.clone(), reason });
     }
     let scene = with_law(scene, question.law);
+    let unknowns = with_start(&scene, question.unknowns);
+    let question = &Question { unknowns: &unknowns, ..question.clone() };
     let is_law = |f: &Formulation| matches!(f.needs, Needs::Parameters(_));
     let has_law = !question.law.is_empty();
     let choices = choices_among(&scene, |f| if is_law(f) { *f == *FIRST_ORDER && has_law } else { wanted(f) });

@@ -17,6 +17,7 @@ use scene::Scene;
 
 use crate::answer::{LAW, is_constant, problem_of, with_law};
 use crate::search::search;
+use crate::unknown::with_start;
 use crate::{EXCLUDED, Film, FitError, Problem, Question, quantity, standard_errors};
 
 /// Lengths over that of the film, at which a film that tells is looked for.
@@ -177,6 +178,8 @@ impl Design {
         aim: Aim,
     ) -> Result<Design, FitError> {
         let scene = &with_law(scene, question.law);
+        let unknowns = with_start(scene, question.unknowns);
+        let question = &Question { unknowns: &unknowns, ..question.clone() };
         let (choice, rival) = match aim {
             Aim::Tell(truth, rival) => (truth, Some(rival)),
             Aim::Estimate(choice, _) => (choice, None),

@@ -119,7 +119,11 @@ fn refined(
         };
         let poor = stage == Stage::Whole && is_poor(problem, begun.chi_squared);
         let stage = if poor { Stage::Poor } else { stage };
-        match least(near.as_ref().unwrap_or(problem), &begun.theta, scale, stage) {
+        let mut best = least(near.as_ref().unwrap_or(problem), &begun.theta, scale, stage);
+        if let Some(m) = best.as_ref().ok().filter(|m| poor && !is_poor(problem, m.chi_squared)) {
+            best = least(near.as_ref().unwrap_or(problem), &m.theta, scale, Stage::Whole);
+        }
+        match best {
             Ok(minimum) => found.push(Minimum { reached: begun.reached, ..minimum }),
             Err(_) if stage != Stage::Beginning && begun.chi_squared.is_finite() => found.push(begun),
             Err(error) => *reason = reason.take().or(Some(error)),

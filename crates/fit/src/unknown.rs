@@ -2,6 +2,8 @@
 
 use std::str::FromStr;
 
+use scene::Scene;
+
 use crate::film::positive;
 use crate::{FitError, quantity};
 
@@ -64,6 +66,17 @@ impl Unknown {
     pub fn label(&self) -> String {
         self.film.map_or_else(|| self.name.clone(), |film| format!("{}@{}", self.name, film + 1))
     }
+}
+
+/// `start` among the unknowns of a scene stands for its coordinates and the start velocities that it gives,
+/// but those that are named beside it.
+pub(crate) fn with_start(scene: &Scene, unknowns: &[Unknown]) -> Vec<Unknown> {
+    let Some(start) = unknowns.iter().find(|u| u.name == "start") else { return unknowns.to_vec() };
+    let coordinates = scene.system.coordinates.iter().map(|c| c.name.clone());
+    let each = coordinates.chain(scene.completion.given.iter().cloned());
+    let others = each.filter(|name| unknowns.iter().all(|u| u.name != *name));
+    let others = others.map(|name| Unknown { film: start.film, ..Unknown::named(&name) });
+    unknowns.iter().filter(|u| u.name != "start").cloned().chain(others).collect()
 }
 
 impl FromStr for Unknown {

@@ -10,7 +10,8 @@ use anyhow::{Context, Result, bail};
 const BEGINS: &str = "Measured on ";
 
 /// Pages in the folder of reports, and the folders of sources that they speak of.
-const PAGES: [(&str, &[&str]); 9] = [
+const PAGES: [(&str, &[&str]); 10] = [
+    ("films.md", &["crates/fit/src", "crates/vakonomic/src", "crates/chetaev/src"]),
     ("judge.md", &["validation/judge", "crates/judge/src", "crates/first-order/src"]),
     ("engine.md", &["validation/engine/src", "crates/chetaev/src", "crates/integrate/src", "crates/deltaq/src"]),
     (

@@ -19,7 +19,8 @@ pub struct FitArguments {
     pub films: Vec<PathBuf>,
     /// What is not known: parameters, start values; `NAME~VALUE` where the search begins,
     /// `NAME~MEAN±DEVIATION` what is known before, `NAME>=BOUND`. Each film has start values of its own and
-    /// shares parameters; `NAME@2` is the second film's own. Multipliers and costates at the start are
+    /// shares parameters; `NAME@2` is the second film's own; `start` is all coordinates and given velocities.
+    /// Multipliers and costates at the start are
     /// unknown anyway.
     #[arg(long, value_name = "NAME,…", value_delimiter = ',', required = true, allow_hyphen_values = true)]
     pub free: Vec<Unknown>,

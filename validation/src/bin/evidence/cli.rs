@@ -81,6 +81,8 @@ pub enum Command {
     Stability(StabilityArguments),
     /// Write the reference motions that other programs are held against.
     Benchmark(BenchmarkArguments),
+    /// Write the page on the shortest films that decide.
+    Films(FilmsArguments),
     /// Write the page on invariant measures and first integrals.
     Integrals(IntegralsArguments),
     /// Run the main job in memory and compare its verdicts with those in the reports folder.
@@ -158,6 +160,17 @@ pub struct BenchmarkArguments {
     /// Folder for the tables; `validation/benchmark` of the project's sources if left out.
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
+}
+
+/// `evidence films`.
+#[derive(Args, Debug)]
+pub struct FilmsArguments {
+    /// Scenes, the whole catalogue if left out.
+    #[arg(long, value_name = "NAME,…", value_delimiter = ',')]
+    pub scenes: Vec<String>,
+    /// Folder for the page.
+    #[arg(long, value_name = "DIR")]
+    pub out: PathBuf,
 }
 
 /// `evidence integrals`.

@@ -3,6 +3,7 @@
 
 mod benchmark_command;
 mod cli;
+mod films_command;
 mod integrals_command;
 mod main_job;
 mod random_command;
@@ -32,6 +33,7 @@ fn run(cli: Cli) -> Result<Answer> {
     match cli.command {
         None => main_job::run(&cli.job, quiet).map(Answer::from),
         Some(Command::Benchmark(arguments)) => benchmark_command::run(&arguments, quiet).map(Answer::from),
+        Some(Command::Films(arguments)) => films_command::run(&arguments, quiet).map(Answer::from),
         Some(Command::Integrals(arguments)) => integrals_command::run(&arguments, quiet).map(Answer::from),
         Some(Command::Reports(arguments)) => reports_command::run(&arguments).map(Answer::from),
         Some(Command::Scaling(arguments)) => scaling_command::run(&arguments, quiet).map(Answer::from),

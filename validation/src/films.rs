@@ -1,0 +1,82 @@
+//! The page on films: the shortest film that tells Chetaev's motion of a scene from every vakonomic one.
+
+use std::fmt::Write;
+
+use anyhow::Result;
+use deltaq::{CHETAEV, Settings, VAKONOMIC, choices_among};
+use equations::Formulation;
+use fit::{Aim, Design, Deviations, EXCLUDED, Film, Point, Question, Sampling, Unknown};
+use pages::Table;
+use program::{File, parallel};
+use scene::Scene;
+
+/// Samples per second, standard deviation of all columns in m and rad, starts of each search.
+const RATE: f64 = 60.0;
+const SIGMA: f64 = 1e-3;
+const STARTS: usize = 16;
+
+/// What films of a scene tell.
+struct Told {
+    seconds: f64,
+    point: Point,
+    shortest: Option<f64>,
+}
+
+/// `films.md`; `done` hears of every scene.
+///
+/// # Errors
+/// A scene that is not there.
+pub fn files(scenes: &[&str], done: impl Fn(&str) + Sync) -> Result<Vec<File>> {
+    let mut table = Table::new(["scene", "its own film", "shortest film"]);
+    let found = parallel::map(scenes, |name| {
+        let found = told(name);
+        done(name);
+        found
+    });
+    let mut short = 0;
+    for (name, found) in scenes.iter().zip(found) {
+        let (own, shortest) = match found {
+            Ok(Some(Told { seconds, point, shortest })) => {
+                short += usize::from(shortest.is_some_and(|length| length < 1.0));
+                let tells = if point.value >= EXCLUDED { "excluded at" } else { "cannot tell," };
+                let own = format!("{seconds} s: {tells} {:.1} σ, {} minima", point.value.sqrt(), point.minima);
+                (own, shortest.map_or("none found".into(), |length| format!("{length:.3} s")))
+            }
+            Ok(None) => continue,
+            Err(reason) => (format!("{reason}"), String::new()),
+        };
+        table.row(&[name, &own, &shortest]);
+    }
+    let mut text = String::from("# The shortest film that decides\n\n");
+    let _ = writeln!(
+        text,
+        "How long must the motion be filmed before no vakonomic motion fits it? {short} scenes need less than a second.\n\n\
+         The scene's own motion by Chetaev's equations, all coordinates at {RATE} Hz with errors of {SIGMA} m or rad, without \
+         noise. Vakonomic motions are fitted to it with start and μ₀ free, parameters as in the scene, from {STARTS} starts; \
+         the film decides where the least χ² that was found is {EXCLUDED} or more. *Its own film* has the duration of the \
+         scene; shortest films are looked for up to eight times that, to 2 %. *None found* is what is expected where a μ₀ \
+         makes the motions the same, and no more than that otherwise. A minimum that was missed makes a film look too good: \
+         lengths are lower bounds.\n\n\
+         `deltaq design SCENE --tell chetaev,vakonomic --free start --film 60Hz,1e-3,10s` asks the same; `--over` looks for \
+         motions that decide sooner.\n"
+    );
+    let _ = write!(text, "{table}");
+    Ok(vec![File { path: "films.md".into(), text }])
+}
+
+/// None for a scene without one of the two.
+fn told(name: &str) -> Result<Option<Told>> {
+    let scene: Scene = catalogue::find(name, &[])?;
+    let of = |wanted: &Formulation| choices_among(&scene, |f| *f == *wanted).into_iter().next();
+    let (Some(chetaev), Some(vakonomic)) = (of(CHETAEV), of(VAKONOMIC)) else { return Ok(None) };
+    let sampling = Sampling { rate: RATE, seconds: scene.duration, sigma: Some(SIGMA) };
+    let names: Vec<String> = scene.system.coordinates.iter().map(|c| c.name.clone()).collect();
+    let film = Film::planned(&scene, &names, sampling, &Deviations::default())?;
+    let unknowns = [Unknown::named("start")];
+    let settings = Settings { tolerance: 1e-9, max_steps: 2_000, ..Settings::default() };
+    let question = Question { unknowns: &unknowns, law: &[], starts: STARTS, robust: None, settings };
+    let aim = Aim::Tell(&chetaev, &vakonomic);
+    let design = Design::new(&scene, &[film], &question, &[], aim)?;
+    let point = design.point(&[])?;
+    Ok(Some(Told { seconds: scene.duration, point, shortest: design.shortest(&[]) }))
+}
