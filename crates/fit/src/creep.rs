@@ -5,12 +5,15 @@
 //! creeping motions tend to, and with 1/N from the least on that motions can be followed with.
 
 use crate::distribution::normal_tails;
-use crate::fit::{NORMAL, RISE, RISE_AT_BOUND};
+use crate::fit::{RISE, RISE_AT_BOUND};
+use crate::profile::NORMAL;
 use crate::search::{Stage, least};
 use crate::{Estimate, Fit, FitError, Problem};
 
-/// Halvings of where the search begins, to the least 1/N that motions are followed with.
+/// Halvings of where the search begins, to the least 1/N that motions are followed with, and times as many
+/// steps as there that these may take.
 const HALVINGS: i32 = 8;
+const STEPS: usize = 16;
 /// The end of an interval is found to this part.
 const CLOSE: f64 = 0.02;
 /// Steps outwards to it, by a factor of two.
@@ -19,7 +22,7 @@ const OUTWARDS: usize = 20;
 /// `problem` with a bound for its unknown `i`, 1/N: the least with which motions can be followed.
 pub(crate) fn followed(problem: &Problem, i: usize) -> Problem {
     let start = problem.start()[i];
-    let mut tried = problem.clone();
+    let mut tried = problem.limited(problem.start(), STEPS);
     let mut reaches = |slip: f64| {
         let mut theta = problem.start().to_vec();
         theta[i] = slip;

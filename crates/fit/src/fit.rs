@@ -4,7 +4,7 @@ use nalgebra::{DMatrix, DVector};
 
 use crate::distribution::normal_tails;
 use crate::minimum::Minimum;
-use crate::profile::Profile;
+use crate::profile::{NORMAL, Profile, SHOWN};
 use crate::residual_tests::{ResidualTest, residual_tests};
 use crate::search::{Found, Stage, least, scaled, search};
 use crate::{Film, FitError, Problem, Residual, Unknown};
@@ -12,11 +12,6 @@ use crate::{Film, FitError, Problem, Residual, Unknown};
 /// χ² by which a number of 95 % rises, and where it is at its bound: `½χ²₀ + ½χ²₁`.
 pub(crate) const RISE: f64 = 3.841_458_820_694_124;
 pub(crate) const RISE_AT_BOUND: f64 = 2.705_543_454_095_404;
-/// Standard deviations of 95 %.
-pub(crate) const NORMAL: f64 = 1.959_963_984_540_054;
-/// Smallest singular value over the largest, of a Jacobian with columns of length one, below which unknowns
-/// are not shown: what is left of derivatives that carry errors of 1e-9.
-pub(crate) const SHOWN: f64 = 1e-7;
 /// A change of residuals, as the length of a vector, that is none.
 const NOTHING: f64 = 1e-3;
 /// χ² at the ends of an interval of standard errors may be off by this part for them to be taken.
@@ -209,6 +204,24 @@ pub fn fit(problem: &Problem, spread: &dyn Fn(&str) -> bool, starts: usize, know
         reached: best.reached,
         residuals,
     })
+}
+
+/// How χ² rises above its least where the unknown of this name has these values and the others are fitted
+/// again; infinite where no motion is found. None where `fit` is not one of `problem` or has no such unknown.
+pub fn profile(problem: &Problem, fit: &Fit, name: &str, at: &[f64]) -> Option<Vec<f64>> {
+    let i = problem.unknowns().iter().position(|unknown| unknown.label() == name)?;
+    let own = fit.estimates.get(..problem.unknowns().len())?;
+    let theta: Vec<f64> = own.iter().map(|e| e.value).collect();
+    let errors: Vec<f64> = own.iter().map(|e| e.error).collect();
+    let (_, jacobian) = problem.clone().weighed(&theta, true).ok()?;
+    let best = Minimum { theta, chi_squared: fit.chi_squared, reached: fit.reached };
+    let mut profile = Profile::new(problem, &jacobian, &best, &errors, i);
+    // outwards on either side
+    let mut order: Vec<usize> = (0..at.len()).collect();
+    order.sort_by(|a, b| (at[*a] - best.theta[i]).abs().total_cmp(&(at[*b] - best.theta[i]).abs()));
+    let mut rises = vec![0.0; at.len()];
+    order.into_iter().for_each(|place| rises[place] = profile.rise(at[place]));
+    Some(rises)
 }
 
 /// The unknowns that change nothing at the minimum, ascending, the problem with these where the search began,

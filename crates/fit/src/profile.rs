@@ -10,11 +10,15 @@
 
 use nalgebra::{DMatrix, DVector, Dyn, SVD};
 
-use crate::fit::{NORMAL, SHOWN};
+use crate::Problem;
 use crate::minimum::Minimum;
 use crate::search::{Stage, least, scaled};
-use crate::{Fit, Problem};
 
+/// Standard deviations of 95 %.
+pub(crate) const NORMAL: f64 = 1.959_963_984_540_054;
+/// Smallest singular value over the largest, of a Jacobian with columns of length one, below which unknowns
+/// are not shown: what is left of derivatives that carry errors of 1e-9.
+pub(crate) const SHOWN: f64 = 1e-7;
 /// Steps outwards and steps in all to the end of a profile, and the part of the rise that they come to.
 const OUTWARDS: usize = 5;
 const STEPS: usize = 15;
@@ -24,24 +28,6 @@ const CHORDS: usize = 5;
 const LAST: f64 = 0.02;
 /// Distances are halved up to this many times.
 const HALVINGS: usize = 3;
-
-/// How χ² rises above its least where the unknown of this name has these values and the others are fitted
-/// again; infinite where no motion is found. None where `fit` is not one of `problem` or has no such unknown.
-pub fn profile(problem: &Problem, fit: &Fit, name: &str, at: &[f64]) -> Option<Vec<f64>> {
-    let i = problem.unknowns().iter().position(|unknown| unknown.label() == name)?;
-    let own = fit.estimates.get(..problem.unknowns().len())?;
-    let theta: Vec<f64> = own.iter().map(|e| e.value).collect();
-    let errors: Vec<f64> = own.iter().map(|e| e.error).collect();
-    let (_, jacobian) = problem.clone().weighed(&theta, true).ok()?;
-    let best = Minimum { theta, chi_squared: fit.chi_squared, reached: fit.reached };
-    let mut profile = Profile::new(problem, &jacobian, &best, &errors, i);
-    // outwards on either side
-    let mut order: Vec<usize> = (0..at.len()).collect();
-    order.sort_by(|a, b| (at[*a] - best.theta[i]).abs().total_cmp(&(at[*b] - best.theta[i]).abs()));
-    let mut rises = vec![0.0; at.len()];
-    order.into_iter().for_each(|place| rises[place] = profile.rise(at[place]));
-    Some(rises)
-}
 
 /// How χ² rises where unknown `i` is held and the others are fitted.
 pub(crate) struct Profile<'a> {

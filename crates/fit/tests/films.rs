@@ -46,7 +46,7 @@ fn covers(row: &Row, truth: &[(&str, f64)]) {
     }
 }
 
-fn times(end: f64) -> Vec<f64> {
+pub fn times(end: f64) -> Vec<f64> {
     (1..=(end * 60.0).round() as usize).map(|k| k as f64 / 60.0).collect()
 }
 
@@ -86,7 +86,7 @@ fn circles_are_vakonomic_and_straight_lines_are_both() {
 }
 
 /// x, y, φ of Chetaev's sledge: mathematics of the paper's first example.
-fn sledge(t: f64) -> Vec<f64> {
+pub fn sledge(t: f64) -> Vec<f64> {
     let (g, alpha, phi0, speed, omega) = (9.81_f64, 0.4_f64, 0.3_f64, 0.5_f64, 1.1_f64);
     let (slope, turn) = (g * alpha.sin(), omega * t);
     let ((s0, c0), (s1, c1)) = (phi0.sin_cos(), (phi0 + turn).sin_cos());
@@ -96,7 +96,7 @@ fn sledge(t: f64) -> Vec<f64> {
     vec![x, y, phi0 + turn]
 }
 
-const SLEDGE: [&str; 6] = ["x", "y", "phi", "x'", "phi'", "g~9"];
+pub const SLEDGE: [&str; 6] = ["x", "y", "phi", "x'", "phi'", "g~9"];
 
 #[test]
 fn a_sledge_is_chetaevs_and_its_epsilon_is_at_the_bound() {

@@ -3,6 +3,7 @@
 mod bounds;
 mod design;
 mod films;
+mod laws;
 mod noise;
 mod search;
 mod tables;

@@ -47,12 +47,12 @@ fn starts_that_a_beginning_cannot_tell_apart_are_followed() {
     }
 }
 
-/// At the ends of intervals of 95 % the least χ² of the others is higher by 3.84: by searches with that number
-/// held, each from where the one before came to, a tenth nearer to the minimum.
+/// At the ends of intervals of 95 % the least χ² of the others is higher by 3.84: by searches with that
+/// number held, each from where the one before came to, which was a tenth nearer to the minimum.
 #[test]
 fn intervals_end_where_searches_with_that_number_held_say() {
     let (scene, film) = small_ball_film(2);
-    let rows = fitted(&scene, &[film.clone()], &TABLE, &[]);
+    let rows = fitted(&scene, std::slice::from_ref(&film), &TABLE, &[]);
     let found = rows[1].fit.as_ref().unwrap();
     let settings = Settings { tolerance: 1e-9, ..Settings::default() };
     let (place, name) = (3, TABLE[3]);
@@ -81,7 +81,7 @@ fn rows_do_not_depend_on_those_beside_them() {
     let settings = Settings { tolerance: 1e-9, ..Settings::default() };
     let question = Question { unknowns: &unknowns, law: &[], starts: 4, robust: None, settings };
     let rows = |wanted: &[&equations::Formulation]| -> Vec<Row> {
-        fit_formulations(&scene, &[film.clone()], &question, &|f| wanted.contains(&f)).unwrap()
+        fit_formulations(&scene, std::slice::from_ref(&film), &question, &|f| wanted.contains(&f)).unwrap()
     };
     let both = rows(&[CHETAEV, VAKONOMIC]);
     for (row, formulation) in both.iter().zip([CHETAEV, VAKONOMIC]) {
