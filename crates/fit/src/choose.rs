@@ -29,8 +29,9 @@ pub struct Best {
 }
 
 impl Design {
-    /// The best films that were found, from a scan of `points` beside the corners; the scene's own where nothing
-    /// can be chosen. Over this many threads (0: as many as there are processors), on which no result depends.
+    /// The best films that were found, from a scan of `points` beside the corners; the scene's own where
+    /// nothing can be chosen. Over this many threads (0: as many as there are processors), on which no result
+    /// depends.
     ///
     /// # Errors
     /// The first reason where no point has motions.

@@ -29,8 +29,8 @@ fn question(unknowns: &[Unknown], starts: usize) -> Question<'_> {
     Question { unknowns, law: &[], starts, robust: None, settings: Settings { tolerance: 1e-9, ..Settings::default() } }
 }
 
-/// With an unknown drag two balls without spin show almost nothing of ε: one without spin beside one with twice
-/// the rate of the table show it some fifty times as well.
+/// With an unknown drag two balls without spin show almost nothing of ε: one without spin beside one with
+/// twice the rate of the table show it some fifty times as well.
 #[test]
 fn the_second_ball_is_spun_without_a_hint() {
     let scene = laboratory();

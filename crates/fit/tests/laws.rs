@@ -43,8 +43,8 @@ fn a_law_far_from_chetaevs_numbers_is_found() {
     assert!(rows[2].verdict == Verdict::Supported && low < 0.015 && 0.015 < high, "{low} to {high}");
 }
 
-/// Where Ω is not known, every motion of Chetaev's ball on the turning table is a vakonomic one: with Ω = 0 and
-/// `μ₀ = −m (x', y')` it runs on the same circle. No film tells them apart, however it is turned.
+/// Where Ω is not known, every motion of Chetaev's ball on the turning table is a vakonomic one: with Ω = 0
+/// and `μ₀ = −m (x', y')` it runs on the same circle. No film tells them apart, however it is turned.
 #[test]
 fn formulations_that_agree_for_other_parameters_are_not_told_apart() {
     let scene = built_in("turntable");

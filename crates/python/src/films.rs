@@ -26,7 +26,7 @@ pub(crate) struct _Fitted {
     /// The answer as JSON.
     #[pyo3(get)]
     answer: String,
-    /// By film: name, times of shape (k,), columns with their standard deviations, and what was seen, shape (k,).
+    /// By film: name, times of shape (k,), columns with standard deviations, and what was seen, shape (k,).
     #[pyo3(get)]
     films: Vec<Seen>,
 }
@@ -94,8 +94,8 @@ impl _Fitted {
         array(py, slopes, None, &[width])
     }
 
-    /// How χ² rises above its least where an unknown has these values, shape (k,), and the others are fitted again;
-    /// None where it has none of this name.
+    /// How χ² rises above its least where an unknown has these values, shape (k,), and the others are fitted
+    /// again; None where there is none of this name.
     fn rises(&self, py: Python<'_>, place: usize, name: &str, at: Vec<f64>) -> Option<Vec<f64>> {
         py.detach(|| {
             let rows = self.rows();

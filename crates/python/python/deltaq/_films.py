@@ -196,6 +196,7 @@ def fit(
     shape (k,) each; NaN for a gap. free: unknowns, "g", "x~0.1", "Omega~0.7±0.01", "x@2". sigma: standard deviation of all
     columns, or by column. law: "eps", "slip". known: "psi'@2" to a number of one film. Else as in the command.
 
+    >>> import numpy as np
     >>> times = np.linspace(0.05, 2, 40)
     >>> motion = sledge.solve("chetaev", times)
     >>> noise = 1e-3 * np.random.default_rng(2).normal(size=(2, 40))

@@ -291,6 +291,7 @@ class System:
         shape (k,) each; NaN for a gap. free: unknowns, "g", "x~0.1", "Omega~0.7±0.01", "x@2". sigma: standard deviation of all
         columns, or by column. law: "eps", "slip". known: "psi'@2" to a number of one film. Else as in the command.
 
+        >>> import numpy as np
         >>> times = np.linspace(0.05, 2, 40)
         >>> motion = sledge.solve("chetaev", times)
         >>> noise = 1e-3 * np.random.default_rng(2).normal(size=(2, 40))
@@ -673,7 +674,7 @@ class _Fitted:
     answer: Final[str]
     """The answer as JSON."""
     films: Final[list[tuple[str, list[float], list[tuple[str, float, list[float]]]]]]
-    """By film: name, times of shape (k,), columns with their standard deviations, and what was seen, shape (k,)."""
+    """By film: name, times of shape (k,), columns with standard deviations, and what was seen, shape (k,)."""
     def unknowns(self, place: int) -> list[tuple[str, float | None]]:
         """Names of the unknowns of formulation `place`, in the order of theta, with the least that each can be."""
     def chi_squared(self, place: int, theta: _Floats) -> float:
@@ -681,8 +682,8 @@ class _Fitted:
     def slopes(self, place: int, theta: _Floats) -> _Array:
         """Its derivatives, shape (P,); zero where there is no motion."""
     def rises(self, place: int, name: str, at: list[float]) -> list[float] | None:
-        """How χ² rises above its least where an unknown has these values, shape (k,), and the others are fitted again;
-        None where it has none of this name.
+        """How χ² rises above its least where an unknown has these values, shape (k,), and the others are fitted
+        again; None where there is none of this name.
         """
     def residuals(self, place: int) -> list[tuple[int, int, float, float]]:
         """Residuals of formulation `place`: film, column, time, (fitted - seen)/sigma."""
