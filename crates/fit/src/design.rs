@@ -10,6 +10,7 @@
 //! that several starts found. The search over d: the scene's own numbers, corners, and points that fill the
 //! box evenly; then from the best of these along the axes, by steps that become shorter.
 
+use std::cell::RefCell;
 use std::str::FromStr;
 
 use deltaq::Choice;
@@ -223,7 +224,7 @@ impl Design {
     /// # Errors
     /// [`FitError::NoMotion`].
     pub fn point(&self, d: &[f64]) -> Result<Point, FitError> {
-        self.tried(d, 1.0, self.starts)
+        self.tried(d, 1.0, self.starts, None)
     }
 
     /// The same by four times as many starts: the least χ² that is found is less or equal.
@@ -231,10 +232,10 @@ impl Design {
     /// # Errors
     /// As [`Design::point`].
     pub fn point_again(&self, d: &[f64]) -> Result<Point, FitError> {
-        self.tried(d, 1.0, 4 * self.starts)
+        self.tried(d, 1.0, 4 * self.starts, None)
     }
 
-    fn tried(&self, d: &[f64], longer: f64, starts: usize) -> Result<Point, FitError> {
+    fn tried(&self, d: &[f64], longer: f64, starts: usize, near: Option<&[f64]>) -> Result<Point, FitError> {
         let Some(rival) = &self.rival else {
             let problem = self.truth.at(d);
             let shown = standard_errors(&problem, problem.start())?;
@@ -243,7 +244,8 @@ impl Design {
         };
         let films = self.truth.problem.foreseen(&self.truth.theta(d), longer);
         let films = films.map_err(|reason| FitError::NoMotion { starts: 1, reason })?;
-        let problem = rival.at(d).of_films(films)?;
+        let mut problem = rival.at(d).of_films(films)?;
+        near.into_iter().for_each(|near| problem.begin_at(near));
         let spread = |name: &str| is_constant(name) || LAW.contains(&name);
         let found = search(&problem, &spread, starts, false)?;
         let labels = problem.unknowns().iter().map(crate::Unknown::label);
@@ -258,27 +260,45 @@ impl Design {
     }
 
     /// The length of the shortest film of the motion with the numbers d that tells the formulations apart,
-    /// χ² ≥ [`EXCLUDED`], to 2 %, up to eight times as long as the films; none where none was found.
+    /// χ² ≥ [`EXCLUDED`], to 2 %, up to eight times as long as the films; none where none was found. Where
+    /// four times as many starts find less there, lengths are looked for from these.
     pub fn shortest(&self, d: &[f64]) -> Option<f64> {
         self.rival.as_ref()?;
-        let tells = |longer: f64| Some(self.tried(d, longer, self.starts).ok()?.value >= EXCLUDED);
-        let (mut low, mut high) = (0.0, None);
-        for longer in LENGTHS {
-            if tells(longer)? {
-                high = Some(longer);
-                break;
+        // what fits a film is a start for a longer one
+        let near: RefCell<Option<Vec<f64>>> = RefCell::new(None);
+        let tells = |longer: f64, starts: usize| {
+            let found = self.tried(d, longer, starts, near.borrow().as_deref()).ok()?;
+            let tells = found.value >= EXCLUDED;
+            if !tells {
+                near.replace(Some(found.numbers.into_iter().map(|(_, x)| x).collect()));
             }
-            low = longer;
-        }
-        let mut high = high?;
-        while high - low > CLOSE * high {
-            // a film that is too short for its unknowns does not tell
-            let middle = if low > 0.0 { 0.5 * (low + high) } else { high / 1.5 };
-            match tells(middle).unwrap_or(false) {
-                true => high = middle,
-                false => low = middle,
-            }
-        }
-        Some(high * self.length)
+            Some(tells)
+        };
+        let found = shortest(&|longer| tells(longer, self.starts))?;
+        let sure = tells(found, 4 * self.starts)?;
+        let found = if sure { found } else { shortest(&|longer| tells(longer, 4 * self.starts))? };
+        Some(found * self.length)
     }
+}
+
+/// The least length over that of the films at which these tell, none where there is no motion.
+fn shortest(tells: &dyn Fn(f64) -> Option<bool>) -> Option<f64> {
+    let (mut low, mut high) = (0.0, None);
+    for longer in LENGTHS {
+        if tells(longer)? {
+            high = Some(longer);
+            break;
+        }
+        low = longer;
+    }
+    let mut high = high?;
+    while high - low > CLOSE * high {
+        // a film that is too short for its unknowns does not tell
+        let middle = if low > 0.0 { 0.5 * (low + high) } else { high / 1.5 };
+        match tells(middle).unwrap_or(false) {
+            true => high = middle,
+            false => low = middle,
+        }
+    }
+    Some(high)
 }

@@ -35,8 +35,8 @@ pub struct DesignArguments {
     /// Standard deviations of columns by name: `phi=1mrad`.
     #[arg(long, value_name = "NAME=σ,…", value_delimiter = ',', allow_hyphen_values = true)]
     pub sigma: Vec<String>,
-    /// What will not be known, as for `deltaq fit`: `start,g`. Multipliers and costates at the start are unknown
-    /// anyway.
+    /// What will not be known, as for `deltaq fit`: `start,g`. Multipliers and costates at the start are
+    /// unknown anyway.
     #[arg(long, value_name = "NAME,…", value_delimiter = ',', allow_hyphen_values = true)]
     pub free: Vec<Unknown>,
     /// Numbers of the law of first order that will not be known: `eps`, `slip`.
