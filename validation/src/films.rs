@@ -83,7 +83,7 @@ fn told(name: &str) -> Result<Option<Told>> {
     let film = Film::planned(&scene, &names, sampling, &Deviations::default())?;
     let unknowns = [Unknown::named("start")];
     let settings = Settings { tolerance: 1e-9, max_steps: 2_000, ..Settings::default() };
-    let question = Question { unknowns: &unknowns, law: &[], starts: STARTS, robust: None, settings };
+    let question = Question { unknowns: &unknowns, law: &[], starts: STARTS, robust: None, settings, threads: 0 };
     let aim = Aim::Tell(&chetaev, &vakonomic);
     let design = Design::new(&scene, &[film], &question, &[], aim)?;
     let point = design.point_again(&[])?;

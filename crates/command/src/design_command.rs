@@ -34,6 +34,7 @@ pub fn run(arguments: &DesignArguments) -> Result<Answer> {
         starts: arguments.starts,
         robust: None,
         settings: Settings { tolerance: arguments.tolerance, max_steps: arguments.max_steps, ..Settings::default() },
+        threads: parallel::threads(),
     };
     question.settings.check()?;
     let choices: Vec<Choice> = match (&estimated, &arguments.tell[..]) {

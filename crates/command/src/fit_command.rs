@@ -6,7 +6,7 @@ use anyhow::{Context, Result, bail};
 use deltaq::{Settings, VAKONOMIC_COSTATE, formulation};
 use equations::Formulation;
 use fit::{Deviations, Estimate, Film, Fit, Question, Row, Unknown, Verdict, fit_formulations, fit_value, quantity};
-use program::{Answer, TextOrJson, pretty, write_all};
+use program::{Answer, TextOrJson, parallel, pretty, write_all};
 
 use crate::cli::FitArguments;
 use crate::fit_pictures::pictures;
@@ -38,6 +38,7 @@ pub fn run(arguments: &FitArguments) -> Result<Answer> {
         starts: arguments.starts,
         robust: arguments.robust.then_some(ROBUST),
         settings: Settings { tolerance: arguments.tolerance, max_steps: arguments.max_steps, ..Settings::default() },
+        threads: parallel::threads(),
     };
     question.settings.check()?;
     let all = arguments.formulations.iter().any(|name| name == "all");

@@ -13,10 +13,14 @@ use crate::creep;
 use crate::length::length_that_tells;
 use crate::search::begun;
 use crate::unknown::with_start;
-use crate::{Film, Fit, FitError, Problem, Row, Unknown, Verdict, fit, verdicts};
+use crate::{EXCLUDED, Film, Fit, FitError, Problem, Row, Unknown, Verdict, fit, verdicts};
 
 /// Times as many starts of a search for constants, where no formulation fits.
 const MORE_STARTS: usize = 4;
+
+/// Further groups of starts for a formulation that would be excluded with no more than this χ² per residual.
+const GROUPS: usize = 3;
+const FAR: f64 = 100.0;
 
 /// Numbers of the law of first order.
 pub(crate) const LAW: [&str; 2] = ["epsilon", SLIP];
@@ -39,6 +43,8 @@ pub struct Question<'a> {
     pub robust: Option<f64>,
     /// How motions are integrated.
     pub settings: Settings,
+    /// Threads, which share the formulations; 0: as many as there are processors. No result depends on it.
+    pub threads: usize,
 }
 
 /// Fits every formulation that is wanted and gives verdicts. One that cannot be fitted has the reason.
@@ -63,7 +69,7 @@ pub fn fit_formulations(
     let choices = choices_among(&scene, |f| if is_law(f) { *f == *FIRST_ORDER && has_law } else { wanted(f) });
     // a law that contains Chetaev's begins there
     let (laws, plain): (Vec<Choice>, Vec<Choice>) = choices.into_iter().partition(|c| is_law(c.formulation));
-    let mut fits = fit_choices(&scene, plain, films, question, None);
+    let mut fits = fit_choices(&scene, plain, films, question, 0);
     let near = fits.iter().find(|(known, _)| known.formulation == CHETAEV);
     let near = near.and_then(|(_, fit)| fit.as_ref().ok()).map(|(_, fit)| fit.clone());
     let law = |choice: &Choice, near: Option<&Fit>| fit_law(&scene, choice, films, question, near);
@@ -73,7 +79,7 @@ pub fn fit_formulations(
     if !fits.iter().any(fits_well) {
         let more = Question { starts: MORE_STARTS * question.starts, ..question.clone() };
         let again = fits.iter().map(|(choice, _)| choice).filter(|choice| has_constants(choice)).cloned().collect();
-        let again = fit_choices(&scene, again, films, &more, None);
+        let again = fit_choices(&scene, again, films, &more, 0);
         for ((_, fit), (_, again)) in fits.iter_mut().filter(|(choice, _)| has_constants(choice)).zip(again) {
             let least = fit.as_ref().map_or(f64::INFINITY, |(_, fit)| fit.chi_squared);
             if again.as_ref().is_ok_and(|(_, again)| again.chi_squared < least) {
@@ -85,6 +91,30 @@ pub fn fit_formulations(
             let again = law(choice, None);
             if again.as_ref().is_ok_and(|(_, again)| again.chi_squared < least) {
                 *fit = again;
+            }
+        }
+    }
+    // before one is excluded whose residuals are not far off, other starts
+    for group in 1..=GROUPS {
+        let found = fits.iter().filter_map(|(_, fit)| fit.as_ref().ok()).map(|(_, fit)| fit.chi_squared);
+        let least = found.fold(f64::INFINITY, f64::min);
+        let is_doubtful = |(choice, fit): &(Choice, Fitted)| {
+            let is_near = |fit: &Fit| {
+                fit.chi_squared >= least + EXCLUDED && fit.chi_squared < FAR * (fit.freedom as f64).max(1.0)
+            };
+            has_constants(choice) && fit.as_ref().is_ok_and(|(_, fit)| is_near(fit))
+        };
+        let places: Vec<usize> = (0..fits.len()).filter(|&i| is_doubtful(&fits[i])).collect();
+        let again = places.iter().map(|&i| fits[i].0.clone()).collect();
+        let again = fit_choices(&scene, again, films, question, group * question.starts);
+        for (place, (_, again)) in places.into_iter().zip(again) {
+            let (Ok((_, known)), Ok((problem, mut found))) = (&mut fits[place].1, again) else { continue };
+            let starts = known.starts + found.starts;
+            if found.chi_squared < known.chi_squared {
+                found.starts = starts;
+                fits[place].1 = Ok((problem, found));
+            } else {
+                known.starts = starts;
             }
         }
     }
@@ -130,22 +160,26 @@ fn own(scene: &Scene, choice: &Choice, question: &Question) -> Vec<Unknown> {
     law.iter().cloned().chain(constants).collect()
 }
 
-/// Each of these fitted, over threads: what they find does not depend on how many there are. All begin where
-/// those of a law that they contain are `near`.
+/// Each of these fitted, from starts of the search that are counted from `first` on; over threads: what they
+/// find does not depend on how many there are.
 fn fit_choices(
     scene: &Scene,
     choices: Vec<Choice>,
     films: &[Film],
     question: &Question,
-    near: Option<&Fit>,
+    first: usize,
 ) -> Vec<(Choice, Fitted)> {
-    let problems: Vec<_> =
-        choices.iter().map(|choice| Mutex::new(Some(problem_of(scene, choice, films, question)))).collect();
+    let problem = |choice: &Choice| {
+        let mut problem = problem_of(scene, choice, films, question)?;
+        problem.first = first;
+        Ok::<_, FitError>(problem)
+    };
+    let problems: Vec<_> = choices.iter().map(|choice| Mutex::new(Some(problem(choice)))).collect();
     let is_of_law = |name: &str| question.law.iter().any(|u| u.name == name);
     let (starts, is_of_law): (usize, &(dyn Fn(&str) -> bool + Sync)) = (question.starts, &is_of_law);
-    let fits = over_threads(0, choices.len(), |i| {
+    let fits = over_threads(question.threads, choices.len(), |i| {
         let problem = problems[i].lock().ok().and_then(|mut own| own.take()).expect("each is taken once")?;
-        fit_one(problem, near, is_of_law, starts)
+        fit_one(problem, None, is_of_law, starts)
     });
     choices.into_iter().zip(fits).collect()
 }

@@ -40,7 +40,12 @@ pub(crate) fn joined(
 ) -> Result<(Problem, Fit), FitError> {
     let (own, kept) = match kept {
         Ok(kept) => kept,
-        Err(_) => return Ok((problem, creeping?)),
+        Err(_) => {
+            let mut fit = creeping?;
+            let slip = &mut fit.estimates[i].interval[0];
+            *slip = if *slip <= problem.unknowns()[i].bound.unwrap_or(0.0) { 0.0 } else { *slip };
+            return Ok((problem, fit));
+        }
     };
     let least = problem.unknowns()[i].bound.unwrap_or(0.0);
     if let Ok(mut fit) = creeping {

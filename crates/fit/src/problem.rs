@@ -21,6 +21,8 @@ pub struct Problem {
     start: Vec<f64>,
     /// By unknown, whether it is a parameter of the scene.
     parameters: Vec<bool>,
+    /// Number of the first start of a search.
+    pub(crate) first: usize,
     robust: Option<f64>,
     /// `(θ − mean)/deviation` of unknowns that are held.
     held: Vec<f64>,
@@ -68,7 +70,7 @@ impl Problem {
         let value = |unknown: &Unknown| unknown.start.unwrap_or_else(|| value_of(scene, &unknown.name));
         let start = unknowns.iter().map(value).collect();
         let parameters = unknowns.iter().map(|unknown| is_parameter(scene, &unknown.name)).collect();
-        Ok(Problem { parts, unknowns, start, parameters, robust: None, held: Vec::new() })
+        Ok(Problem { parts, unknowns, start, parameters, first: 0, robust: None, held: Vec::new() })
     }
 
     /// Residuals above this size count linearly (Huber); 1.345 costs 5 % where errors are normal.

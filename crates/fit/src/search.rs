@@ -69,7 +69,7 @@ pub fn search(problem: &Problem, spread: &dyn Fn(&str) -> bool, starts: usize, k
     let (scale, mut reason) = scales(&mut short.clone());
     let (mut minima, mut tried) = (Vec::new(), 0);
     if !known {
-        let begun = (0..starts).map(|number| moved(problem, &scale, spread, number));
+        let begun = (0..starts).map(|number| moved(problem, &scale, spread, problem.first + number));
         tried += starts;
         minima = followed(problem, short, &scale, begun.collect(), &mut reason)?;
         minima = refined(problem, minima, &scale, Stage::Rough, &mut reason);
@@ -254,7 +254,7 @@ fn screened(problem: &Problem, spread: &dyn Fn(&str) -> bool, starts: usize) -> 
     for number in 1..starts {
         // far ones and near ones: nothing is linear as far as the extent of the film
         let nearer: Vec<f64> = scale.iter().map(|s| s * 0.5_f64.powi(number as i32 % NEARER)).collect();
-        let start = moved(problem, &nearer, spread, number);
+        let start = moved(problem, &nearer, spread, problem.first + number);
         if let Ok((values, _)) = evaluated.weighed(&start.theta, false) {
             others.push(Minimum { chi_squared: values.norm_squared(), ..start });
         }

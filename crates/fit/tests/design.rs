@@ -26,7 +26,14 @@ fn film(scene: &Scene, columns: &[&str], times: &str) -> Film {
 }
 
 fn question(unknowns: &[Unknown], starts: usize) -> Question<'_> {
-    Question { unknowns, law: &[], starts, robust: None, settings: Settings { tolerance: 1e-9, ..Settings::default() } }
+    Question {
+        unknowns,
+        law: &[],
+        starts,
+        robust: None,
+        settings: Settings { tolerance: 1e-9, ..Settings::default() },
+        threads: 0,
+    }
 }
 
 /// With an unknown drag two balls without spin show almost nothing of ε: one without spin beside one with

@@ -79,7 +79,7 @@ fn rows_do_not_depend_on_those_beside_them() {
     let (scene, film) = small_ball_film(2);
     let unknowns: Vec<Unknown> = TABLE.iter().map(|name| name.parse().unwrap()).collect();
     let settings = Settings { tolerance: 1e-9, ..Settings::default() };
-    let question = Question { unknowns: &unknowns, law: &[], starts: 4, robust: None, settings };
+    let question = Question { unknowns: &unknowns, law: &[], starts: 4, robust: None, settings, threads: 0 };
     let rows = |wanted: &[&equations::Formulation]| -> Vec<Row> {
         fit_formulations(&scene, std::slice::from_ref(&film), &question, &|f| wanted.contains(&f)).unwrap()
     };

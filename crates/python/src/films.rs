@@ -152,7 +152,7 @@ impl System {
         let robust = robust.then_some(ROBUST);
         let own = films.clone();
         let work = move || {
-            let question = Question { unknowns: &unknowns, law: &law, starts, robust, settings };
+            let question = Question { unknowns: &unknowns, law: &law, starts, robust, settings, threads: 0 };
             let wanted =
                 |f: &Formulation| if all { *f != *VAKONOMIC_COSTATE } else { named.iter().any(|own| **own == *f) };
             let rows = fit_formulations(&scene, &own, &question, &wanted)?;
@@ -213,7 +213,7 @@ impl System {
                 [own, ..] => Aim::Estimate(own, &unknown),
                 [] => return Err(FitError::NoUnknown),
             };
-            let question = Question { unknowns: &unknowns, law: &law, starts, robust: None, settings };
+            let question = Question { unknowns: &unknowns, law: &law, starts, robust: None, settings, threads: 0 };
             let design = Design::new(scene, &films, &question, &over, aim)?;
             let best = design.best(points, threads)?;
             let shortest = (best.best.value >= EXCLUDED).then(|| design.shortest(&best.best.at)).flatten();
