@@ -25,7 +25,7 @@ pub fn run(arguments: &DesignArguments) -> Result<Answer> {
     let films = vec![film; usize::from(arguments.films)];
     let mut law: Vec<Unknown> = arguments.law.iter().map(Unknown::of_law).collect();
     let estimated = arguments.estimate.as_ref().map(|name| Unknown::named(name).of_law());
-    law.extend(estimated.clone().filter(|u| u.name != "eps" && ["epsilon", "slip"].contains(&u.name.as_str())));
+    law.extend(estimated.clone().filter(|u| ["epsilon", "slip"].contains(&u.name.as_str())));
     law.dedup_by(|b, a| a.name == b.name);
     let scene = with_law(&scene, &law);
     let question = Question {

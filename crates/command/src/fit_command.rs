@@ -5,14 +5,13 @@ use std::fmt::Write;
 use anyhow::{Context, Result, bail};
 use deltaq::{Settings, VAKONOMIC_COSTATE, formulation};
 use equations::Formulation;
-use fit::{Deviations, Estimate, Film, Fit, Question, Row, Unknown, Verdict, fit_formulations, fit_value, quantity};
+use fit::{
+    Deviations, Estimate, Film, Fit, Question, ROBUST, Row, Unknown, Verdict, fit_formulations, fit_value, quantity,
+};
 use program::{Answer, TextOrJson, parallel, pretty, write_all};
 
 use crate::cli::FitArguments;
 use crate::fit_pictures::pictures;
-
-/// Residuals above this size count linearly with `--robust`.
-const ROBUST: f64 = 1.345;
 
 /// Fits every formulation to the films.
 ///

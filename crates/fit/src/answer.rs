@@ -11,16 +11,17 @@ use scene::Scene;
 
 use crate::creep;
 use crate::length::length_that_tells;
-use crate::search::begun;
+use crate::search::{POOR, begun};
 use crate::unknown::with_start;
 use crate::{EXCLUDED, Film, Fit, FitError, Problem, Row, Unknown, Verdict, fit, verdicts};
 
 /// Times as many starts of a search for constants, where no formulation fits.
 const MORE_STARTS: usize = 4;
 
-/// Further groups of starts for a formulation that would be excluded with no more than this χ² per residual.
+/// Residuals above this size count linearly where outliers are to count little.
+pub const ROBUST: f64 = 1.345;
+/// Further groups of starts for a formulation that would be excluded and is not poor.
 const GROUPS: usize = 3;
-const FAR: f64 = 100.0;
 
 /// Numbers of the law of first order.
 pub(crate) const LAW: [&str; 2] = ["epsilon", SLIP];
@@ -81,17 +82,10 @@ pub fn fit_formulations(
         let again = fits.iter().map(|(choice, _)| choice).filter(|choice| has_constants(choice)).cloned().collect();
         let again = fit_choices(&scene, again, films, &more, 0);
         for ((_, fit), (_, again)) in fits.iter_mut().filter(|(choice, _)| has_constants(choice)).zip(again) {
-            let least = fit.as_ref().map_or(f64::INFINITY, |(_, fit)| fit.chi_squared);
-            if again.as_ref().is_ok_and(|(_, again)| again.chi_squared < least) {
-                *fit = again;
-            }
+            keep_less(fit, again);
         }
         for (choice, fit) in fits.iter_mut().filter(|(choice, _)| is_law(choice.formulation)) {
-            let least = fit.as_ref().map_or(f64::INFINITY, |(_, fit)| fit.chi_squared);
-            let again = law(choice, None);
-            if again.as_ref().is_ok_and(|(_, again)| again.chi_squared < least) {
-                *fit = again;
-            }
+            keep_less(fit, law(choice, None));
         }
     }
     // before one is excluded whose residuals are not far off, other starts
@@ -100,7 +94,7 @@ pub fn fit_formulations(
         let least = found.fold(f64::INFINITY, f64::min);
         let is_doubtful = |(choice, fit): &(Choice, Fitted)| {
             let is_near = |fit: &Fit| {
-                fit.chi_squared >= least + EXCLUDED && fit.chi_squared < FAR * (fit.freedom as f64).max(1.0)
+                fit.chi_squared >= least + EXCLUDED && fit.chi_squared < POOR * (fit.freedom as f64).max(1.0)
             };
             has_constants(choice) && fit.as_ref().is_ok_and(|(_, fit)| is_near(fit))
         };
@@ -108,14 +102,9 @@ pub fn fit_formulations(
         let again = places.iter().map(|&i| fits[i].0.clone()).collect();
         let again = fit_choices(&scene, again, films, question, group * question.starts);
         for (place, (_, again)) in places.into_iter().zip(again) {
-            let (Ok((_, known)), Ok((problem, mut found))) = (&mut fits[place].1, again) else { continue };
-            let starts = known.starts + found.starts;
-            if found.chi_squared < known.chi_squared {
-                found.starts = starts;
-                fits[place].1 = Ok((problem, found));
-            } else {
-                known.starts = starts;
-            }
+            let starts = [&fits[place].1, &again].map(|fit| fit.as_ref().map_or(0, |(_, fit)| fit.starts));
+            keep_less(&mut fits[place].1, again);
+            fits[place].1.iter_mut().for_each(|(_, fit)| fit.starts = starts[0] + starts[1]);
         }
     }
     let plain = |(choice, fit): &(Choice, Fitted)| {
@@ -133,6 +122,14 @@ pub fn fit_formulations(
             .collect();
     }
     Ok(rows)
+}
+
+/// The fit of less χ².
+fn keep_less(known: &mut Fitted, again: Fitted) {
+    let least = known.as_ref().map_or(f64::INFINITY, |(_, fit)| fit.chi_squared);
+    if again.as_ref().is_ok_and(|(_, again)| again.chi_squared < least) {
+        *known = again;
+    }
 }
 
 /// The scene with the parameters of the law of first order that it lacks, so that it has that formulation.

@@ -51,7 +51,7 @@ mod search;
 mod unknown;
 mod verdict;
 
-pub use answer::{Question, fit_formulations, with_law};
+pub use answer::{Question, ROBUST, fit_formulations, with_law};
 pub use choose::Best;
 pub use design::{Aim, Chosen, Design, Point, Range};
 pub use distribution::{chi_squared_tail, normal_tails};

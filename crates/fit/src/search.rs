@@ -36,7 +36,7 @@ const HALVINGS: i32 = 10;
 const FITS: f64 = 4.0;
 const HOPELESS: f64 = 100.0;
 /// χ² per residual above which digits of χ² are nothing to look for.
-const POOR: f64 = 100.0;
+pub(crate) const POOR: f64 = 100.0;
 /// Minima up to this many times the least are looked at to the last digit, and where residuals are many
 /// deviations.
 const CLOSE: [f64; 2] = [1.5, 1.05];

@@ -5,7 +5,7 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 use deltaq::{Settings, VAKONOMIC_COSTATE};
 use equations::Formulation;
 use fit::{
-    Aim, Design, Deviations, EXCLUDED, Film, FitError, Question, Range, Row, Sampling, Unknown, design_value,
+    Aim, Design, Deviations, EXCLUDED, Film, FitError, Question, ROBUST, Range, Row, Sampling, Unknown, design_value,
     fit_formulations, fit_value, profile, with_law,
 };
 use integrate::Interrupt;
@@ -15,9 +15,6 @@ use pyo3::prelude::*;
 use crate::arrays::{Array, Floats, array};
 use crate::system::System;
 use crate::{arguments, background, errors};
-
-/// Residuals above this size count linearly where outliers are to count little.
-const ROBUST: f64 = 1.345;
 
 /// Fits of formulations to films, to be asked further.
 #[pyclass(frozen, module = "deltaq")]

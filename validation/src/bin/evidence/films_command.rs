@@ -3,14 +3,13 @@
 use anyhow::Result;
 
 use crate::cli::FilmsArguments;
+use crate::integrals_command::asked;
 use program::{parallel, write_all};
 use validation::films::files;
 
 /// Writes the page.
 pub(crate) fn run(arguments: &FilmsArguments, quiet: bool) -> Result<String> {
-    let known: Vec<&str> = catalogue::built_in().map(|(name, _)| *name).collect();
-    let asked: Vec<&str> = arguments.scenes.iter().map(String::as_str).collect();
-    let scenes = if asked.is_empty() { known } else { asked };
+    let scenes = asked(&arguments.scenes)?;
     let bar = parallel::progress(scenes.len(), quiet);
     let files = files(&scenes, |name| {
         bar.set_message(name.to_string());
