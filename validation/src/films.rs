@@ -76,16 +76,17 @@ pub fn files(scenes: &[&str], done: impl Fn(&str) + Sync) -> Result<Vec<File>> {
 /// None for a scene without one of the two.
 fn told(name: &str) -> Result<Option<Told>> {
     let scene: Scene = catalogue::find(name, &[])?;
-    let of = |wanted: &Formulation| choices_among(&scene, |f| *f == *wanted).into_iter().next();
-    let (Some(chetaev), Some(vakonomic)) = (of(CHETAEV), of(VAKONOMIC)) else { return Ok(None) };
+    let lacks = |wanted: &Formulation| choices_among(&scene, |f| *f == *wanted).is_empty();
+    if lacks(CHETAEV) || lacks(VAKONOMIC) {
+        return Ok(None);
+    }
     let sampling = Sampling { rate: RATE, seconds: scene.duration, sigma: Some(SIGMA) };
     let names: Vec<String> = scene.system.coordinates.iter().map(|c| c.name.clone()).collect();
     let film = Film::planned(&scene, &names, sampling, &Deviations::default())?;
     let unknowns = [Unknown::named("start")];
     let settings = Settings { tolerance: 1e-9, max_steps: 2_000, ..Settings::default() };
     let question = Question { unknowns: &unknowns, law: &[], starts: STARTS, robust: None, settings, threads: 0 };
-    let aim = Aim::Tell(&chetaev, &vakonomic);
-    let design = Design::new(&scene, &[film], &question, &[], aim)?;
+    let design = Design::new(&scene, &[film], &question, &[], &Aim::Tell(CHETAEV, VAKONOMIC))?;
     let point = design.point_again(&[])?;
     Ok(Some(Told { seconds: scene.duration, point, shortest: design.shortest(&[]) }))
 }

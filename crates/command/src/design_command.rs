@@ -3,9 +3,8 @@
 use std::fmt::Write;
 
 use anyhow::{Context, Result, bail};
-use deltaq::{CHETAEV, Choice, FIRST_ORDER, Settings, choices_among};
-use equations::Formulation;
-use fit::{Aim, Best, Design, Deviations, EXCLUDED, Film, Point, Question, Unknown, design_value, with_law};
+use deltaq::Settings;
+use fit::{Aim, Best, Design, Deviations, EXCLUDED, Film, Point, Question, design_value};
 use program::{Answer, TextOrJson, parallel, pretty};
 use scene::Scene;
 
@@ -23,55 +22,35 @@ pub fn run(arguments: &DesignArguments) -> Result<Answer> {
     let deviations = Deviations::written(&arguments.sigma).context("--sigma")?;
     let film = Film::planned(&scene, &arguments.columns, arguments.film, &deviations)?;
     let films = vec![film; usize::from(arguments.films)];
-    let mut law: Vec<Unknown> = arguments.law.iter().map(Unknown::of_law).collect();
-    let estimated = arguments.estimate.as_ref().map(|name| Unknown::named(name).of_law());
-    law.extend(estimated.clone().filter(|u| ["epsilon", "slip"].contains(&u.name.as_str())));
-    law.dedup_by(|b, a| a.name == b.name);
-    let scene = with_law(&scene, &law);
     let question = Question {
         unknowns: &arguments.free,
-        law: &law,
+        law: &arguments.law,
         starts: arguments.starts,
         robust: None,
         settings: Settings { tolerance: arguments.tolerance, max_steps: arguments.max_steps, ..Settings::default() },
         threads: parallel::threads(),
     };
     question.settings.check()?;
-    let choices: Vec<Choice> = match (&estimated, &arguments.tell[..]) {
-        (Some(_), _) => vec![first(&scene, if law.is_empty() { CHETAEV } else { FIRST_ORDER })?],
-        (None, wanted) => wanted.iter().map(|own| first(&scene, own)).collect::<Result<_>>()?,
-    };
-    let aim = match (&estimated, &choices[..]) {
-        (Some(unknown), [choice]) => Aim::Estimate(choice, &unknown.name),
-        (None, [truth, rival]) if truth.formulation != rival.formulation => Aim::Tell(truth, rival),
+    let aim = match (&arguments.estimate, &arguments.tell[..]) {
+        (Some(name), _) => Aim::Estimate(name.clone()),
+        (None, &[truth, rival]) => Aim::Tell(truth, rival),
         _ => bail!("--tell asks for two formulations"),
     };
-    let design = Design::new(&scene, &films, &question, &arguments.over, aim)?;
+    let design = Design::new(&scene, &films, &question, &arguments.over, &aim)?;
     let best = design.best(arguments.points as usize, parallel::threads())?;
-    let shortest = (best.best.value >= EXCLUDED).then(|| design.shortest(&best.best.at)).flatten();
-    let found = Found { scene: &scene, films: &films, design: &design, aim, best, shortest };
+    let found = Found { scene: &scene, films: &films, design: &design, best };
     Ok(match arguments.format {
         TextOrJson::Text => found.text(),
-        TextOrJson::Json => pretty("design", &design_value(&scene, &films, (&design, aim), &found.best, shortest)),
+        TextOrJson::Json => pretty("design", &design_value(&scene, &films, &design, &found.best)),
     }
     .into())
-}
-
-/// The first choice of a formulation.
-fn first(scene: &Scene, wanted: &Formulation) -> Result<Choice> {
-    match choices_among(scene, |f| *f == *wanted).into_iter().next() {
-        Some(choice) => Ok(choice),
-        None => bail!("the scene has no {} motion", wanted.name),
-    }
 }
 
 struct Found<'a> {
     scene: &'a Scene,
     films: &'a [Film],
     design: &'a Design,
-    aim: Aim<'a>,
     best: Best,
-    shortest: Option<f64>,
 }
 
 impl Found<'_> {
@@ -84,7 +63,7 @@ impl Found<'_> {
             n => format!("{n} films, each"),
         };
         let _ = writeln!(text, "{}: {count} of {} samples, {}", self.scene.name, film.t.len(), columns.join(", "));
-        let Best { own, best, others, tried, without_motion } = &self.best;
+        let Best { own, best, others, shortest, tried, without_motion } = &self.best;
         if !self.design.chosen().is_empty() {
             let _ = writeln!(text, "\n{:<12} {:>12} {:>12}   between", "chosen", "best", "the scene's");
             for (chosen, at) in self.design.chosen().iter().zip(&best.at) {
@@ -97,7 +76,7 @@ impl Found<'_> {
         for hidden in &best.hidden {
             let _ = writeln!(text, "  such films do not show a change of {hidden}");
         }
-        if let Some(seconds) = self.shortest {
+        if let Some(seconds) = shortest {
             let _ = writeln!(text, "  the shortest film of this motion that tells them apart: {seconds:.3} s");
         }
         if self.design.chosen().is_empty() {
@@ -127,15 +106,19 @@ impl Found<'_> {
     }
 
     fn words(&self, point: &Point) -> String {
-        match self.aim {
-            Aim::Estimate(_, name) if point.value.is_infinite() => format!("{name} is not shown"),
-            Aim::Estimate(_, name) => format!("standard error of {name} {:.4e}", point.value),
-            Aim::Tell(truth, rival) => {
+        match self.design.aim() {
+            Aim::Estimate(name) if point.value.is_infinite() => format!("{name} is not shown"),
+            Aim::Estimate(name) => format!("standard error of {name} {:.4e}", point.value),
+            Aim::Tell(..) => {
                 let tells = if point.value >= EXCLUDED { "excluded at" } else { "cannot tell," };
-                let (truth, rival) = (&truth.label, &rival.label);
-                let minima = if point.minima == 1 { "one minimum".into() } else { format!("{} minima", point.minima) };
+                let [truth, rival] = [0, 1].map(|i| &self.design.labels()[i]);
+                let minima = if point.minima == 1 {
+                    "one minimum".into()
+                } else {
+                    format!("the least of {} minima", point.minima)
+                };
                 format!(
-                    "where {truth} is right, {rival}: {tells} {:.1} σ (chi squared {:.2} above that of noise, the least of {minima})",
+                    "where {truth} is right, {rival}: {tells} {:.1} σ (chi squared {:.2} above that of noise, {minima})",
                     point.value.sqrt(),
                     point.value,
                 )

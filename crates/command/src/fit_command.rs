@@ -3,10 +3,10 @@
 use std::fmt::Write;
 
 use anyhow::{Context, Result, bail};
-use deltaq::{Settings, VAKONOMIC_COSTATE, formulation};
-use equations::Formulation;
+use deltaq::Settings;
 use fit::{
-    Deviations, Estimate, Film, Fit, Question, ROBUST, Row, Unknown, Verdict, fit_formulations, fit_value, quantity,
+    Deviations, Estimate, Film, Fit, Question, ROBUST, Row, Verdict, fit_formulations, fit_value, formulations,
+    quantity,
 };
 use program::{Answer, TextOrJson, parallel, pretty, write_all};
 
@@ -30,26 +30,22 @@ pub fn run(arguments: &FitArguments) -> Result<Answer> {
         let (film, number) = self::known(known, films.len())?;
         films[film].known.push(number);
     }
-    let law: Vec<Unknown> = arguments.law.iter().map(Unknown::of_law).collect();
     let question = Question {
         unknowns: &arguments.free,
-        law: &law,
+        law: &arguments.law,
         starts: arguments.starts,
         robust: arguments.robust.then_some(ROBUST),
         settings: Settings { tolerance: arguments.tolerance, max_steps: arguments.max_steps, ..Settings::default() },
         threads: parallel::threads(),
     };
     question.settings.check()?;
-    let all = arguments.formulations.iter().any(|name| name == "all");
-    let names = arguments.formulations.iter().filter(|name| *name != "all");
-    let named = names.map(|name| formulation(name)).collect::<Result<Vec<_>, _>>()?;
-    let wanted = |f: &Formulation| if all { *f != *VAKONOMIC_COSTATE } else { named.iter().any(|own| **own == *f) };
+    let wanted = formulations(&arguments.formulations)?;
     let rows = fit_formulations(&scene, &films, &question, &wanted)?;
     if rows.is_empty() {
         bail!("the scene has none of these formulations");
     }
     if let Some(folder) = &arguments.pictures {
-        let law: Vec<String> = law.iter().map(Unknown::label).collect();
+        let law: Vec<String> = arguments.law.iter().map(|unknown| unknown.of_law().label()).collect();
         write_all(folder, &pictures(&films, &rows, &law)?)?;
     }
     let complaint = complaint(&rows);
@@ -84,6 +80,9 @@ fn text(films: &[Film], rows: &[Row]) -> String {
     }
     for row in rows {
         let _ = writeln!(text, "\n{}: {}", row.choice.label, row.verdict.words());
+        if let Some(shown) = &row.shown {
+            let _ = writeln!(text, "  {}", shown.words());
+        }
         if let Ok(fit) = &row.fit {
             fit_text(&mut text, fit);
         }

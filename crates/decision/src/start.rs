@@ -3,10 +3,10 @@
 use std::collections::HashMap;
 
 use mechanics::{Completion, Removal, State, System};
-use symbolic::{Expr, Graph, Symbol};
+use symbolic::{Expr, Graph, Scalar, Symbol};
 
 use crate::DecisionError;
-use crate::exact::{Exact, Flaw, Jet, Modular, inverse, subtract_product};
+use crate::exact::{Coefficient, Exact, Flaw, Jet, Modular, inverse, subtract_product};
 use crate::program::Program;
 use crate::series::SeriesStart;
 
@@ -145,44 +145,87 @@ impl ExactStart {
             return Err(problem.clone());
         }
         let (parameters, time) = self.given();
-        let n = self.system.dimension();
-        let mut inputs = [&parameters[..], &[time]].concat();
-        let first = inputs.len();
-        inputs.resize(first + n, Jet::constant(Modular::ZERO, Some(Exact::ZERO)));
-        // each position may contain the earlier ones
-        for (i, place) in (first..first + n).enumerate() {
-            // each from those before
-            let value = self.values.run(&inputs)[i];
-            inputs[place] = value;
-        }
-        let values = self.values.run(&inputs);
-        if let Some(flaw) = values.iter().find_map(Jet::own_flaw) {
-            return Err(flaw.into());
-        }
-        let (q, v) = values.split_at(n);
+        let (q, v) = self.written_state(&parameters, time, &[])?;
         let start = |v: Vec<Jet<Modular>>| SeriesStart {
             parameters: parameters.clone(),
             time,
-            positions: q.to_vec(),
+            positions: q.clone(),
             velocities: v,
         };
-        let solved = self.solved(&parameters, time, q, v, &self.supplied);
+        let solved = self.solved(&parameters, time, &q, &v, &self.supplied);
         match solved {
             Ok(v) => Ok((start(v), Vec::new())),
             Err(NoExactStart::Nonlinear) if self.supplied.is_empty() && !self.spare.is_empty() => {
                 let g = &self.system.graph;
                 let names = self.spare.iter().map(|&i| g.name(self.system.coordinates[i].velocity)).collect();
-                Ok((start(self.solved(&parameters, time, q, v, &self.spare)?), names))
+                Ok((start(self.solved(&parameters, time, &q, &v, &self.spare)?), names))
             }
             // what is supplied is not determined here: the decimals found count, if they fulfil the
             // constraints
             Err(NoExactStart::Nonlinear) => {
-                let mut v = v.to_vec();
+                let mut v = v.clone();
                 self.supplied.iter().for_each(|&i| v[i] = Jet::of(self.rounded[i]));
-                Ok((start(self.solved(&parameters, time, q, &v, &[])?), Vec::new()))
+                Ok((start(self.solved(&parameters, time, &q, &v, &[])?), Vec::new()))
             }
             Err(fault) => Err(fault),
         }
+    }
+
+    /// The start with other numbers for some parameters, coordinates and velocities: what is written by way of
+    /// these follows, and velocities that the constraints supply are solved for.
+    ///
+    /// # Errors
+    /// [`NoExactStart`].
+    pub fn with<C: Coefficient>(&self, others: &[(Symbol, Jet<C>)]) -> Result<SeriesStart<C>, NoExactStart>
+    where
+        Jet<C>: Scalar,
+    {
+        if let Some(problem) = &self.problem {
+            return Err(problem.clone());
+        }
+        let (mut parameters, time) = self.given();
+        let other = |symbol: Symbol| others.iter().find(|(own, _)| *own == symbol).map(|(_, x)| *x);
+        let own = self.system.parameters.iter().map(|p| other(p.symbol));
+        parameters.iter_mut().zip(own).for_each(|(x, own)| *x = own.unwrap_or(*x));
+        let (positions, v) = self.written_state(&parameters, time, others)?;
+        let h = self.system.constraints.len();
+        let open = if self.supplied.len() == h { &self.supplied } else { &self.spare };
+        let velocities = self.solved(&parameters, time, &positions, &v, open)?;
+        let moved = |i: &usize| other(self.system.coordinates[*i].velocity).is_some();
+        if open.iter().any(moved) {
+            return Err(NoExactStart::Nonlinear);
+        }
+        Ok(SeriesStart { parameters, time, positions, velocities })
+    }
+
+    /// Positions and velocities as they are written, but for those that are others.
+    fn written_state<C: Coefficient>(
+        &self,
+        parameters: &[Jet<C>],
+        time: Jet<C>,
+        others: &[(Symbol, Jet<C>)],
+    ) -> Result<(Vec<Jet<C>>, Vec<Jet<C>>), NoExactStart>
+    where
+        Jet<C>: Scalar,
+    {
+        let n = self.system.dimension();
+        let mut inputs = [parameters, &[time]].concat();
+        let first = inputs.len();
+        inputs.resize(first + n, Jet::of(0.0));
+        let symbols = [self.system.positions(), self.system.velocities()].concat();
+        let other =
+            |i: usize, value: Jet<C>| others.iter().find(|(own, _)| *own == symbols[i]).map_or(value, |(_, x)| *x);
+        // each position may contain the earlier ones
+        for (i, place) in (first..first + n).enumerate() {
+            inputs[place] = other(i, self.values.run(&inputs)[i]);
+        }
+        let values = self.values.run(&inputs);
+        let mut values: Vec<Jet<C>> = values.into_iter().enumerate().map(|(i, x)| other(i, x)).collect();
+        if let Some(flaw) = values.iter().find_map(Jet::own_flaw) {
+            return Err(flaw.into());
+        }
+        let velocities = values.split_off(n);
+        Ok((values, velocities))
     }
 
     /// Places of velocities solved from the constraints, where [`Self::series`] `completed` these.
@@ -191,9 +234,12 @@ impl ExactStart {
     }
 
     /// Parameters and time.
-    pub(crate) fn given(&self) -> (Vec<Jet<Modular>>, Jet<Modular>) {
+    pub(crate) fn given<C: Coefficient>(&self) -> (Vec<Jet<C>>, Jet<C>)
+    where
+        Jet<C>: Scalar,
+    {
         let count = self.system.parameters.len();
-        let zeros = vec![Jet::constant(Modular::ZERO, Some(Exact::ZERO)); count];
+        let zeros = vec![Jet::of(0.0); count];
         let mut parameters = self.given.run(&zeros);
         parameters.truncate(count);
         let time = self.given.run(&parameters)[count];
@@ -201,17 +247,20 @@ impl ExactStart {
     }
 
     /// `v` with the entries `open` replaced by what solves `f(q, v, t) = 0`, where that is linear in them.
-    pub(crate) fn solved(
+    pub(crate) fn solved<C: Coefficient>(
         &self,
-        parameters: &[Jet<Modular>],
-        time: Jet<Modular>,
-        q: &[Jet<Modular>],
-        v: &[Jet<Modular>],
+        parameters: &[Jet<C>],
+        time: Jet<C>,
+        q: &[Jet<C>],
+        v: &[Jet<C>],
         open: &[usize],
-    ) -> Result<Vec<Jet<Modular>>, NoExactStart> {
+    ) -> Result<Vec<Jet<C>>, NoExactStart>
+    where
+        Jet<C>: Scalar,
+    {
         let (h, n) = (self.system.constraints.len(), v.len());
-        let mut program = self.constraints.evaluator::<Jet<Modular>>();
-        let mut run = |v: &[Jet<Modular>]| -> Result<Vec<Modular>, NoExactStart> {
+        let mut program = self.constraints.evaluator::<Jet<C>>();
+        let mut run = |v: &[Jet<C>]| -> Result<Vec<C>, NoExactStart> {
             let inputs = [parameters, &[time], q, v].concat();
             let values = program.run(&inputs);
             match values.iter().find_map(Jet::flaw) {
@@ -222,17 +271,17 @@ impl ExactStart {
         let mut v = v.to_vec();
         if open.len() == h && h > 0 {
             let values = run(&v)?;
-            let matrix: Vec<Modular> =
+            let matrix: Vec<C> =
                 (0..h).flat_map(|i| open.iter().map(move |&j| (i, j))).map(|(i, j)| values[h + i * n + j]).collect();
-            let (over, _) = inverse(&matrix, h, Modular::one()).ok_or(NoExactStart::Nonlinear)?;
-            let mut change = vec![Modular::ZERO; h];
+            let (over, _) = inverse(&matrix, h, C::of(Exact::ONE)?).ok_or(NoExactStart::Nonlinear)?;
+            let mut change = vec![C::ZERO; h];
             subtract_product(&mut change, &over, &values[..h], h, 1);
             for (&i, &dv) in open.iter().zip(&change) {
                 v[i] = Jet::constant(v[i].coefficient(0) + dv, None);
             }
         }
         let rest = run(&v)?;
-        if rest[..h].iter().all(|x| x.is_zero()) { Ok(v) } else { Err(NoExactStart::Nonlinear) }
+        if rest[..h].iter().all(|x| x.weight() == 0.0) { Ok(v) } else { Err(NoExactStart::Nonlinear) }
     }
 }
 
@@ -253,8 +302,11 @@ impl Written {
         Ok(Written { program: Program::new(g, inputs, &rest.collect::<Vec<_>>())?, decimals })
     }
 
-    fn run(&self, inputs: &[Jet<Modular>]) -> Vec<Jet<Modular>> {
-        let mut evaluator = self.program.evaluator::<Jet<Modular>>();
+    fn run<C: Coefficient>(&self, inputs: &[Jet<C>]) -> Vec<Jet<C>>
+    where
+        Jet<C>: Scalar,
+    {
+        let mut evaluator = self.program.evaluator::<Jet<C>>();
         let values = evaluator.run(inputs).iter().zip(&self.decimals);
         values.map(|(value, decimal)| decimal.map_or(*value, Jet::of)).collect()
     }

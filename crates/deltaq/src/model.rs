@@ -85,6 +85,16 @@ impl Model {
         Ok(Model { times: times.to_vec(), ..self.clone() })
     }
 
+    /// From now on at other times.
+    ///
+    /// # Errors
+    /// As [`Model::with_times`].
+    pub fn set_times(&mut self, times: &[f64]) -> Result<(), SolveError> {
+        check(self.start, times)?;
+        self.times = times.to_vec();
+        Ok(())
+    }
+
     /// From now on a motion may take no more than `times` the steps, 10 at least, of that with these numbers;
     /// nothing changes where there is no such motion.
     ///

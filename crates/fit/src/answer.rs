@@ -2,51 +2,27 @@
 
 use std::sync::Mutex;
 
-use deltaq::{
-    CHETAEV, Choice, FIRST_ORDER, Settings, choices_among, constants_of, costate_names, is_costate, over_threads,
-};
-use equations::{Formulation, Needs};
-use mechanics::{ConstantsRule, Parameter};
+use deltaq::{CHETAEV, Choice, KAPPA, choices_among, over_threads};
+use equations::Formulation;
 use scene::Scene;
 
 use crate::creep;
 use crate::length::length_that_tells;
+use crate::question::{SLIP, has_constants, is_constant, is_law, problem_of};
 use crate::search::{POOR, begun};
-use crate::unknown::with_start;
-use crate::{EXCLUDED, Film, Fit, FitError, Problem, Row, Unknown, Verdict, fit, verdicts};
+use crate::{EXCLUDED, Film, Fit, FitError, Problem, Question, Row, Unknown, Verdict, fit, verdicts};
 
 /// Times as many starts of a search for constants, where no formulation fits.
 const MORE_STARTS: usize = 4;
 
-/// Residuals above this size count linearly where outliers are to count little.
-pub const ROBUST: f64 = 1.345;
 /// Further groups of starts for a formulation that would be excluded and is not poor.
 const GROUPS: usize = 3;
 
-/// Numbers of the law of first order.
-pub(crate) const LAW: [&str; 2] = ["epsilon", SLIP];
-const SLIP: &str = "slip";
+/// `κ T` where a search for κ begins.
+const RELAXATIONS: f64 = 10.0;
 
 /// A fit with what was fitted.
 type Fitted = Result<(Problem, Fit), FitError>;
-
-/// What is asked of films.
-#[derive(Clone)]
-pub struct Question<'a> {
-    /// What is not known, whatever the formulation. Multipliers and costates at the start are unknown where a
-    /// formulation has them, and need not be named. `start` stands for coordinates and given velocities.
-    pub unknowns: &'a [Unknown],
-    /// Numbers of the law of first order that are not known, `epsilon` or `slip`: a further row.
-    pub law: &'a [Unknown],
-    /// Starts of the search; four times as many where no formulation fits.
-    pub starts: usize,
-    /// Residuals above this size count linearly.
-    pub robust: Option<f64>,
-    /// How motions are integrated.
-    pub settings: Settings,
-    /// Threads, which share the formulations; 0: as many as there are processors. No result depends on it.
-    pub threads: usize,
-}
 
 /// Fits every formulation that is wanted and gives verdicts. One that cannot be fitted has the reason.
 ///
@@ -56,25 +32,24 @@ pub fn fit_formulations(
     scene: &Scene,
     films: &[Film],
     question: &Question,
-    wanted: &dyn Fn(&Formulation) -> bool,
+    wanted: &[&'static Formulation],
 ) -> Result<Vec<Row>, FitError> {
-    if let Some(unknown) = question.law.iter().find(|u| !LAW.contains(&u.name.as_str())) {
-        let reason = format!("it is no number of the law of first order; these are {}", LAW.join(", "));
-        return Err(FitError::Unknown { text: unknown.name.clone(), reason });
-    }
-    let scene = with_law(scene, question.law);
-    let unknowns = with_start(&scene, question.unknowns);
-    let question = &Question { unknowns: &unknowns, ..question.clone() };
-    let is_law = |f: &Formulation| matches!(f.needs, Needs::Parameters(_));
-    let has_law = !question.law.is_empty();
-    let choices = choices_among(&scene, |f| if is_law(f) { *f == *FIRST_ORDER && has_law } else { wanted(f) });
+    let (scene, law, unknowns) = question.prepared(scene)?;
+    let law: Vec<Unknown> = law.into_iter().map(|unknown| begun_at(unknown, &scene, films)).collect();
+    let question = &Question { unknowns: &unknowns, law: &law, ..question.clone() };
+    let asked = |f: &Formulation| match is_law(f) {
+        true => question.law_of(f).next().is_some(),
+        false => wanted.iter().any(|own| **own == *f),
+    };
+    let choices = choices_among(&scene, asked);
     // a law that contains Chetaev's begins there
     let (laws, plain): (Vec<Choice>, Vec<Choice>) = choices.into_iter().partition(|c| is_law(c.formulation));
     let mut fits = fit_choices(&scene, plain, films, question, 0);
     let near = fits.iter().find(|(known, _)| known.formulation == CHETAEV);
     let near = near.and_then(|(_, fit)| fit.as_ref().ok()).map(|(_, fit)| fit.clone());
     let law = |choice: &Choice, near: Option<&Fit>| fit_law(&scene, choice, films, question, near);
-    fits.extend(laws.into_iter().map(|choice| (choice.clone(), law(&choice, near.as_ref()))));
+    let begun_near = |choice: &Choice| near.as_ref().filter(|_| !has_constants(choice));
+    fits.extend(laws.into_iter().map(|choice| (choice.clone(), law(&choice, begun_near(&choice)))));
     // before nothing fits, more starts, and those of laws not from Chetaev's numbers
     let fits_well = |(_, fit): &(Choice, Fitted)| fit.as_ref().is_ok_and(|(_, fit)| fit.objections().next().is_none());
     if !fits.iter().any(fits_well) {
@@ -84,7 +59,8 @@ pub fn fit_formulations(
         for ((_, fit), (_, again)) in fits.iter_mut().filter(|(choice, _)| has_constants(choice)).zip(again) {
             keep_less(fit, again);
         }
-        for (choice, fit) in fits.iter_mut().filter(|(choice, _)| is_law(choice.formulation)) {
+        for (choice, fit) in fits.iter_mut().filter(|(choice, _)| is_law(choice.formulation) && !has_constants(choice))
+        {
             keep_less(fit, law(choice, None));
         }
     }
@@ -113,6 +89,8 @@ pub fn fit_formulations(
     let mut rows = verdicts(fits.iter().map(plain).collect());
     let labels: Vec<String> = rows.iter().map(|row| row.choice.label.clone()).collect();
     for (row, (_, own)) in rows.iter_mut().zip(&fits) {
+        let asked = problem_of(&scene, &row.choice, films, question).ok();
+        row.shown = asked.map(|problem| problem.identifiability(&scene, &row.choice));
         row.problem = own.as_ref().ok().map(|(problem, _)| problem.clone());
         let (Verdict::CannotTell { from, needs }, Ok((problem, fit))) = (&mut row.verdict, own) else { continue };
         let of = |label: &String| labels.iter().position(|own| own == label).and_then(|i| fits[i].1.as_ref().ok());
@@ -124,37 +102,22 @@ pub fn fit_formulations(
     Ok(rows)
 }
 
+/// With the start of κ, some relaxations in the longest film, where it is not given.
+fn begun_at(unknown: Unknown, scene: &Scene, films: &[Film]) -> Unknown {
+    if !KAPPA.needs.parameters().contains(&unknown.name.as_str()) || unknown.start.is_some() {
+        return unknown;
+    }
+    let ends = films.iter().filter_map(|film| film.t.last());
+    let length = ends.fold(0.0_f64, |length, end| length.max(end - scene.start.t));
+    Unknown { start: (length > 0.0).then_some(RELAXATIONS / length), ..unknown }
+}
+
 /// The fit of less χ².
 fn keep_less(known: &mut Fitted, again: Fitted) {
     let least = known.as_ref().map_or(f64::INFINITY, |(_, fit)| fit.chi_squared);
     if again.as_ref().is_ok_and(|(_, again)| again.chi_squared < least) {
         *known = again;
     }
-}
-
-/// The scene with the parameters of the law of first order that it lacks, so that it has that formulation.
-pub fn with_law(scene: &Scene, law: &[Unknown]) -> Scene {
-    let mut scene = scene.clone();
-    for unknown in law {
-        let symbol = scene.system.graph.symbol(&unknown.name);
-        if !scene.system.parameters.iter().any(|p| p.symbol == symbol) {
-            scene.system.parameters.push(Parameter { symbol, value: unknown.start.unwrap_or(0.0) });
-        }
-    }
-    scene
-}
-
-/// Unknowns of a formulation beside those of the question: constants that it starts from, numbers of its law.
-fn own(scene: &Scene, choice: &Choice, question: &Question) -> Vec<Unknown> {
-    let constants = match &choice.removal {
-        Some(removal) => costate_names(scene, removal),
-        None if choice.formulation.starts_multipliers => scene.multiplier_names(),
-        None => Vec::new(),
-    };
-    let law = if choice.formulation == FIRST_ORDER { question.law } else { &[] };
-    let named = |name: &str| question.unknowns.iter().any(|u| u.name == name && u.film.is_none());
-    let constants = constants.iter().filter(|name| !named(name)).map(|name| Unknown::named(name));
-    law.iter().cloned().chain(constants).collect()
 }
 
 /// Each of these fitted, from starts of the search that are counted from `first` on; over threads: what they
@@ -201,29 +164,6 @@ fn fit_law(scene: &Scene, choice: &Choice, films: &[Film], question: &Question, 
     creep::joined(kept, (problem, slip), creeping.map(|(_, fit)| fit))
 }
 
-/// The films as motions of `choice`: constants to start from are unknown, and no others of their kind.
-///
-/// # Errors
-/// As [`Problem::new`].
-pub(crate) fn problem_of(
-    scene: &Scene,
-    choice: &Choice,
-    films: &[Film],
-    question: &Question,
-) -> Result<Problem, FitError> {
-    let mut unknowns: Vec<Unknown> = question.unknowns.to_vec();
-    unknowns.retain(|u| {
-        !is_constant(&u.name) || (is_costate(&u.name) == choice.removal.is_some()) && has_constants(choice)
-    });
-    unknowns.extend(own(scene, choice, question));
-    let constants = match (&choice.removal, constants_of(choice, scene)) {
-        (Some(_), ConstantsRule::Natural { .. }) => ConstantsRule::Zero,
-        (_, rule) => rule,
-    };
-    let choice = Choice { constants, ..choice.clone() };
-    Ok(Problem::new(scene, &choice, films, &unknowns, &question.settings)?.robust(question.robust))
-}
-
 fn fit_one(problem: Problem, near: Option<&Fit>, is_of_law: &dyn Fn(&str) -> bool, starts: usize) -> Fitted {
     let mut problem = problem;
     let hidden =
@@ -240,14 +180,4 @@ fn fit_one(problem: Problem, near: Option<&Fit>, is_of_law: &dyn Fn(&str) -> boo
     let spread = |name: &str| is_constant(name) || is_of_law(name) || hidden(name);
     let found = fit(&problem, &spread, starts, near.is_some())?;
     Ok((problem, found))
-}
-
-/// Whether a number is a multiplier or a costate at the start.
-pub(crate) fn is_constant(name: &str) -> bool {
-    name.starts_with("mu0_") || is_costate(name)
-}
-
-/// Whether motions have constants to start from, `μ₀` or `P₀`.
-fn has_constants(choice: &Choice) -> bool {
-    choice.formulation.starts_multipliers || choice.removal.is_some()
 }

@@ -5,7 +5,7 @@ use std::sync::{Mutex, PoisonError};
 use deltaq::over_threads;
 
 use crate::search::evenly;
-use crate::{Design, FitError, Point};
+use crate::{Design, EXCLUDED, FitError, Point};
 
 /// Points of the scan from which the search goes on.
 const FOLLOWED: usize = 3;
@@ -22,6 +22,8 @@ pub struct Best {
     pub best: Point,
     /// Other ends of the search, the best first; by fewer starts.
     pub others: Vec<Point>,
+    /// The length of the shortest film of the best motion that tells, where that itself does.
+    pub shortest: Option<f64>,
     /// Points that were looked at.
     pub tried: usize,
     /// Points of these without a motion through the whole film; they say nothing.
@@ -40,7 +42,8 @@ impl Design {
         let at: Vec<f64> = self.chosen().iter().map(|chosen| chosen.own).collect();
         if at.is_empty() {
             let best = self.point_again(&at)?;
-            return Ok(Best { own: Ok(best.clone()), best, others: Vec::new(), tried: 1, without_motion: 0 });
+            let (own, shortest) = (Ok(best.clone()), self.shortest_where_it_tells(&best));
+            return Ok(Best { own, best, others: Vec::new(), shortest, tried: 1, without_motion: 0 });
         }
         let own = self.point(&at);
         let width = self.chosen().len();
@@ -77,7 +80,12 @@ impl Design {
             }
         }
         let others = found.into_iter().skip(1).collect();
-        Ok(Best { own, best, others, tried, without_motion })
+        let shortest = self.shortest_where_it_tells(&best);
+        Ok(Best { own, best, others, shortest, tried, without_motion })
+    }
+
+    fn shortest_where_it_tells(&self, best: &Point) -> Option<f64> {
+        if best.value >= EXCLUDED { self.shortest(&best.at) } else { None }
     }
 }
 

@@ -13,13 +13,13 @@
 use std::cell::RefCell;
 use std::str::FromStr;
 
-use deltaq::Choice;
+use deltaq::{CHETAEV, Choice, choices_among};
+use equations::Formulation;
 use scene::Scene;
 
-use crate::answer::{LAW, is_constant, problem_of, with_law};
+use crate::question::{LAWS, is_constant, is_of_a_law, problem_of};
 use crate::search::search;
-use crate::unknown::with_start;
-use crate::{EXCLUDED, Film, FitError, Problem, Question, quantity, standard_errors};
+use crate::{EXCLUDED, Film, FitError, Problem, Question, Unknown, quantity, standard_errors};
 
 /// Lengths over that of the film, at which a film that tells is looked for.
 const LENGTHS: [f64; 7] = [1.0, 1.5, 2.0, 3.0, 4.0, 6.0, 8.0];
@@ -44,7 +44,7 @@ impl FromStr for Range {
         let refused = |reason: &str| FitError::Choose { text: text.into(), reason: reason.into() };
         let parts = text.split_once('=').and_then(|(name, ends)| Some((name, ends.split_once(':')?)));
         let (name, (low, high)) = parts.ok_or_else(|| refused("it is not NAME=LOW:HIGH"))?;
-        let unknown: crate::Unknown = name.parse()?;
+        let unknown: Unknown = name.parse()?;
         let ends = [quantity(low)?, quantity(high)?];
         if ends[0] >= ends[1] {
             return Err(refused("the first bound has to be below the second"));
@@ -54,17 +54,21 @@ impl FromStr for Range {
 }
 
 /// What a film is to show.
-#[derive(Clone, Copy)]
-pub enum Aim<'a> {
-    /// That the first formulation is right and not the second, by their choices.
-    Tell(&'a Choice, &'a Choice),
-    /// This unknown, in this formulation.
-    Estimate(&'a Choice, &'a str),
+#[derive(Clone, Debug, PartialEq)]
+pub enum Aim {
+    /// That the first formulation is right and not the second.
+    Tell(&'static Formulation, &'static Formulation),
+    /// A number: of a constraint law, by that law; another one by the law of first order where numbers of that
+    /// are unknown, else by Chetaev's.
+    Estimate(String),
 }
 
 /// Films that can be chosen.
 #[derive(Clone)]
 pub struct Design {
+    aim: Aim,
+    /// Labels of the formulations.
+    labels: Vec<String>,
     truth: Side,
     /// The formulation that is to be told apart.
     rival: Option<Side>,
@@ -125,7 +129,7 @@ impl Side {
         };
         let mut unknowns = question.unknowns.to_vec();
         for range in over.iter().filter(|range| !is_free(&range.name, range.film)) {
-            unknowns.push(crate::Unknown { film: range.film, ..crate::Unknown::named(&range.name) });
+            unknowns.push(Unknown { film: range.film, ..Unknown::named(&range.name) });
         }
         let asked = Question { unknowns: &unknowns, ..question.clone() };
         let problem = problem_of(scene, choice, films, &asked)?;
@@ -169,25 +173,39 @@ impl Design {
     /// matter. Free are `question.unknowns`, and the constants that formulations start from.
     ///
     /// # Errors
-    /// [`FitError`]: of [`Problem::new`]; a number that is chosen and is none of the scene; an unknown to be
-    /// estimated that is not free.
+    /// [`FitError`]: of [`Problem::new`]; a formulation that the scene does not have, or one that is to be told
+    /// from itself; a number that is chosen and is none of the scene; an unknown to be estimated that is not free.
     pub fn new(
         scene: &Scene,
         films: &[Film],
         question: &Question,
         over: &[Range],
-        aim: Aim,
+        aim: &Aim,
     ) -> Result<Design, FitError> {
-        let scene = &with_law(scene, question.law);
-        let unknowns = with_start(scene, question.unknowns);
-        let question = &Question { unknowns: &unknowns, ..question.clone() };
-        let (choice, rival) = match aim {
-            Aim::Tell(truth, rival) => (truth, Some(rival)),
-            Aim::Estimate(choice, _) => (choice, None),
+        let mut law = question.law.to_vec();
+        let estimated = match aim {
+            Aim::Estimate(name) => Some(Unknown::named(name).of_law()),
+            Aim::Tell(..) => None,
         };
+        law.extend(estimated.clone().filter(|unknown| is_of_a_law(&unknown.name)));
+        let (scene, law, unknowns) = Question { law: &law, ..question.clone() }.prepared(scene)?;
+        let (scene, question) = (&scene, &Question { unknowns: &unknowns, law: &law, ..question.clone() });
+        let first = |wanted: &'static Formulation| {
+            let choice = choices_among(scene, |f| *f == *wanted).into_iter().next();
+            choice.ok_or(FitError::NoMotionOf(wanted.name))
+        };
+        let choices = match aim {
+            Aim::Tell(truth, rival) if truth == rival => return Err(FitError::ToldFromItself(truth.name)),
+            Aim::Tell(truth, rival) => vec![first(truth)?, first(rival)?],
+            Aim::Estimate(_) => {
+                let own = LAWS.into_iter().find(|own| question.law_of(own).next().is_some());
+                vec![first(own.unwrap_or(CHETAEV))?]
+            }
+        };
+        let (choice, rival) = (&choices[0], choices.get(1));
         let (truth, chosen) = Side::new(scene, choice, films, question, over)?;
         let missing = |range: &&Range| {
-            let of = |u: &crate::Unknown| u.name == range.name && (range.film.is_none() || range.film == u.film);
+            let of = |u: &Unknown| u.name == range.name && (range.film.is_none() || range.film == u.film);
             !truth.problem.unknowns().iter().any(of)
         };
         if let Some(range) = over.iter().find(missing) {
@@ -195,10 +213,10 @@ impl Design {
             return Err(FitError::Choose { text: range.name.clone(), reason });
         }
         let mut unknown = 0;
-        if let Aim::Estimate(_, name) = aim {
+        if let Some(Unknown { name, .. }) = estimated {
             let of = |i: &usize| truth.problem.unknowns()[*i].label() == name && !truth.known.contains(i);
             let place = (0..truth.problem.unknowns().len()).find(of).ok_or_else(|| FitError::Unknown {
-                text: name.into(),
+                text: name.clone(),
                 reason: "it is not free, so that no film has to show it".into(),
             })?;
             unknown = place - truth.known.iter().filter(|known| **known < place).count();
@@ -211,7 +229,18 @@ impl Design {
         });
         let ends = films.iter().filter_map(|film| film.t.last());
         let length = ends.fold(0.0, |length: f64, end| length.max(end - scene.start.t));
-        Ok(Design { truth, rival, unknown, chosen, starts: question.starts, length })
+        let labels = choices.into_iter().map(|choice| choice.label).collect();
+        Ok(Design { aim: aim.clone(), labels, truth, rival, unknown, chosen, starts: question.starts, length })
+    }
+
+    /// What films are to show.
+    pub fn aim(&self) -> &Aim {
+        &self.aim
+    }
+
+    /// Labels of the formulations: that which is right, then that from which it is told.
+    pub fn labels(&self) -> &[String] {
+        &self.labels
     }
 
     /// The numbers that are chosen, in the order of [`Point::at`].
@@ -246,9 +275,9 @@ impl Design {
         let films = films.map_err(|reason| FitError::NoMotion { starts: 1, reason })?;
         let mut problem = rival.at(d).of_films(films)?;
         near.into_iter().for_each(|near| problem.begin_at(near));
-        let spread = |name: &str| is_constant(name) || LAW.contains(&name);
+        let spread = |name: &str| is_constant(name) || is_of_a_law(name);
         let found = search(&problem, &spread, starts, false)?;
-        let labels = problem.unknowns().iter().map(crate::Unknown::label);
+        let labels = problem.unknowns().iter().map(Unknown::label);
         let (value, minima) = (found.best.chi_squared, found.minima.len());
         let numbers = labels.zip(found.best.theta).collect();
         Ok(Point { at: d.to_vec(), value, numbers, minima, hidden: Vec::new() })

@@ -104,6 +104,12 @@ pub enum FitError {
         /// What the first of them says.
         reason: String,
     },
+    /// The scene lacks a formulation.
+    #[error("the scene has no {0} motion")]
+    NoMotionOf(&'static str),
+    /// A formulation is to be told from itself.
+    #[error("films are to tell two formulations apart, and both are {0}")]
+    ToldFromItself(&'static str),
     /// All unknowns change nothing.
     #[error("the films show none of the unknowns")]
     ShowsNothing,

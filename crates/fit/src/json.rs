@@ -3,7 +3,7 @@
 use scene::Scene;
 use serde_json::{Value, json};
 
-use crate::{Aim, Best, Design, Film, Fit, Point, Row, Verdict};
+use crate::{Aim, Best, Design, Film, Fit, Identifiability, Point, Row, Verdict};
 
 impl Verdict {
     /// In words.
@@ -55,8 +55,18 @@ fn row(row: &Row) -> Value {
         "from": match &row.verdict { Verdict::CannotTell { from, .. } => from.clone(), _ => Vec::new() },
         "needs": match &row.verdict { Verdict::CannotTell { needs, .. } => needs.clone(), _ => Vec::new() },
         "sigmas": match row.verdict { Verdict::Excluded { sigmas } => Some(sigmas), _ => None },
+        "shown": row.shown.as_ref().map(shown),
         "fit": row.fit.as_ref().ok().map(fitted),
     })
+}
+
+fn shown(shown: &Identifiability) -> Value {
+    let (answer, hidden, order) = match shown {
+        Identifiability::Proved => ("proved", Vec::new(), None),
+        Identifiability::Hidden { combinations, order } => ("hidden", combinations.clone(), Some(*order)),
+        Identifiability::Open(_) => ("open", Vec::new(), None),
+    };
+    json!({ "answer": answer, "hidden": hidden, "order": order, "words": shown.words() })
 }
 
 fn fitted(fit: &Fit) -> Value {
@@ -79,18 +89,12 @@ fn fitted(fit: &Fit) -> Value {
 }
 
 /// The answer of `deltaq design`, by its schema.
-pub fn design_value(
-    scene: &Scene,
-    films: &[Film],
-    (design, aim): (&Design, Aim),
-    best: &Best,
-    shortest: Option<f64>,
-) -> Value {
+pub fn design_value(scene: &Scene, films: &[Film], design: &Design, best: &Best) -> Value {
     let chosen = design.chosen().iter();
     let chosen = chosen.map(|c| json!({ "name": c.label, "low": c.ends[0], "high": c.ends[1], "own": c.own }));
-    let (tell, estimate) = match aim {
-        Aim::Tell(truth, rival) => (json!([truth.label, rival.label]), Value::Null),
-        Aim::Estimate(_, name) => (Value::Null, json!(name)),
+    let (tell, estimate) = match design.aim() {
+        Aim::Tell(..) => (json!(design.labels()), Value::Null),
+        Aim::Estimate(name) => (Value::Null, json!(name)),
     };
     json!({
         "scene": scene.name,
@@ -103,7 +107,7 @@ pub fn design_value(
         "best": point(&best.best),
         "own": best.own.as_ref().ok().map(point),
         "others": best.others.iter().map(point).collect::<Vec<_>>(),
-        "shortest": shortest,
+        "shortest": best.shortest,
         "tried": best.tried,
         "without_motion": best.without_motion,
     })

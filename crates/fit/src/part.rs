@@ -6,6 +6,7 @@ use symbolic::Symbol;
 
 use crate::film::expression;
 use crate::observation::Observation;
+use crate::unknown::CLOCK;
 use crate::{Film, FitError, Unknown};
 
 /// One film, and the motion that it shows.
@@ -18,13 +19,29 @@ pub(crate) struct Part {
     /// Places of the parameters of columns among the numbers of the model.
     pub(crate) parameters: Vec<usize>,
     pub(crate) seen: Observation,
+    /// By how much its clock is slow, where that is not known.
+    pub(crate) clock: Option<Place>,
+    /// The start, from which its clock runs.
+    start: f64,
 }
+
+/// Change of a clock by which derivatives are taken.
+const CLOCK_STEP: f64 = 1e-5;
 
 /// Where a number comes from.
 #[derive(Clone, Copy)]
 pub(crate) enum Place {
     Unknown(usize),
     Known(f64),
+}
+
+impl Place {
+    pub(crate) fn value(&self, theta: &[f64]) -> f64 {
+        match *self {
+            Place::Unknown(i) => theta[i],
+            Place::Known(x) => x,
+        }
+    }
 }
 
 /// What is done with a cell, given by row and column: with `r`, and its derivatives by unknowns.
@@ -42,10 +59,13 @@ impl Part {
     ) -> Result<Part, FitError> {
         let own = |name: &str| unknowns.iter().any(|u| u.name == name && u.film == Some(number));
         let mut names: Vec<&str> = Vec::new();
-        let mut places = Vec::new();
+        let (mut places, mut clock) = (Vec::new(), None);
+        let is_clock = |name: &str| name == CLOCK && scene.system.graph.find_symbol(CLOCK).is_none();
         for (i, unknown) in unknowns.iter().enumerate() {
             let applies = unknown.film.map_or(!own(&unknown.name), |film| film == number);
-            if applies {
+            if applies && is_clock(&unknown.name) {
+                clock = Some(Place::Unknown(i));
+            } else if applies {
                 names.push(&unknown.name);
                 places.push(Place::Unknown(i));
             }
@@ -65,22 +85,73 @@ impl Part {
         let expressions = film.columns.iter().map(|column| Ok((&column.name[..], expression(scene, &column.name)?)));
         let expressions = expressions.collect::<Result<Vec<_>, FitError>>()?;
         let seen = Observation::new(&scene.system, &expressions, &symbols)?;
-        Ok(Part { film: film.clone(), model, places, parameters, seen })
+        Ok(Part { film: film.clone(), model, places, parameters, seen, clock, start: scene.start.t })
     }
 
     /// The numbers of the model.
     pub(crate) fn row(&self, theta: &[f64]) -> Vec<f64> {
-        let value = |place: &Place| match *place {
-            Place::Unknown(i) => theta[i],
-            Place::Known(x) => x,
-        };
-        self.places.iter().map(value).collect()
+        self.places.iter().map(|place| place.value(theta)).collect()
+    }
+
+    /// All places that numbers have.
+    pub(crate) fn all_places(&mut self) -> impl Iterator<Item = &mut Place> {
+        self.places.iter_mut().chain(&mut self.clock)
+    }
+
+    /// Times of a film on the clock of the scene.
+    fn times(&self, film: &Film, slow: f64) -> Vec<f64> {
+        film.t.iter().map(|t| self.start + (1.0 + slow) * (t - self.start)).collect()
+    }
+
+    /// Times of the model are those of this film on a clock that is so slow.
+    fn set_clock(&mut self, slow: f64) -> Result<(), String> {
+        let times = self.times(&self.film, slow);
+        self.model.set_times(&times).map_err(|error| error.to_string())
+    }
+
+    /// The motion at `theta` at the times of `film`.
+    pub(crate) fn seen_at(&self, film: &Film, theta: &[f64]) -> Result<Vec<Vec<f64>>, String> {
+        let times = self.times(film, self.clock.map_or(0.0, |clock| clock.value(theta)));
+        let mut model = self.model.with_times(&times).map_err(|error| error.to_string())?;
+        self.values(&mut model, &times, theta)
+    }
+
+    /// Values of the columns at the times of `model`.
+    fn values(&self, model: &mut Model, times: &[f64], theta: &[f64]) -> Result<Vec<Vec<f64>>, String> {
+        let row = self.row(theta);
+        let read = model.outputs(&row);
+        if let Some(reason) = read.ended {
+            return Err(reason);
+        }
+        let parameters: Vec<f64> = self.parameters.iter().map(|&i| row[i]).collect();
+        let mut seen = self.seen.clone();
+        let each = times.iter().zip(&read.outputs);
+        Ok(each.map(|(t, at)| seen.at(*t, at, &parameters).iter().map(|(value, _)| *value).collect()).collect())
+    }
+
+    /// The unknown that its clock is, and derivatives of the values by it.
+    fn by_clock(&mut self, theta: &[f64]) -> Result<Option<(usize, Vec<Vec<f64>>)>, String> {
+        let Some(Place::Unknown(j)) = self.clock else { return Ok(None) };
+        let ends = [CLOCK_STEP, -CLOCK_STEP].map(|step| {
+            let mut moved = theta.to_vec();
+            moved[j] += step;
+            self.seen_at(&self.film, &moved)
+        });
+        let [high, low] = ends;
+        let slope = |(a, b): (&f64, &f64)| (a - b) / (2.0 * CLOCK_STEP);
+        let rows = high?.iter().zip(&low?).map(|(a, b)| a.iter().zip(b).map(slope).collect()).collect();
+        Ok(Some((j, rows)))
     }
 
     /// Calls `with` for every cell that is not empty: its row and column, `r`, and by which unknowns it
     /// moves.
     pub(crate) fn evaluate(&mut self, theta: &[f64], derivatives: bool, with: &mut Reader) -> Result<(), String> {
         let row = self.row(theta);
+        if let Some(clock) = self.clock {
+            self.set_clock(clock.value(theta))?;
+        }
+        let by_clock = if derivatives { self.by_clock(theta)? } else { None };
+        let times = self.model.times().to_vec();
         let read = if derivatives { self.model.derivatives(&row) } else { self.model.outputs(&row) };
         if let Some(reason) = read.ended {
             return Err(reason);
@@ -89,7 +160,7 @@ impl Part {
         let n = read.outputs.first().map_or(0, |outputs| outputs.coordinates.len());
         let mut by = Vec::new();
         for (k, outputs) in read.outputs.iter().enumerate() {
-            for (c, (value, slopes)) in self.seen.at(self.film.t[k], outputs, &parameters).into_iter().enumerate() {
+            for (c, (value, slopes)) in self.seen.at(times[k], outputs, &parameters).into_iter().enumerate() {
                 let Some(seen) = self.film.rows[k][c] else { continue };
                 let sigma = self.film.columns[c].sigma;
                 by.clear();
@@ -101,6 +172,7 @@ impl Part {
                     let own = self.parameters.iter().position(|&p| p == l).map_or(0.0, |p| slopes[2 * n + p]);
                     by.push((j, (along + own) / sigma));
                 }
+                by.extend(by_clock.iter().map(|(j, slopes)| (*j, slopes[k][c] / sigma)));
                 with((k, c), (value - seen) / sigma, &by);
             }
         }

@@ -4,7 +4,9 @@ use deltaq::{Choice, Settings, is_costate};
 use nalgebra::{DMatrix, DVector};
 use scene::Scene;
 
+use crate::identifiability::{Identifiability, identifiability};
 use crate::part::{Part, Place};
+use crate::unknown::CLOCK;
 use crate::{Film, FitError, Unknown};
 
 /// Films of motions of one scene in one formulation, and what is not known of it: residuals
@@ -160,17 +162,8 @@ impl Problem {
         let mut films = Vec::new();
         for part in &self.parts {
             let mut film = part.film.lengthened(longer);
-            let mut model = part.model.with_times(&film.t).map_err(|error| error.to_string())?;
-            let row = part.row(theta);
-            let read = model.outputs(&row);
-            if let Some(reason) = read.ended {
-                return Err(reason);
-            }
-            let parameters: Vec<f64> = part.parameters.iter().map(|&i| row[i]).collect();
-            let mut seen = part.seen.clone();
-            for (t, outputs) in film.t.iter().zip(&read.outputs) {
-                film.rows.push(seen.at(*t, outputs, &parameters).iter().map(|(value, _)| Some(*value)).collect());
-            }
+            let seen = part.seen_at(&film, theta)?;
+            film.rows = seen.into_iter().map(|row| row.into_iter().map(Some).collect()).collect();
             films.push(film);
         }
         Ok(films)
@@ -215,7 +208,7 @@ impl Problem {
         less.held.extend(prior.map(|prior| (value - prior.mean) / prior.deviation));
         less.start.remove(i);
         less.parameters.remove(i);
-        for place in less.parts.iter_mut().flat_map(|part| &mut part.places) {
+        for place in less.parts.iter_mut().flat_map(Part::all_places) {
             *place = match *place {
                 Place::Unknown(j) if j == i => Place::Known(value),
                 Place::Unknown(j) if j > i => Place::Unknown(j - 1),
@@ -223,6 +216,11 @@ impl Problem {
             };
         }
         less
+    }
+
+    /// Whether films of these columns can show the unknowns at all, these being motions of `choice`.
+    pub fn identifiability(&self, scene: &Scene, choice: &Choice) -> Identifiability {
+        identifiability(scene, choice, &self.parts, &self.unknowns)
     }
 
     /// How far the columns of the films go from their means, over σ, as the length of a vector.
@@ -303,8 +301,9 @@ fn huber(r: f64, limit: Option<f64>) -> (f64, f64) {
     }
 }
 
+/// Whether all films share a number of this name.
 fn is_parameter(scene: &Scene, name: &str) -> bool {
-    scene.system.parameters.iter().any(|p| scene.system.graph.name(p.symbol) == name)
+    name == CLOCK || scene.system.parameters.iter().any(|p| scene.system.graph.name(p.symbol) == name)
 }
 
 /// Each film has its own start values, multipliers and costates; all share a parameter.

@@ -16,7 +16,11 @@ pub struct Prior {
     pub deviation: f64,
 }
 
-/// A number of a scene that is not known: a parameter, a start value, `mu0_1`, `P0_w`.
+/// By how much the clock of a film is slow, unless the scene has a parameter of this name.
+pub(crate) const CLOCK: &str = "clock";
+
+/// A number of a scene that is not known: a parameter, a start value, `mu0_1`, `P0_w`; or that of a film: by how
+/// much its clock is slow, `clock`: what it calls `t` is `t₀ + (1 + clock)(t − t₀)`.
 ///
 /// Written `NAME`, `NAME@2` for the second film alone, `NAME~VALUE` with a value at which the search begins,
 /// `NAME~MEAN±DEVIATION` with what is known before; `NAME>=BOUND`.
@@ -49,13 +53,14 @@ impl Unknown {
         Unknown { name: name.into(), film: None, start: None, prior: None, bound: None }
     }
 
-    /// As a number of the law of first order: `eps` is `epsilon`, not below 0; `slip`, not below 0, begins at
-    /// 0.01.
+    /// As a number of a constraint law: `eps` is `epsilon`, not below 0; `slip`, not below 0, begins at 0.01;
+    /// `kappa` is not below 0.
     #[must_use]
     pub fn of_law(&self) -> Self {
         let mut unknown = self.clone();
         match unknown.name.as_str() {
             "eps" => (unknown.name, unknown.bound) = ("epsilon".into(), unknown.bound.or(Some(0.0))),
+            "kappa" => unknown.bound = unknown.bound.or(Some(0.0)),
             "slip" => (unknown.start, unknown.bound) = (unknown.start.or(Some(0.01)), unknown.bound.or(Some(0.0))),
             _ => {}
         }

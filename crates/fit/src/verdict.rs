@@ -1,9 +1,10 @@
 //! Which formulation films support.
 
-use deltaq::{CHETAEV, Choice, FIRST_ORDER, KAPPA};
+use deltaq::{CHETAEV, Choice, KAPPA, VAKONOMIC};
 use equations::Formulation;
 
-use crate::{Fit, FitError, Problem};
+use crate::question::is_law;
+use crate::{Fit, FitError, Identifiability, Problem};
 
 /// A formulation is excluded where its χ² is this much above the least.
 pub const EXCLUDED: f64 = 15.0;
@@ -40,6 +41,8 @@ pub struct Row {
     pub choice: Choice,
     /// The fit.
     pub fit: Result<Fit, FitError>,
+    /// Whether such films can show its unknowns at all; none where it could not be asked.
+    pub shown: Option<Identifiability>,
     /// What was fitted, to ask further; its unknowns are the first of [`Fit::estimates`].
     pub problem: Option<Problem>,
     /// The verdict.
@@ -81,15 +84,20 @@ pub fn verdicts(fits: Vec<(Choice, Result<Fit, FitError>)>) -> Vec<Row> {
         }
     };
     let verdicts: Vec<Verdict> = fits.iter().map(verdict).collect();
-    fits.into_iter().zip(verdicts).map(|((choice, fit), verdict)| Row { choice, fit, problem: None, verdict }).collect()
+    fits.into_iter()
+        .zip(verdicts)
+        .map(|((choice, fit), verdict)| Row { choice, fit, shown: None, problem: None, verdict })
+        .collect()
 }
 
 /// Whether one of two formulations is the other with more numbers, so that both can be right: Chetaev's law
-/// is that of first order with ε = 0.
+/// is that of first order with ε = 0, the vakonomic one that of κ = 0.
 fn is_part(a: &Formulation, b: &Formulation) -> bool {
     let is = |x: &Formulation, y: &Formulation| x.name == y.name;
-    let larger = |x: &Formulation| is(x, FIRST_ORDER) || is(x, KAPPA);
-    is(a, b) || (larger(a) && is(b, CHETAEV)) || (is(a, CHETAEV) && larger(b)) || (larger(a) && larger(b))
+    let contains = |x: &Formulation, y: &Formulation| {
+        is_law(x) && (is_law(y) || is(y, CHETAEV)) || is(x, KAPPA) && is(y, VAKONOMIC)
+    };
+    is(a, b) || contains(a, b) || contains(b, a)
 }
 
 #[cfg(test)]

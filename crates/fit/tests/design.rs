@@ -1,7 +1,6 @@
 //! The best film is found: against closed forms, and without a hint.
 
-use deltaq::{CHETAEV, Choice, FIRST_ORDER, Settings, VAKONOMIC, choices};
-use equations::Formulation;
+use deltaq::{CHETAEV, Settings, VAKONOMIC};
 use fit::{Aim, Design, Deviations, EXCLUDED, Film, FitError, Question, Range, Sampling, Unknown};
 use scene::Scene;
 
@@ -14,10 +13,6 @@ fn unknowns(list: &[&str]) -> Vec<Unknown> {
 
 fn ranges(list: &[&str]) -> Vec<Range> {
     list.iter().map(|text| text.parse().unwrap()).collect()
-}
-
-fn choice(scene: &Scene, formulation: &Formulation) -> Choice {
-    choices(scene).into_iter().find(|choice| *choice.formulation == *formulation).unwrap()
 }
 
 fn film(scene: &Scene, columns: &[&str], times: &str) -> Film {
@@ -43,9 +38,8 @@ fn the_second_ball_is_spun_without_a_hint() {
     let scene = laboratory();
     let films = vec![film(&scene, &["x", "y"], "60Hz,0.5mm,10s"); 2];
     let free = unknowns(&["x", "y", "x'", "y'", "Omega", "tilt_x", "tilt_y", "epsilon", "drag~0±0.005"]);
-    let first_order = choice(&scene, FIRST_ORDER);
-    let aim = Aim::Estimate(&first_order, "epsilon");
-    let design = Design::new(&scene, &films, &question(&free, 1), &ranges(&["psi'=0:6"]), aim).unwrap();
+    let aim = Aim::Estimate("epsilon".into());
+    let design = Design::new(&scene, &films, &question(&free, 1), &ranges(&["psi'=0:6"]), &aim).unwrap();
     let best = design.best(4, 0).unwrap();
     let own = best.own.unwrap();
     assert_eq!(own.at, [0.0, 0.0]);
@@ -72,9 +66,8 @@ fn the_shortest_film_is_that_of_the_closed_form() {
     let scene = Scene { multipliers: vec![1e-3], ..scene };
     let films = [film(&scene, &["x", "y"], "60Hz,1mm,6s")];
     let free = unknowns(&["x", "y", "x'", "y'"]);
-    let (vakonomic, chetaev) = (choice(&scene, VAKONOMIC), choice(&scene, CHETAEV));
-    let aim = Aim::Tell(&vakonomic, &chetaev);
-    let design = Design::new(&scene, &films, &question(&free, 2), &ranges(&["mu0_1=1e-3:2e-3"]), aim).unwrap();
+    let aim = Aim::Tell(VAKONOMIC, CHETAEV);
+    let design = Design::new(&scene, &films, &question(&free, 2), &ranges(&["mu0_1=1e-3:2e-3"]), &aim).unwrap();
     let best = design.best(4, 0).unwrap();
     assert_eq!((best.own.unwrap().at, best.best.at.clone()), (vec![1e-3], vec![2e-3]));
     // μ₀ is the rate of the circle by T9; its sign does not matter here
@@ -86,8 +79,8 @@ fn the_shortest_film_is_that_of_the_closed_form() {
     let known = arc(2e-3, 60.0 * length, length, 1e-3);
     assert!((known / EXCLUDED - 1.0).abs() < 0.1, "{length} s has {known}");
     // a straight line is vakonomic, too: no film tells Chetaev's motion from it
-    let aim = Aim::Tell(&chetaev, &vakonomic);
-    let design = Design::new(&scene, &films, &question(&free, 2), &[], aim).unwrap();
+    let aim = Aim::Tell(CHETAEV, VAKONOMIC);
+    let design = Design::new(&scene, &films, &question(&free, 2), &[], &aim).unwrap();
     let best = design.best(4, 0).unwrap();
     assert!(best.best.value < 1e-6 && best.tried == 1, "{:?}", best.best);
     assert_eq!(design.shortest(&[]), None);
@@ -107,10 +100,9 @@ fn what_makes_no_sense_is_refused() {
     assert_eq!(none, Err(FitError::NoDeviation("x".into())));
     let films = [film(&scene, &["x", "y"], "60Hz,1mm,1s")];
     let free = unknowns(&["x"]);
-    let chetaev = choice(&scene, CHETAEV);
     let refused = |over: &[&str], name: &str| {
-        let aim = Aim::Estimate(&chetaev, name);
-        Design::new(&scene, &films, &question(&free, 1), &ranges(over), aim).err().unwrap().to_string()
+        let aim = Aim::Estimate(name.into());
+        Design::new(&scene, &films, &question(&free, 1), &ranges(over), &aim).err().unwrap().to_string()
     };
     assert!(refused(&["mu0_1=0:1"], "x").contains("`mu0_1` cannot be chosen"));
     assert!(refused(&["y=0:1"], "y").contains("it is not free"));

@@ -30,7 +30,7 @@ pub fn fitted(scene: &Scene, films: &[Film], free: &[&str], law: &[&str]) -> Vec
     let settings = Settings { tolerance: 1e-9, max_steps: 20_000, ..Settings::default() };
     let (unknowns, law) = (parsed(free), parsed(law));
     let question = Question { unknowns: &unknowns, law: &law, starts: 16, robust: None, settings, threads: 0 };
-    let rows = fit_formulations(scene, films, &question, &|f| *f == *CHETAEV || *f == *VAKONOMIC);
+    let rows = fit_formulations(scene, films, &question, &[CHETAEV, VAKONOMIC]);
     rows.unwrap_or_else(|error| panic!("{error}"))
 }
 
@@ -156,7 +156,7 @@ fn residuals_object_to_what_is_wrong_before_a_verdict_is_given() {
     let unknowns: Vec<Unknown> = SLEDGE.iter().map(|text| text.parse().unwrap()).collect();
     let settings = Settings { tolerance: 1e-9, ..Settings::default() };
     let question = Question { unknowns: &unknowns, law: &[], starts: 1, robust: Some(1.345), settings, threads: 0 };
-    let rows = fit_formulations(&scene, &[outlier], &question, &|f| *f == *CHETAEV).unwrap();
+    let rows = fit_formulations(&scene, &[outlier], &question, &[CHETAEV]).unwrap();
     assert_eq!(rows[0].verdict, Verdict::Supported);
     covers(&rows[0], &[("y", 0.0), ("g", 9.81)]);
 }

@@ -80,8 +80,8 @@ fn rows_do_not_depend_on_those_beside_them() {
     let unknowns: Vec<Unknown> = TABLE.iter().map(|name| name.parse().unwrap()).collect();
     let settings = Settings { tolerance: 1e-9, ..Settings::default() };
     let question = Question { unknowns: &unknowns, law: &[], starts: 4, robust: None, settings, threads: 0 };
-    let rows = |wanted: &[&equations::Formulation]| -> Vec<Row> {
-        fit_formulations(&scene, std::slice::from_ref(&film), &question, &|f| wanted.contains(&f)).unwrap()
+    let rows = |wanted: &[&'static equations::Formulation]| -> Vec<Row> {
+        fit_formulations(&scene, std::slice::from_ref(&film), &question, wanted).unwrap()
     };
     let both = rows(&[CHETAEV, VAKONOMIC]);
     for (row, formulation) in both.iter().zip([CHETAEV, VAKONOMIC]) {

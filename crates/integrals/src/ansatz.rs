@@ -6,7 +6,7 @@
 //! is one, but for an accident. What is printed has coefficients that are fractions, and is tried at random
 //! points of another field.
 
-use decision::exact::{Echelon, Exact, FIELDS, Jet, Modular, in_field};
+use decision::exact::{Echelon, Exact, FIELDS, Jet, Modular, in_field, nullspace};
 use decision::{Dynamics, ExactStart, Program};
 use equations::{Equations, Role};
 use mechanics::System;
@@ -14,7 +14,6 @@ use symbolic::{Expr, Symbol};
 
 use crate::Open;
 use crate::functions::{Function, chosen, functions};
-use crate::killing::nullspace;
 use crate::local::draws;
 
 /// Points beyond as many as there are functions.

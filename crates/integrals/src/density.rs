@@ -5,13 +5,12 @@
 //! X_b(g_ca)`; the others are sines and cosines of single coordinates. In coordinates and the free
 //! velocities `s` instead of `p_a = g_ab s^b` the exponent of `det g` is one more: `dq dp = det g dq ds`.
 
-use decision::exact::{Exact, FIELDS, Jet, Modular, in_field};
+use decision::exact::{Exact, FIELDS, Jet, Modular, in_field, nullspace};
 use decision::{ExactStart, SeriesStart};
 use symbolic::{Fraction, Scalar};
 
 use crate::Open;
 use crate::flag::fields_with_rates;
-use crate::killing::nullspace;
 use crate::local::{Reversible, at_random};
 
 /// A density `Π B_k^{c_k}` of `dq ds`, on coordinates and free velocities.

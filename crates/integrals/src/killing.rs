@@ -22,7 +22,7 @@
 //! derivatives along which lower weights by one: where none are free, none are at a higher weight.
 
 use decision::SeriesStart;
-use decision::exact::{Echelon, Modular};
+use decision::exact::{Echelon, Modular, nullspace};
 
 use crate::Open;
 use crate::flag::Flag;
@@ -319,30 +319,4 @@ fn accelerations(ring: &Ring, local: &Local, fields: &[Vec<Series>]) -> (Vec<Vec
         .iter()
         .map(|over| raise(over, &|d| minus(&ring.zero(), &ring.along(&fields[d], &local.potential))));
     (gamma.collect(), force.collect())
-}
-
-/// How many of the first `fresh` columns are free, and all relations `Σ x_j column_j = 0`.
-pub(crate) fn nullspace(columns: &[Vec<Modular>], fresh: usize) -> (usize, Vec<Vec<Modular>>) {
-    let height = columns.first().map_or(0, Vec::len);
-    let width = columns.len();
-    let mut rows = Echelon::default();
-    for i in 0..height {
-        if rows.0.len() == width {
-            break;
-        }
-        rows.add(columns.iter().map(|column| column[i]).collect());
-    }
-    let mut pivots = rows.0;
-    pivots.sort_by_key(|(pivot, _)| *pivot);
-    let free: Vec<usize> = (0..width).filter(|j| pivots.iter().all(|(pivot, _)| pivot != j)).collect();
-    let solve = |&j: &usize| {
-        let mut x = vec![Modular::ZERO; width];
-        x[j] = Modular::one();
-        for (pivot, row) in pivots.iter().rev() {
-            let sum = (pivot + 1..width).fold(Modular::ZERO, |sum, k| sum + row[k] * x[k]);
-            x[*pivot] = -sum;
-        }
-        x
-    };
-    (free.iter().filter(|&&j| j < fresh).count(), free.iter().map(solve).collect())
 }

@@ -2,11 +2,10 @@
 
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-use deltaq::{Settings, VAKONOMIC_COSTATE};
-use equations::Formulation;
+use deltaq::Settings;
 use fit::{
-    Aim, Design, Deviations, EXCLUDED, Film, FitError, Question, ROBUST, Range, Row, Sampling, Unknown, design_value,
-    fit_formulations, fit_value, profile, with_law,
+    Aim, Design, Deviations, Film, FitError, Question, ROBUST, Range, Row, Sampling, Unknown, design_value,
+    fit_formulations, fit_value, profile,
 };
 use integrate::Interrupt;
 use pyo3::exceptions::PyValueError;
@@ -140,18 +139,14 @@ impl System {
             film.known.push((name, value));
         }
         let unknowns: Vec<Unknown> = read(&free)?;
-        let law: Vec<Unknown> = read::<Unknown>(&law)?.iter().map(Unknown::of_law).collect();
-        let all = formulations.iter().any(|name| name == "all");
-        let named = formulations.iter().filter(|name| *name != "all").map(|name| arguments::formulation(name));
-        let named = named.collect::<PyResult<Vec<_>>>()?;
+        let law: Vec<Unknown> = read(&law)?;
+        let wanted = fit::formulations(&formulations).map_err(|error| errors::unknown(error.to_string()))?;
         let settings = settings(tolerance, max_steps)?;
         let interrupt = Interrupt::default();
         let robust = robust.then_some(ROBUST);
         let own = films.clone();
         let work = move || {
             let question = Question { unknowns: &unknowns, law: &law, starts, robust, settings, threads: 0 };
-            let wanted =
-                |f: &Formulation| if all { *f != *VAKONOMIC_COSTATE } else { named.iter().any(|own| **own == *f) };
             let rows = fit_formulations(&scene, &own, &question, &wanted)?;
             let answer = fit_value(&scene, &own, &rows).to_string();
             Ok::<_, FitError>((rows, answer))
@@ -185,36 +180,24 @@ impl System {
         max_steps: usize,
         threads: usize,
     ) -> PyResult<String> {
-        let law: Vec<Unknown> = read::<Unknown>(&law)?.iter().map(Unknown::of_law).collect();
-        let scene = with_law(&self.scene(), &law);
+        let scene = self.scene().clone();
+        let law: Vec<Unknown> = read(&law)?;
         let deviations = Deviations::written(&sigma).map_err(refused)?;
         let times: Sampling = film.parse().map_err(refused)?;
         let film = Film::planned(&scene, &columns, times, &deviations).map_err(refused)?;
         let films = vec![film; films.max(1)];
         let (unknowns, over): (Vec<Unknown>, Vec<Range>) = (read(&free)?, read(&over)?);
         let settings = settings(tolerance, max_steps)?;
-        let first = |name: &str| {
-            let wanted = arguments::formulation(name)?;
-            let choice = deltaq::choices_among(&scene, |f| *f == *wanted).into_iter().next();
-            choice.ok_or_else(|| PyValueError::new_err(format!("the system has no {name} motion")))
+        let aim = match &aim[..] {
+            [name] => Aim::Estimate(name.clone()),
+            [truth, rival] => Aim::Tell(arguments::formulation(truth)?, arguments::formulation(rival)?),
+            _ => return Err(PyValueError::new_err("two formulations are needed")),
         };
-        let choices = match &aim[..] {
-            [_] => vec![first(if law.is_empty() { "chetaev" } else { "first-order" })?],
-            both => both.iter().map(|name| first(name)).collect::<PyResult<Vec<_>>>()?,
-        };
-        let unknown = aim.first().map(|name| Unknown::named(name).of_law().name).unwrap_or_default();
         let work = move || {
-            let scene = &scene;
-            let aim = match &choices[..] {
-                [truth, rival] => Aim::Tell(truth, rival),
-                [own, ..] => Aim::Estimate(own, &unknown),
-                [] => return Err(FitError::NoUnknown),
-            };
             let question = Question { unknowns: &unknowns, law: &law, starts, robust: None, settings, threads: 0 };
-            let design = Design::new(scene, &films, &question, &over, aim)?;
+            let design = Design::new(&scene, &films, &question, &over, &aim)?;
             let best = design.best(points, threads)?;
-            let shortest = (best.best.value >= EXCLUDED).then(|| design.shortest(&best.best.at)).flatten();
-            Ok(design_value(scene, &films, (&design, aim), &best, shortest).to_string())
+            Ok(design_value(&scene, &films, &design, &best).to_string())
         };
         background::run(py, &Interrupt::default(), work)?.map_err(refused)
     }

@@ -90,3 +90,29 @@ impl Echelon {
         true
     }
 }
+
+/// How many of the first `fresh` columns are free, and all relations `Σ x_j column_j = 0`.
+pub fn nullspace(columns: &[Vec<Modular>], fresh: usize) -> (usize, Vec<Vec<Modular>>) {
+    let height = columns.first().map_or(0, Vec::len);
+    let width = columns.len();
+    let mut rows = Echelon::default();
+    for i in 0..height {
+        if rows.0.len() == width {
+            break;
+        }
+        rows.add(columns.iter().map(|column| column[i]).collect());
+    }
+    let mut pivots = rows.0;
+    pivots.sort_by_key(|(pivot, _)| *pivot);
+    let free: Vec<usize> = (0..width).filter(|j| pivots.iter().all(|(pivot, _)| pivot != j)).collect();
+    let solve = |&j: &usize| {
+        let mut x = vec![Modular::ZERO; width];
+        x[j] = Modular::one();
+        for (pivot, row) in pivots.iter().rev() {
+            let sum = (pivot + 1..width).fold(Modular::ZERO, |sum, k| sum + row[k] * x[k]);
+            x[*pivot] = -sum;
+        }
+        x
+    };
+    (free.iter().filter(|&&j| j < fresh).count(), free.iter().map(solve).collect())
+}

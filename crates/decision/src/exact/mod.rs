@@ -1,5 +1,6 @@
 //! Truncated power series over a finite field, or `f64`, and the expressions of the graph evaluated on them.
 
+mod dual;
 mod field;
 mod jet;
 mod linear;
@@ -9,9 +10,10 @@ mod small_fraction;
 
 use symbolic::{Bounded, Scalar};
 
+pub use dual::Dual;
 pub use field::{FIELDS, Field, agreed, in_any_field, in_field};
 pub use jet::{Jet, ORDERS};
-pub use linear::{Echelon, inverse};
+pub use linear::{Echelon, inverse, nullspace};
 pub(crate) use linear::{solve, subtract_product};
 pub use modular::Modular;
 pub(crate) use modular::TRIED;

@@ -1,0 +1,206 @@
+//! What films of some columns can show at all: the rank of their time derivatives in the unknowns.
+//!
+//! A film without gaps and noise shows the coefficients `c_k` of its columns, `c(t₀ + s) = Σ c_k s^k`. These are
+//! algebraic in the numbers of the scene (see [`decision`]); at random unknowns in a finite field, known numbers
+//! being as written, `∂c_k/∂θ` comes from series whose coefficients carry derivatives ([`Dual`]).
+//!
+//! - Full rank: a minor that is not zero modulo a prime is not zero. Analytic in θ, it is not zero at almost all
+//!   θ, near which different θ give different films: *identifiable, proved*.
+//! - Less, to the order of as many coefficients as there are states and unknowns, in two fields: no proof; what
+//!   kernels contain is named.
+//!
+//! Source: A. Sedoglavic, *A probabilistic algorithm to test local algebraic observability in polynomial time*,
+//! J. Symbolic Computation 33 (2002) 735.
+
+use decision::exact::{Coefficient, Dual, Exact, Jet, Modular, ORDERS, agreed, nullspace};
+use decision::{Dynamics, ExactStart, Program};
+use deltaq::{Choice, costate_names, derive};
+use scene::Scene;
+use symbolic::{SplitMix, Symbol};
+
+use crate::Film;
+use crate::film::expression;
+use crate::part::{Part, Place};
+use crate::unknown::Unknown;
+
+/// Random unknowns are integers of either sign up to 2 to one of these powers: functions are taken of them.
+const BITS: [u32; 3] = [20, 8, 3];
+/// Coefficients beyond as many as there are unknowns per column, before as many as are needed.
+const MORE: usize = 2;
+
+/// Whether films of these columns can show the unknowns.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Identifiability {
+    /// At almost all unknowns films show each of them, near its value: proved.
+    Proved,
+    /// At almost all unknowns derivatives to this order do not change with these combinations, by ranks in two
+    /// fields. Each is given by the unknowns in it.
+    Hidden {
+        /// Labels of the unknowns of each combination.
+        combinations: Vec<Vec<String>>,
+        /// The highest order.
+        order: usize,
+    },
+    /// Numbers or equations have no images in a finite field: why.
+    Open(String),
+}
+
+impl Identifiability {
+    /// In words.
+    pub fn words(&self) -> String {
+        match self {
+            Identifiability::Proved => "at almost all numbers such films show each of the unknowns: proved".into(),
+            Identifiability::Hidden { combinations, order } => {
+                let each: Vec<String> = combinations.iter().map(|names| names.join(" with ")).collect();
+                format!("no such film shows {} (derivatives to order {order}, in two finite fields)", each.join(", "))
+            }
+            Identifiability::Open(reason) => {
+                format!("whether such films can show each of the unknowns is open: {reason}")
+            }
+        }
+    }
+}
+
+/// What films of the columns of `parts` can show of the unknowns, as motions of `choice`.
+pub(crate) fn identifiability(scene: &Scene, choice: &Choice, parts: &[Part], unknowns: &[Unknown]) -> Identifiability {
+    let found = Question::new(scene, choice, parts, unknowns).and_then(|question| {
+        let few = unknowns.len() + MORE;
+        let all = (question.states + few).min(ORDERS - 1);
+        for orders in [few.min(all), all] {
+            let seeds = std::array::from_fn(|i| i as u64 + 1);
+            let found = agreed(seeds, |seed| question.hidden(orders, seed), Vec::is_empty);
+            let hidden = found.map_err(|fault| fault.unwrap_or_else(|| "finite fields do not agree".into()))?;
+            if hidden.is_empty() {
+                return Ok(Identifiability::Proved);
+            }
+            if orders == all {
+                let names = |of: &Vec<usize>| of.iter().map(|&i| unknowns[i].label()).collect();
+                let combinations = hidden.iter().map(names).collect();
+                return Ok(Identifiability::Hidden { combinations, order: orders - 1 });
+            }
+        }
+        Err("no order".into())
+    });
+    found.unwrap_or_else(Identifiability::Open)
+}
+
+struct Question<'a> {
+    start: ExactStart,
+    dynamics: Dynamics,
+    /// The columns, from parameters, `t`, `q`, `v`; film by film.
+    columns: Vec<Program>,
+    inputs: usize,
+    states: usize,
+    /// Names of the free constants, in the order of the equations.
+    constants: Vec<String>,
+    scene: &'a Scene,
+    parts: &'a [Part],
+    unknowns: &'a [Unknown],
+}
+
+impl<'a> Question<'a> {
+    fn new(scene: &'a Scene, choice: &Choice, parts: &'a [Part], unknowns: &'a [Unknown]) -> Result<Self, String> {
+        let system = &scene.system;
+        let start = ExactStart::new(system, &scene.start, &scene.completion, choice.removal.as_ref());
+        let start = start.map_err(|fault| fault.to_string())?;
+        let equations = derive(system, choice).map_err(|fault| fault.to_string())?;
+        let dynamics = Dynamics::new(system, &equations).map_err(|fault| fault.to_string())?;
+        let constants = match &choice.removal {
+            Some(removal) => costate_names(scene, removal),
+            None => scene.multiplier_names(),
+        };
+        let count = equations.constant_symbols().len();
+        if count > 0 && count != constants.len() {
+            return Err("some constants do not enter the equations".into());
+        }
+        let symbols: Vec<Symbol> = system.parameters.iter().map(|p| p.symbol).collect();
+        let inputs = [&symbols[..], &[system.time], &system.positions(), &system.velocities()].concat();
+        let program = |film: &Film| {
+            let columns = film.columns.iter().map(|column| expression(scene, &column.name));
+            let columns = columns.collect::<Result<Vec<_>, _>>().map_err(|fault| fault.to_string())?;
+            Program::new(&system.graph, &inputs, &columns).map_err(|fault| fault.to_string())
+        };
+        let columns = parts.iter().map(|part| program(&part.film)).collect::<Result<_, _>>()?;
+        let (states, inputs) = (equations.states.len(), inputs.len());
+        let constants = constants[..count].to_vec();
+        Ok(Question { start, dynamics, columns, inputs, states, constants, scene, parts, unknowns })
+    }
+
+    /// Unknowns in each combination that coefficients up to this many do not show.
+    fn hidden(&self, orders: usize, seed: u64) -> Result<Vec<Vec<usize>>, String> {
+        let mut fault = None;
+        for bits in BITS {
+            match self.slopes(orders, seed, bits) {
+                Ok(columns) => {
+                    let kernel = nullspace(&columns, 0).1.into_iter();
+                    let of = |x: Vec<Modular>| (0..x.len()).filter(|&j| !x[j].is_zero()).collect();
+                    return Ok(kernel.map(of).collect());
+                }
+                Err(reason) => fault = fault.or(Some(reason)),
+            }
+        }
+        Err(fault.unwrap_or_default())
+    }
+
+    /// By unknown: derivatives of all coefficients, and of what is known before.
+    fn slopes(&self, orders: usize, seed: u64, bits: u32) -> Result<Vec<Vec<Modular>>, String> {
+        let mut random = SplitMix::new(seed);
+        let mut draw = || {
+            let x = random.bits();
+            let size = i128::from(x % (1 << bits)) + 1;
+            Exact::ratio(if x >> 63 == 0 { size } else { -size }, 1).ok_or("no number".to_string())
+        };
+        let numbers = self.unknowns.iter().map(|_| draw()).collect::<Result<Vec<_>, _>>()?;
+        let column = |j: usize| -> Result<Vec<Modular>, String> {
+            let mut slopes = Vec::new();
+            for (part, program) in self.parts.iter().zip(&self.columns) {
+                slopes.extend(self.film(part, program, &numbers, j, orders)?);
+            }
+            let before = self.unknowns.iter().enumerate().filter(|(_, unknown)| unknown.prior.is_some());
+            slopes.extend(before.map(|(i, _)| if i == j { Modular::one() } else { Modular::ZERO }));
+            Ok(slopes)
+        };
+        (0..self.unknowns.len()).map(column).collect()
+    }
+
+    /// Derivatives of the coefficients of one film by unknown `j`.
+    fn film(
+        &self,
+        part: &Part,
+        program: &Program,
+        numbers: &[Exact],
+        j: usize,
+        orders: usize,
+    ) -> Result<Vec<Modular>, String> {
+        let graph = &self.scene.system.graph;
+        let mut constants = vec![Jet::of(0.0); self.constants.len()];
+        let mut others: Vec<(Symbol, Jet<Dual>)> = Vec::new();
+        for (name, place) in part.model.names().iter().zip(&part.places) {
+            let value = match *place {
+                Place::Known(value) => Jet::of(value),
+                Place::Unknown(i) => {
+                    let value = Modular::of(numbers[i]).map_err(|flaw| flaw.to_string())?;
+                    let slope = if i == j { Modular::one() } else { Modular::ZERO };
+                    Jet::constant(Dual { value, slope }, Some(numbers[i]))
+                }
+            };
+            match (self.constants.iter().position(|own| own == name), graph.find_symbol(name)) {
+                (Some(i), _) => constants[i] = value,
+                (None, Some(symbol)) => others.push((symbol, value)),
+                // a constant that does not enter the equations
+                (None, None) => {}
+            }
+        }
+        let start = self.start.with(&others).map_err(|fault| fault.to_string())?;
+        let curve = self.dynamics.series(&start, &constants, orders).map_err(|fault| fault.to_string())?;
+        let mut evaluator = program.evaluator::<Jet<Dual>>();
+        let seen = evaluator.run(&curve.inputs[..self.inputs]);
+        if let Some(flaw) = seen.iter().find_map(|column| column.flaw()) {
+            return Err(flaw.to_string());
+        }
+        // a clock that is slow by c has k-th coefficients (1 + c)^k times as large; ranks are those of c = 0
+        let is_clock = matches!(part.clock, Some(Place::Unknown(i)) if i == j);
+        let slope = |c: Dual, k: usize| if is_clock { Modular::new(k as u64) * c.value } else { c.slope };
+        Ok(seen.iter().flat_map(|column| (0..orders).map(|k| slope(column.coefficient(k), k))).collect())
+    }
+}

@@ -1,0 +1,136 @@
+//! What is asked of films, and what each formulation makes of it.
+
+use deltaq::{
+    Choice, FIRST_ORDER, FORMULATIONS, KAPPA, Settings, UnknownFormulation, VAKONOMIC_COSTATE, constants_of,
+    costate_names, formulation, is_costate,
+};
+use equations::{Formulation, Needs};
+use mechanics::{ConstantsRule, Parameter};
+use scene::Scene;
+
+use crate::unknown::with_start;
+use crate::{Film, FitError, Problem, Unknown};
+
+/// Residuals above this size count linearly where outliers are to count little.
+pub const ROBUST: f64 = 1.345;
+
+/// Constraint laws with numbers, as further rows.
+pub(crate) const LAWS: [&Formulation; 2] = [FIRST_ORDER, KAPPA];
+pub(crate) const SLIP: &str = "slip";
+
+/// Formulations of these names; `all` is every one, but the form in costates beside the vakonomic one.
+///
+/// # Errors
+/// [`UnknownFormulation`].
+pub fn formulations(names: &[String]) -> Result<Vec<&'static Formulation>, UnknownFormulation> {
+    match names.iter().any(|name| name == "all") {
+        true => Ok(FORMULATIONS.iter().copied().filter(|f| **f != *VAKONOMIC_COSTATE).collect()),
+        false => names.iter().map(|name| formulation(name)).collect(),
+    }
+}
+
+/// What is asked of films.
+#[derive(Clone)]
+pub struct Question<'a> {
+    /// What is not known, whatever the formulation. Multipliers and costates at the start are unknown where a
+    /// formulation has them, and need not be named. `start` stands for coordinates and given velocities.
+    pub unknowns: &'a [Unknown],
+    /// Numbers of constraint laws that are not known: `eps` or `slip` of the first order, `kappa`. Each law is
+    /// a further row.
+    pub law: &'a [Unknown],
+    /// Starts of the search; four times as many where no formulation fits.
+    pub starts: usize,
+    /// Residuals above this size count linearly.
+    pub robust: Option<f64>,
+    /// How motions are integrated.
+    pub settings: Settings,
+    /// Threads, which share the formulations; 0: as many as there are processors. No result depends on it.
+    pub threads: usize,
+}
+
+impl Question<'_> {
+    /// The scene with the parameters of the laws that are asked for, the numbers of these, and the unknowns
+    /// one by one.
+    ///
+    /// # Errors
+    /// [`FitError::Unknown`] for a number of no law.
+    pub(crate) fn prepared(&self, scene: &Scene) -> Result<(Scene, Vec<Unknown>, Vec<Unknown>), FitError> {
+        let mut law: Vec<Unknown> = self.law.iter().map(Unknown::of_law).collect();
+        law.dedup_by(|b, a| a.name == b.name);
+        if let Some(unknown) = law.iter().find(|u| !is_of_a_law(&u.name)) {
+            let names: Vec<&str> = LAWS.iter().flat_map(|law| law.needs.parameters()).copied().collect();
+            let reason = format!("it is no number of a constraint law; these are {}", names.join(", "));
+            return Err(FitError::Unknown { text: unknown.name.clone(), reason });
+        }
+        let mut scene = scene.clone();
+        for unknown in &law {
+            let symbol = scene.system.graph.symbol(&unknown.name);
+            if !scene.system.parameters.iter().any(|p| p.symbol == symbol) {
+                scene.system.parameters.push(Parameter { symbol, value: unknown.start.unwrap_or(0.0) });
+            }
+        }
+        let unknowns = with_start(&scene, self.unknowns);
+        Ok((scene, law, unknowns))
+    }
+
+    /// Its numbers of the law that a formulation is.
+    pub(crate) fn law_of(&self, formulation: &Formulation) -> impl Iterator<Item = &Unknown> {
+        let names = formulation.needs.parameters();
+        self.law.iter().filter(move |unknown| names.contains(&unknown.name.as_str()))
+    }
+}
+
+/// Whether a formulation is a constraint law with numbers.
+pub(crate) fn is_law(formulation: &Formulation) -> bool {
+    matches!(formulation.needs, Needs::Parameters(_))
+}
+
+/// Whether a number is one of a constraint law.
+pub(crate) fn is_of_a_law(name: &str) -> bool {
+    LAWS.iter().any(|law| law.needs.parameters().contains(&name))
+}
+
+/// Unknowns of a formulation beside those of the question: constants that it starts from, numbers of its law.
+fn own(scene: &Scene, choice: &Choice, question: &Question) -> Vec<Unknown> {
+    let constants = match &choice.removal {
+        Some(removal) => costate_names(scene, removal),
+        None if choice.formulation.starts_multipliers => scene.multiplier_names(),
+        None => Vec::new(),
+    };
+    let named = |name: &str| question.unknowns.iter().any(|u| u.name == name && u.film.is_none());
+    let constants = constants.iter().filter(|name| !named(name)).map(|name| Unknown::named(name));
+    question.law_of(choice.formulation).cloned().chain(constants).collect()
+}
+
+/// The films as motions of `choice`: constants to start from are unknown, and no others of their kind.
+///
+/// # Errors
+/// As [`Problem::new`].
+pub(crate) fn problem_of(
+    scene: &Scene,
+    choice: &Choice,
+    films: &[Film],
+    question: &Question,
+) -> Result<Problem, FitError> {
+    let mut unknowns: Vec<Unknown> = question.unknowns.to_vec();
+    unknowns.retain(|u| {
+        !is_constant(&u.name) || (is_costate(&u.name) == choice.removal.is_some()) && has_constants(choice)
+    });
+    unknowns.extend(own(scene, choice, question));
+    let constants = match (&choice.removal, constants_of(choice, scene)) {
+        (Some(_), ConstantsRule::Natural { .. }) => ConstantsRule::Zero,
+        (_, rule) => rule,
+    };
+    let choice = Choice { constants, ..choice.clone() };
+    Ok(Problem::new(scene, &choice, films, &unknowns, &question.settings)?.robust(question.robust))
+}
+
+/// Whether a number is a multiplier or a costate at the start.
+pub(crate) fn is_constant(name: &str) -> bool {
+    name.starts_with("mu0_") || is_costate(name)
+}
+
+/// Whether motions have constants to start from, `μ₀` or `P₀`.
+pub(crate) fn has_constants(choice: &Choice) -> bool {
+    choice.formulation.starts_multipliers || choice.removal.is_some()
+}
