@@ -2,7 +2,7 @@
 
 use std::sync::Mutex;
 
-use deltaq::{CHETAEV, Choice, KAPPA, choices_among, over_threads};
+use deltaq::{CHETAEV, Choice, choices_among, over_threads};
 use equations::Formulation;
 use scene::Scene;
 
@@ -18,9 +18,6 @@ const MORE_STARTS: usize = 4;
 /// Further groups of starts for a formulation that would be excluded and is not poor.
 const GROUPS: usize = 3;
 
-/// `κ T` where a search for κ begins.
-const RELAXATIONS: f64 = 10.0;
-
 /// A fit with what was fitted.
 type Fitted = Result<(Problem, Fit), FitError>;
 
@@ -35,7 +32,6 @@ pub fn fit_formulations(
     wanted: &[&'static Formulation],
 ) -> Result<Vec<Row>, FitError> {
     let (scene, law, unknowns) = question.prepared(scene)?;
-    let law: Vec<Unknown> = law.into_iter().map(|unknown| begun_at(unknown, &scene, films)).collect();
     let question = &Question { unknowns: &unknowns, law: &law, ..question.clone() };
     let asked = |f: &Formulation| match is_law(f) {
         true => question.law_of(f).next().is_some(),
@@ -48,8 +44,7 @@ pub fn fit_formulations(
     let near = fits.iter().find(|(known, _)| known.formulation == CHETAEV);
     let near = near.and_then(|(_, fit)| fit.as_ref().ok()).map(|(_, fit)| fit.clone());
     let law = |choice: &Choice, near: Option<&Fit>| fit_law(&scene, choice, films, question, near);
-    let begun_near = |choice: &Choice| near.as_ref().filter(|_| !has_constants(choice));
-    fits.extend(laws.into_iter().map(|choice| (choice.clone(), law(&choice, begun_near(&choice)))));
+    fits.extend(laws.into_iter().map(|choice| (choice.clone(), law(&choice, near.as_ref()))));
     // before nothing fits, more starts, and those of laws not from Chetaev's numbers
     let fits_well = |(_, fit): &(Choice, Fitted)| fit.as_ref().is_ok_and(|(_, fit)| fit.objections().next().is_none());
     if !fits.iter().any(fits_well) {
@@ -59,8 +54,7 @@ pub fn fit_formulations(
         for ((_, fit), (_, again)) in fits.iter_mut().filter(|(choice, _)| has_constants(choice)).zip(again) {
             keep_less(fit, again);
         }
-        for (choice, fit) in fits.iter_mut().filter(|(choice, _)| is_law(choice.formulation) && !has_constants(choice))
-        {
+        for (choice, fit) in fits.iter_mut().filter(|(choice, _)| is_law(choice.formulation)) {
             keep_less(fit, law(choice, None));
         }
     }
@@ -100,16 +94,6 @@ pub fn fit_formulations(
             .collect();
     }
     Ok(rows)
-}
-
-/// With the start of κ, some relaxations in the longest film, where it is not given.
-fn begun_at(unknown: Unknown, scene: &Scene, films: &[Film]) -> Unknown {
-    if !KAPPA.needs.parameters().contains(&unknown.name.as_str()) || unknown.start.is_some() {
-        return unknown;
-    }
-    let ends = films.iter().filter_map(|film| film.t.last());
-    let length = ends.fold(0.0_f64, |length, end| length.max(end - scene.start.t));
-    Unknown { start: (length > 0.0).then_some(RELAXATIONS / length), ..unknown }
 }
 
 /// The fit of less χ².

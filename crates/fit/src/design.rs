@@ -17,7 +17,7 @@ use deltaq::{CHETAEV, Choice, choices_among};
 use equations::Formulation;
 use scene::Scene;
 
-use crate::question::{LAWS, is_constant, is_of_a_law, problem_of};
+use crate::question::{LAW, is_constant, is_of_a_law, problem_of};
 use crate::search::search;
 use crate::{EXCLUDED, Film, FitError, Problem, Question, Unknown, quantity, standard_errors};
 
@@ -58,8 +58,7 @@ impl FromStr for Range {
 pub enum Aim {
     /// That the first formulation is right and not the second.
     Tell(&'static Formulation, &'static Formulation),
-    /// A number: of a constraint law, by that law; another one by the law of first order where numbers of that
-    /// are unknown, else by Chetaev's.
+    /// A number: by the law of first order where numbers of that are unknown, else by Chetaev's.
     Estimate(String),
 }
 
@@ -198,8 +197,7 @@ impl Design {
             Aim::Tell(truth, rival) if truth == rival => return Err(FitError::ToldFromItself(truth.name)),
             Aim::Tell(truth, rival) => vec![first(truth)?, first(rival)?],
             Aim::Estimate(_) => {
-                let own = LAWS.into_iter().find(|own| question.law_of(own).next().is_some());
-                vec![first(own.unwrap_or(CHETAEV))?]
+                vec![first(if law.is_empty() { CHETAEV } else { LAW })?]
             }
         };
         let (choice, rival) = (&choices[0], choices.get(1));

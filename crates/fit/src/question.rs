@@ -1,8 +1,8 @@
 //! What is asked of films, and what each formulation makes of it.
 
 use deltaq::{
-    Choice, FIRST_ORDER, FORMULATIONS, KAPPA, Settings, UnknownFormulation, VAKONOMIC_COSTATE, constants_of,
-    costate_names, formulation, is_costate,
+    Choice, FIRST_ORDER, FORMULATIONS, Settings, UnknownFormulation, VAKONOMIC_COSTATE, constants_of, costate_names,
+    formulation, is_costate,
 };
 use equations::{Formulation, Needs};
 use mechanics::{ConstantsRule, Parameter};
@@ -14,8 +14,9 @@ use crate::{Film, FitError, Problem, Unknown};
 /// Residuals above this size count linearly where outliers are to count little.
 pub const ROBUST: f64 = 1.345;
 
-/// Constraint laws with numbers, as further rows.
-pub(crate) const LAWS: [&Formulation; 2] = [FIRST_ORDER, KAPPA];
+/// The constraint law with numbers. That of κ is none of these: where Chetaev's law is right, κ is infinite, and
+/// motions with large κ are stiff; ε is the number for it.
+pub(crate) const LAW: &Formulation = FIRST_ORDER;
 pub(crate) const SLIP: &str = "slip";
 
 /// Formulations of these names; `all` is every one, but the form in costates beside the vakonomic one.
@@ -35,8 +36,7 @@ pub struct Question<'a> {
     /// What is not known, whatever the formulation. Multipliers and costates at the start are unknown where a
     /// formulation has them, and need not be named. `start` stands for coordinates and given velocities.
     pub unknowns: &'a [Unknown],
-    /// Numbers of constraint laws that are not known: `eps` or `slip` of the first order, `kappa`. Each law is
-    /// a further row.
+    /// Numbers of the law of first order that are not known, `eps` or `slip`: a further row.
     pub law: &'a [Unknown],
     /// Starts of the search; four times as many where no formulation fits.
     pub starts: usize,
@@ -49,17 +49,17 @@ pub struct Question<'a> {
 }
 
 impl Question<'_> {
-    /// The scene with the parameters of the laws that are asked for, the numbers of these, and the unknowns
-    /// one by one.
+    /// The scene with the parameters of the law that it lacks, the numbers of the law, and the unknowns one by
+    /// one.
     ///
     /// # Errors
-    /// [`FitError::Unknown`] for a number of no law.
+    /// [`FitError::Unknown`] for a number of another law.
     pub(crate) fn prepared(&self, scene: &Scene) -> Result<(Scene, Vec<Unknown>, Vec<Unknown>), FitError> {
         let mut law: Vec<Unknown> = self.law.iter().map(Unknown::of_law).collect();
         law.dedup_by(|b, a| a.name == b.name);
         if let Some(unknown) = law.iter().find(|u| !is_of_a_law(&u.name)) {
-            let names: Vec<&str> = LAWS.iter().flat_map(|law| law.needs.parameters()).copied().collect();
-            let reason = format!("it is no number of a constraint law; these are {}", names.join(", "));
+            let names = LAW.needs.parameters().join(", ");
+            let reason = format!("it is no number of the law of first order; these are {names}");
             return Err(FitError::Unknown { text: unknown.name.clone(), reason });
         }
         let mut scene = scene.clone();
@@ -80,14 +80,14 @@ impl Question<'_> {
     }
 }
 
-/// Whether a formulation is a constraint law with numbers.
+/// Whether a formulation is a law with numbers.
 pub(crate) fn is_law(formulation: &Formulation) -> bool {
     matches!(formulation.needs, Needs::Parameters(_))
 }
 
-/// Whether a number is one of a constraint law.
+/// Whether a number is one of the law.
 pub(crate) fn is_of_a_law(name: &str) -> bool {
-    LAWS.iter().any(|law| law.needs.parameters().contains(&name))
+    LAW.needs.parameters().contains(&name)
 }
 
 /// Unknowns of a formulation beside those of the question: constants that it starts from, numbers of its law.

@@ -53,14 +53,13 @@ impl Unknown {
         Unknown { name: name.into(), film: None, start: None, prior: None, bound: None }
     }
 
-    /// As a number of a constraint law: `eps` is `epsilon`, not below 0; `slip`, not below 0, begins at 0.01;
-    /// `kappa` is not below 0.
+    /// As a number of the law of first order: `eps` is `epsilon`, not below 0; `slip`, not below 0, begins at
+    /// 0.01.
     #[must_use]
     pub fn of_law(&self) -> Self {
         let mut unknown = self.clone();
         match unknown.name.as_str() {
             "eps" => (unknown.name, unknown.bound) = ("epsilon".into(), unknown.bound.or(Some(0.0))),
-            "kappa" => unknown.bound = unknown.bound.or(Some(0.0)),
             "slip" => (unknown.start, unknown.bound) = (unknown.start.or(Some(0.01)), unknown.bound.or(Some(0.0))),
             _ => {}
         }

@@ -1,6 +1,6 @@
 //! Which formulation films support.
 
-use deltaq::{CHETAEV, Choice, KAPPA, VAKONOMIC};
+use deltaq::{CHETAEV, Choice};
 use equations::Formulation;
 
 use crate::question::is_law;
@@ -91,13 +91,10 @@ pub fn verdicts(fits: Vec<(Choice, Result<Fit, FitError>)>) -> Vec<Row> {
 }
 
 /// Whether one of two formulations is the other with more numbers, so that both can be right: Chetaev's law
-/// is that of first order with ε = 0, the vakonomic one that of κ = 0.
+/// is that of first order with ε = 0.
 fn is_part(a: &Formulation, b: &Formulation) -> bool {
     let is = |x: &Formulation, y: &Formulation| x.name == y.name;
-    let contains = |x: &Formulation, y: &Formulation| {
-        is_law(x) && (is_law(y) || is(y, CHETAEV)) || is(x, KAPPA) && is(y, VAKONOMIC)
-    };
-    is(a, b) || contains(a, b) || contains(b, a)
+    is(a, b) || (is_law(a) && is(b, CHETAEV)) || (is(a, CHETAEV) && is_law(b)) || (is_law(a) && is_law(b))
 }
 
 #[cfg(test)]

@@ -6,4 +6,5 @@ mod films;
 mod laws;
 mod noise;
 mod search;
+mod shown;
 mod tables;
