@@ -32,7 +32,7 @@ pub struct Best {
 
 impl Design {
     /// The best films that were found, from a scan of `points` beside the corners; the scene's own where
-    /// nothing can be chosen. Over this many threads (0: as many as there are processors), on which no result
+    /// nothing can be chosen: without points as [`Design::point`] has it. Over this many threads (0: as many as there are processors), on which no result
     /// depends.
     ///
     /// # Errors
@@ -41,8 +41,9 @@ impl Design {
         let mut seen = Seen { design: self, threads, points: Vec::new(), without_motion: 0, reason: None };
         let at: Vec<f64> = self.chosen().iter().map(|chosen| chosen.own).collect();
         if at.is_empty() {
-            let best = self.point_again(&at)?;
-            let (own, shortest) = (Ok(best.clone()), self.shortest_where_it_tells(&best));
+            let best = if points == 0 { self.point(&at)? } else { self.point_again(&at)? };
+            let shortest = if points == 0 { None } else { self.shortest_where_it_tells(&best) };
+            let own = Ok(best.clone());
             return Ok(Best { own, best, others: Vec::new(), shortest, tried: 1, without_motion: 0 });
         }
         let own = self.point(&at);

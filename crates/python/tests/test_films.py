@@ -70,6 +70,33 @@ def test_pictures_and_pickles(fitted):
     assert again.answer == fitted.answer
 
 
+def test_what_films_can_show(fitted):
+    assert [row.shown["answer"] for row in fitted.rows] == ["proved"] * 3
+    again = deltaq.built_in("sledge").fit(FILM, free=[*FREE, "alpha"], sigma="1mm", formulations=["chetaev"])
+    shown = again["chetaev"].shown
+    assert (shown["answer"], shown["hidden"]) == ("hidden", [["g", "alpha"]]) and "derivatives to order" in shown["words"]
+
+
+def test_a_grid_of_films():
+    heisenberg = deltaq.built_in("heisenberg")
+    ask = dict(film="20Hz,1mm,1s", free=["x'", "y'"])
+    grid = deltaq.designs(heisenberg, {"mu0_1": [0.5, 1.0], "x'": [0.6, 0.8, 0.0]}, ("vakonomic", "chetaev"), part=2, **ask)
+    rows = grid.to_pylist()
+    assert [row["mu0_1"] for row in rows] == [0.5] * 3 + [1.0] * 3 and [row["x'"] for row in rows[:3]] == [0.6, 0.8, 0.0]
+    own = heisenberg.replace({"mu0_1": 1.0, "x'": 0.8}).design(("vakonomic", "chetaev"), points=1, **ask)["best"]
+    assert rows[4]["value"] == pytest.approx(own["value"], rel=1e-6) and rows[4]["cause"] == ""
+    # twice the rate of turning, four times the squares
+    assert rows[4]["value"] == pytest.approx(4 * rows[1]["value"], rel=0.1)
+    nowhere = deltaq.designs(heisenberg, {"x'": [1e200, 0.5]}, ("vakonomic", "chetaev"), **ask).to_pylist()
+    assert nowhere[0]["value"] is None and nowhere[0]["cause"] and nowhere[1]["value"] > 0
+    with pytest.raises(ValueError, match="finite values"):
+        deltaq.designs(heisenberg, {"mu0_1": [np.nan]}, ("vakonomic", "chetaev"), **ask)
+    with pytest.raises(deltaq.UnknownNameError, match="mu0_7"):
+        deltaq.designs(heisenberg, {"mu0_7": [1.0]}, ("vakonomic", "chetaev"), **ask)
+    with pytest.raises(ValueError, match="points cannot be given"):
+        deltaq.designs(heisenberg, {"mu0_1": [1.0]}, ("vakonomic", "chetaev"), points=3, **ask)
+
+
 def test_what_is_refused(fitted):
     sledge = deltaq.built_in("sledge")
     film = {"t": [0.1, 0.2, 0.3], "x": [0.0, 0.1, 0.2]}

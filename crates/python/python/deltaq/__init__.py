@@ -62,7 +62,7 @@ from ._native import (
     load,
     parse,
 )
-from ._films import FilmFit, FormulationFit, Profile
+from ._films import FilmFit, FormulationFit, Profile, designs
 from ._proof import Proof
 from ._sweep import Sweep, ensemble, sweep
 from ._sympy import from_sympy
@@ -109,6 +109,7 @@ __all__ = [
     "UnknownNameError",
     "__version__",
     "built_in",
+    "designs",
     "ensemble",
     "from_sympy",
     "load",

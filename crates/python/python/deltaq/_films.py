@@ -3,15 +3,23 @@
 from __future__ import annotations
 
 import json
+import math
 import os
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
 
-from ._native import System, UnknownNameError, _Fitted
+from . import _parts
+from ._native import DeltaqError, System, UnknownNameError, __version__, _Fitted
+from ._needs import needed
+from ._sweep import _written
+
+if TYPE_CHECKING:
+    import pyarrow as pa
+    import pyarrow.dataset as ds
 
 
 class Profile:
@@ -39,7 +47,8 @@ class FormulationFit:
 
     `label`, `formulation`: its name. `verdict`: "supported", "excluded", "cannot-tell", "none" or "not-fitted", in `words`.
     `names`: of the unknowns, in the order of theta. `estimates`: by name value, error, low, high (of 95 %), profiled and
-    at_bound, None for infinite. `chi_squared`, `freedom`, `bic`, `tests`, `hidden`, `minima`, `starts`, `reached` as in
+    at_bound, None for infinite. `shown`: whether such films can show the unknowns at all, with answer "proved", "hidden" or
+    "open", hidden, order and words. `chi_squared`, `freedom`, `bic`, `tests`, `hidden`, `minima`, `starts`, `reached` as in
     the schema of `deltaq fit`; without a fit `estimates` is empty.
     """
 
@@ -49,6 +58,7 @@ class FormulationFit:
         self.formulation: str = answer["formulation"]
         self.verdict: str = answer["verdict"]
         self.words: str = answer["words"]
+        self.shown: dict[str, Any] | None = answer["shown"]
         fit = answer["fit"] or {}
         self.estimates: dict[str, dict[str, Any]] = {own["name"]: own for own in fit.get("estimates", [])}
         self.chi_squared: float = fit.get("chi_squared", np.inf)
@@ -242,13 +252,72 @@ def design(
     if (tell is None) == (estimate is None):
         raise ValueError("design asks for tell or for estimate")
     aim = [str(estimate)] if tell is None else list(tell)
-    numbers = list(law)
-    if tell is None and str(estimate) in ("eps", "epsilon", "slip") and estimate not in numbers:
-        numbers.append(str(estimate))
     if tell is not None and len(aim) != 2:
         raise ValueError(f"tell: two formulations are needed, there are {len(aim)}")
     ranges = [f"{name}={low!r}:{high!r}" for name, (low, high) in (over or {}).items()]
     found: dict[str, Any] = json.loads(
-        self._design(aim, ranges, film, films, list(columns), _sigmas(sigma), list(free), numbers, starts, points, tolerance, max_steps, threads)
+        self._design(aim, ranges, film, films, list(columns), _sigmas(sigma), list(free), list(law), starts, points, tolerance, max_steps, threads)
     )
     return {"schema": "deltaq/design/1"} | found
+
+
+class _DesignPart:
+    """Rows of a grid of films: what each shows, no other one looked for."""
+
+    def __init__(self, system: System, over: dict[str, list[float]], size: int, options: dict[str, Any]):
+        self.system, self.over, self.size, self.options = system, over, size, options
+
+    def count(self) -> int:
+        return math.prod(len(values) for values in self.over.values())
+
+    def __call__(self, part: int) -> pa.Table:
+        pa = needed("pyarrow")
+        index = np.arange(part * self.size, min((part + 1) * self.size, self.count()))
+        places = np.unravel_index(index, [len(values) for values in self.over.values()])
+        values = np.stack([np.asarray(v)[i] for v, i in zip(self.over.values(), places)], axis=1)
+        found: list[tuple[float | None, int, str]] = []
+        for row in values:
+            try:
+                best = self.system.replace(dict(zip(self.over, row.tolist()))).design(points=0, threads=1, **self.options)["best"]
+                found.append((best["value"], best["minima"], ""))
+            except UnknownNameError:
+                raise
+            except (ValueError, DeltaqError) as fault:
+                found.append((None, 0, str(fault)))
+        columns = {name: pa.array(values[:, i]) for i, name in enumerate(self.over)}
+        kinds = {"value": pa.float64(), "minima": pa.int32(), "cause": pa.string()}
+        return pa.table(columns | {name: pa.array(column, kind) for (name, kind), column in zip(kinds.items(), zip(*found))})
+
+
+def designs(
+    system: System,
+    over: Mapping[str, npt.ArrayLike],
+    tell: Sequence[str] | None = None,
+    *,
+    client: Any = None,
+    out: str | os.PathLike[str] | None = None,
+    part: int = 4,
+    progress: Callable[[int, int], None] | None = None,
+    **options: Any,
+) -> pa.Table | ds.Dataset:
+    """What films show at all combinations of some numbers, a row each, on a cluster as in `sweep`.
+
+    over: name to values. tell, and film, estimate, free, films, columns, sigma, law, starts, tolerance, max_steps in
+    options: as in `System.design`; nothing else is looked for. client, out, part, progress: as in `sweep`.
+
+    Columns: what varies, then `value` (least chi squared of the other formulation, or the standard error; null where
+    films do not show it or there is no motion), `minima` (that the search saw), `cause` (why there is no value).
+
+    >>> grid = deltaq.designs(deltaq.built_in("heisenberg"), {"mu0_1": [0.1, 1.0]}, ("vakonomic", "chetaev"), film="20Hz,1mm,1s", free=["x'", "y'"])
+    >>> [value > 15 for value in grid["value"].to_pylist()]
+    [False, True]
+    """
+    lists = {name: np.asarray(numbers, dtype=float).tolist() for name, numbers in over.items()}
+    if not lists or not all(lists.values()) or part < 1 or not all(np.isfinite(numbers).all() for numbers in lists.values()):
+        raise ValueError("over needs finite values for something that varies, and part is 1 at least")
+    unknown = set(options) & {"over", "points", "threads"}
+    if unknown:
+        raise ValueError(f"designs looks for nothing else: {', '.join(sorted(unknown))} cannot be given")
+    work = _DesignPart(system, lists, part, {"tell": tell} | options)
+    mark = _parts.identity(design=_written(system), over=lists, options=repr(sorted(options.items())), tell=tell, part=part, version=__version__)
+    return _parts.run(work, -(-work.count() // part), mark, client=client, out=out, progress=progress)
