@@ -3,12 +3,14 @@
 import { createRequire } from "node:module";
 import { readFileSync } from "node:fs";
 
+import { STILL, resize } from "./pages.test.mjs";
+
 const SIZES = [[1280, 600], [400, 800]];
 // CSS pixels that a control has at least, each way (WCAG 2.2, 2.5.8).
 const LEAST = 24;
 
 // Arrow keys go from tab to tab and open what they come to; the tab stop is the one that is open.
-export async function tabs({ open, link, must }) {
+export async function tabs({ open, leave, link, must }) {
   const page = await open(link({ scene: "sledge" }));
   const now = () => page.evaluate(() => {
     const tab = document.activeElement;
@@ -22,11 +24,11 @@ export async function tabs({ open, link, must }) {
     await page.keyboard.press(key);
     must((await now()) === `${tab} ${tab} ${tab} true true`, `${key} leads to: ${await now()}`);
   }
-  await page.close();
+  await leave(page);
 }
 
 // The tour by keys alone, from the first to the last step, and out of it.
-export async function byKeys({ open, fresh, must, url }) {
+export async function byKeys({ open, leave, forget, fresh, must, url }) {
   const context = await fresh();
   const page = await open(url, { context });
   const press = async (selector, most = 60) => {
@@ -45,14 +47,13 @@ export async function byKeys({ open, fresh, must, url }) {
     await press("#next");
   }
   await page.waitForFunction(() => !document.querySelector("#numbers").hidden, { timeout: 5000 }).catch(() => must(false, "keys do not leave the tour"));
-  await page.close();
-  await context.close();
+  await leave(page);
+  await forget(context);
 }
 
 // Who does not like things to move: nothing runs by itself, and a picture is where it is going at once.
-export async function calm({ open, link, must, choose, fresh, url }) {
-  const still = [{ name: "prefers-reduced-motion", value: "reduce" }];
-  const page = await open(link({ scene: "sledge" }), { features: still });
+export async function calm({ open, leave, forget, link, must, choose, fresh, url }) {
+  const page = await open(link({ scene: "sledge" }), { features: STILL });
   const time = () => page.$eval("#reading", ({ textContent }) => textContent);
   const runs = async (page) => {
     const before = await page.$eval("#reading", ({ textContent }) => textContent);
@@ -64,15 +65,15 @@ export async function calm({ open, link, must, choose, fresh, url }) {
   must(!(await runs(page)), "another scene runs by itself");
   await page.click("#play");
   must(await runs(page), "the play button does nothing");
-  await page.close();
+  await leave(page);
   const lively = await open(link({ scene: "sledge" }));
   must(await runs(lively), "nothing runs by itself where motion is liked");
-  await lively.close();
+  await leave(lively);
   const context = await fresh();
-  const toured = await open(url, { context, features: still });
+  const toured = await open(url, { context, features: STILL });
   await toured.click("[data-answer='0']");
   must(!(await runs(toured)), "an answer in the tour starts the motion");
-  await context.close();
+  await forget(context);
 }
 
 const STATES = [
@@ -90,25 +91,30 @@ const STATES = [
 ];
 
 // axe-core finds nothing serious in any state; every control has a name, and is large enough for a finger.
-export async function axe({ open, link, must, said }) {
+export async function axe({ open, leave, look, link, must, said }) {
   const source = readFileSync(createRequire(import.meta.url).resolve("axe-core/axe.min.js"), "utf8");
   let passes = 0;
-  for (const scheme of ["light", "dark"]) {
-    for (const [width, height] of SIZES) {
-      for (const [name, state, act] of STATES) {
+  for (const [name, state, act] of STATES) {
+    const refused = ["no motion", "a faulty text"].includes(name);
+    const page = await open(link(state), { until: refused ? "#refused:not([hidden])" : null });
+    await act?.(page);
+    await page.evaluate(source);
+    // sizes and colours are the style's: the page that is there takes them on
+    for (const scheme of ["light", "dark"]) {
+      await look(page, scheme);
+      for (const [width, height] of SIZES) {
         const at = `(${name}, ${scheme}, ${width} × ${height})`;
-        const refused = ["no motion", "a faulty text"].includes(name);
-        const page = await open(link(state), { width, height, scheme, until: refused ? "#refused:not([hidden])" : null });
-        await act?.(page);
-        await page.evaluate(source);
-        const found = await page.evaluate(() => axe.run({ rules: { "target-size": { enabled: true } } }));
+        await resize(page, { width, height });
+        const seen = await page.evaluate(() => [innerWidth, innerHeight, matchMedia("(prefers-color-scheme: dark)").matches].join());
+        must(seen === [width, height, scheme === "dark"].join(), `the page is seen as ${seen} ${at}`);
+        const found = await page.evaluate(() => axe.run({ resultTypes: ["violations"], rules: { "target-size": { enabled: true } } }));
         passes += found.passes.length;
         const bad = found.violations.filter(({ impact }) => impact === "serious" || impact === "critical");
         for (const { id, nodes } of bad) must(false, `axe: ${id} at ${nodes.slice(0, 3).map(({ target }) => target)} ${at}`);
         for (const small of await page.evaluate(tooSmall, LEAST)) must(false, `${small}, ${LEAST} are needed ${at}`);
-        await page.close();
       }
     }
+    await leave(page);
   }
   must(passes > 0, "axe looked at nothing");
   said.push(`axe: ${passes} rules hold in ${2 * SIZES.length * STATES.length} states`);

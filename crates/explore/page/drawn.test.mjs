@@ -17,7 +17,7 @@ const rows = (page, label) => page.evaluate((label) => {
 }, label);
 
 // The sledge of unit mass on a slope of 0.4: everything is known from its numbers.
-export async function forces({ open, link, must, pictures, after }) {
+export async function forces({ open, leave, link, must, pictures, after }) {
   const page = await open(link({ scene: "sledge", time: 1 }));
   const picture = () => page.$eval("#stage", (canvas) => canvas.toDataURL());
   const before = await picture();
@@ -47,13 +47,16 @@ export async function forces({ open, link, must, pictures, after }) {
   });
   must(Math.abs(Number(/^Chetaev: speed ([\d.]+) m\/s, reaction [\d.]+ N/.exec(key)?.[1]) / speed - 1) < 0.01, `the key says ${key}, the speed is ${speed}`);
   await page.screenshot({ path: join(pictures, "forces.png") });
+  // the address is written a little later
+  const isWritten = () => atob(location.hash.slice(1).replaceAll("-", "+").replaceAll("_", "/")).includes('"forces":true');
+  await page.waitForFunction(isWritten, { timeout: 5000 }).catch(() => must(false, "the forces are not in the address"));
   await page.evaluate(() => location.reload());
   await page.waitForFunction(() => window.explored?.samples.contacts, { timeout: 60000 }).catch(() => must(false, "an address does not remember the forces"));
-  await page.close();
+  await leave(page);
 }
 
 // Down is where the weight draws; the scale is that of the picture.
-export async function down({ open, link, must, after, choose }) {
+export async function down({ open, leave, link, must, after, choose }) {
   const page = await open(link({ scene: "sledge", time: 1 }));
   const seen = () => page.evaluate(() => {
     const { stage, samples } = window.explored;
@@ -73,5 +76,5 @@ export async function down({ open, link, must, after, choose }) {
     must(found.texts.includes("x") && found.texts.includes("y"), `${scene}: no axes among ${found.texts}`);
     must(Math.abs(found.pixels / (found.metres * found.scale) - 1) < 0.02, `${scene}: ${found.metres} m are ${found.pixels} pixels at ${found.scale} a metre`);
   }
-  await page.close();
+  await leave(page);
 }

@@ -5,7 +5,7 @@ const ROOM = 2e6;
 // Rounds that are left out first, in which the browser compiles, and buffers and memories find their size. In each round
 // every slider is moved up and down, once: what a busy machine does in a longer time is the same.
 const WARM = 2;
-const MOVES = 12;
+const MOVES = 6;
 
 // Bytes of all that WebAssembly has in a worker, which no name of the page leads to.
 async function memory(session) {
@@ -47,7 +47,7 @@ async function atRest(page, measure) {
 // Moves every slider of the sledge up and down and lets go of it, in rounds, and compares the least of the last third of
 // them with that of the first.
 export async function growth({ open, link, must, said }, rounds) {
-  const page = await open(link({ scene: "sledge" }));
+  const page = await open(link({ scene: "sledge" }), { alone: true });
   const client = await page.createCDPSession();
   await client.send("Performance.enable");
   const round = () => page.evaluate(async (MOVES) => {

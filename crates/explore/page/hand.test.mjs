@@ -17,7 +17,11 @@ const state = (page) => page.evaluate(() => {
 });
 
 const far = ([a, b], [c, d]) => Math.hypot(a - c, b - d);
-const settled = (page) => page.evaluate(() => new Promise((resolve) => setTimeout(resolve, 700)));
+// The picture is where it was going: no frame is eased to any more, and the rings are drawn there.
+const settled = async (page) => {
+  await page.waitForFunction(() => window.explored.stage.window === window.explored.stage.target, { timeout: 20000 });
+  await page.evaluate(() => new Promise(requestAnimationFrame));
+};
 const slip = ({ q, v }) => Math.abs(v["y'"] * Math.cos(q.phi) - v["x'"] * Math.sin(q.phi));
 
 async function drag(page, [x, y], [dx, dy]) {
@@ -29,7 +33,7 @@ async function drag(page, [x, y], [dx, dy]) {
   }
 }
 
-export async function hand({ open, link, must, after, pictures }) {
+export async function hand({ open, leave, link, must, after, pictures }) {
   const page = await open(link({ scene: "sledge", time: 2 }));
   must((await state(page)).seen.length === 0, "rings are there unasked");
   await after(page, () => page.click("#grips"));
@@ -89,11 +93,11 @@ export async function hand({ open, link, must, after, pictures }) {
   await page.evaluate(() => document.activeElement.blur());
   await page.keyboard.press("ArrowRight");
   must((await state(page)).seen.length === 0, "rings are there at another time");
-  await page.close();
+  await leave(page);
 }
 
 // Velocities that the constraint forbids are not to be had: a disc only rolls on.
-export async function rolling({ open, link, must, after }) {
+export async function rolling({ open, leave, link, must, after }) {
   const page = await open(link({ scene: "disc", grips: true }));
   await page.waitForFunction(() => window.explored.samples.grips, { timeout: 20000 });
   const before = await state(page);
@@ -103,11 +107,11 @@ export async function rolling({ open, link, must, after }) {
   const { q, v, typed } = await state(page);
   must(Object.keys(typed).join() === "psi'", `numbers: ${JSON.stringify(typed)}`);
   must(Math.abs(v["x'"] - 0.5 * v["psi'"] * Math.cos(q.phi)) < 1e-9 && v["psi'"] !== 2, `it slips: ${JSON.stringify(v)}`);
-  await page.close();
+  await leave(page);
 }
 
 // A finger does it, too, and does not turn the view.
-export async function byFinger({ open, link, must, after, pictures }) {
+export async function byFinger({ open, leave, link, must, after, pictures }) {
   const page = await open(link({ scene: "turntable", grips: true }), { width: 400, height: 860 });
   await page.waitForFunction(() => window.explored.samples.grips, { timeout: 20000 });
   const before = await state(page);
@@ -127,29 +131,5 @@ export async function byFinger({ open, link, must, after, pictures }) {
   must(Math.hypot(now.q.x - before.q.x, now.q.y - before.q.y) > 0.05, `a finger moves it from ${JSON.stringify(before.q)} to ${JSON.stringify(now.q)}`);
   must((await eye()) === was, "a finger on the body turns the view");
   await page.screenshot({ path: join(pictures, "hand-phone.png") });
-  await page.close();
-}
-
-// Every built-in scene has something to hold, and a number for each ring that is there; no ring moves nothing.
-export async function everyHand({ open, url, must, choose, after, said }) {
-  const page = await open(`${url}#scene=sledge`);
-  await after(page, () => page.click("#grips"));
-  const names = await page.$$eval("#scene option:not([hidden])", (all) => all.map(({ value }) => value));
-  let count = 0;
-  for (const name of names) {
-    if (name !== "sledge") await choose(page, name);
-    await page.waitForFunction(() => window.explored.samples?.grips, { timeout: 20000 }).catch(() => must(false, `${name} has nothing to hold`));
-    const [rings, nearest] = await page.evaluate(() => {
-      const seen = [...document.querySelectorAll(".grip")].filter((grip) => grip.checkVisibility());
-      const boxes = seen.map((grip) => grip.getBoundingClientRect());
-      const apart = boxes.flatMap((a, i) => boxes.slice(i + 1).map((b) => Math.hypot(a.left - b.left, a.top - b.top)));
-      return [seen.map(({ dataset }) => [dataset.grip, Object.keys(window.explored.grips.numbers(dataset.grip, [7, 5])).length]), Math.min(...apart)];
-    });
-    must(rings.length > 0, `${name} has no ring`);
-    must(rings.length < 2 || nearest > 20, `${name}: rings are ${nearest} px apart`);
-    for (const [kind, numbers] of rings) must(numbers > 0, `${name}: ${kind} moves nothing`);
-    count += rings.length;
-  }
-  said.push(`${count} rings in ${names.length} scenes`);
-  await page.close();
+  await leave(page);
 }

@@ -5,7 +5,7 @@ import { join } from "node:path";
 const distance = (a, b) => Math.hypot(...a.map((x, i) => x - b[i]));
 
 // The body that the camera goes with stays in the middle, at every time; at rest it does not.
-export async function camera({ open, link, must, pictures }) {
+export async function camera({ open, leave, link, must, pictures }) {
   for (const [scene, label, size] of [["sledge", "vakonomic", {}], ["trailer", "Chetaev", { width: 400, height: 860 }]]) {
     const page = await open(link({ scene, time: 0.5 }), size);
     const off = () => page.evaluate((label) => [0, 0.3, 1].map((part) => {
@@ -23,13 +23,13 @@ export async function camera({ open, link, must, pictures }) {
     const again = await open(await page.evaluate(() => location.href), size);
     must((await again.$eval("#follow", ({ value }) => value)) === label, "a link does not bring the camera back");
     await again.screenshot({ path: join(pictures, `camera-${scene}.png`) });
-    await again.close();
-    await page.close();
+    await leave(again);
+    await leave(page);
   }
 }
 
 // Differences in place and in turn are so many times as large; those of the first motion are none.
-export async function differences({ open, link, must, pictures }) {
+export async function differences({ open, leave, link, must, pictures }) {
   const page = await open(link({ scene: "three-cylinders", time: 0.5 }));
   const drawn = () => page.evaluate(() => {
     const { stage, samples } = window.explored;
@@ -58,7 +58,7 @@ export async function differences({ open, link, must, pictures }) {
     must(now.note.includes(`${by} times as large`), `nothing says that they are larger: ${now.note}`);
   }
   await page.screenshot({ path: join(pictures, "differences.png") });
-  await page.close();
+  await leave(page);
 }
 
 const seen = (page) => page.evaluate(() => {
@@ -68,7 +68,7 @@ const seen = (page) => page.evaluate(() => {
 const width = ([a, b]) => b - a;
 
 // Wheel, buttons and fingers show less of the time, about what they point at; the heights go with what is seen.
-export async function zoom({ open, link, must, pictures }) {
+export async function zoom({ open, leave, link, must, pictures }) {
   const page = await open(link({ scene: "sledge", curve: "coordinate:phi", time: 4 }));
   const all = await seen(page);
   must(all.x.join() === "0,10", `all of the time is ${all.x}`);
@@ -90,7 +90,7 @@ export async function zoom({ open, link, must, pictures }) {
   must((await seen(page)).x[1] === 10, `at the end ${(await seen(page)).x} is seen`);
   await page.click("#ends");
   must((await seen(page)).x.join() === "0,10", "all of it is not all");
-  await page.close();
+  await leave(page);
   const phone = await open(link({ scene: "sledge", curve: "coordinate:phi", time: 4 }), { width: 400, height: 860 });
   await phone.$eval("#plot", (plot) => plot.scrollIntoView({ block: "end" }));
   const { x, y } = await (await phone.$(".u-over")).boundingBox();
@@ -100,11 +100,11 @@ export async function zoom({ open, link, must, pictures }) {
   for (let i = 1; i <= 5; i++) await touch("touchMove", 100 - 10 * i, 140 + 10 * i);
   await touch("touchEnd");
   must(width((await seen(phone)).x) < 5, `two fingers lead to ${(await seen(phone)).x}`);
-  await phone.close();
+  await leave(phone);
 }
 
 // A motion that runs away does not flatten the others; what is cut is said, and can be seen.
-export async function runaway({ open, link, must, pictures }) {
+export async function runaway({ open, leave, link, must, pictures }) {
   const page = await open(link({ scene: "sledge", curve: "coordinate:x", time: 4 }));
   const cut = await seen(page);
   const largest = (label) => page.evaluate((label) => {
@@ -123,11 +123,11 @@ export async function runaway({ open, link, must, pictures }) {
   // of two motions that go alike nothing is cut
   await page.select("#curve", "coordinate:phi");
   must((await seen(page)).cut === "", `cut: ${(await seen(page)).cut}`);
-  await page.close();
+  await leave(page);
 }
 
 // Both axes of the gap are logarithms: a slope of three, as the report measures, is three decades a decade.
-export async function logarithms({ open, link, must, pictures }) {
+export async function logarithms({ open, leave, link, must, pictures }) {
   const page = await open(link({ scene: "sledge", curve: "log", time: 1 }));
   const [slope, x] = await page.evaluate(() => {
     const [t, gap] = window.explored.curves.plot.data;
@@ -143,5 +143,5 @@ export async function logarithms({ open, link, must, pictures }) {
   const reading = await page.$eval("#reading", ({ textContent }) => parseFloat(textContent.slice(4)));
   must(reading > 9.5, `the end of the axis is t = ${reading}`);
   await page.screenshot({ path: join(pictures, "log-log.png") });
-  await page.close();
+  await leave(page);
 }

@@ -2,11 +2,17 @@
 
 import { join } from "node:path";
 
+import { resize } from "./pages.test.mjs";
+
 const SIZES = [[1280, 600], [400, 800], [1366, 657]];
 const BOTH = { scene: "sledge", on: ["removed constraint (arc-length)", "removed constraint (along-x)"], time: 1 };
 
-const sizes = async (check) => {
-  for (const [width, height] of SIZES) await check({ width, height }, `at ${width} × ${height}`);
+// A page is looked at in every size, one after the other.
+const sizes = async (page, check) => {
+  for (const [width, height] of SIZES) {
+    await resize(page, { width, height });
+    await check({ width, height }, `at ${width} × ${height}`);
+  }
 };
 
 // Costates of the motions that are shown, of each removal; what is none of its constants is zero.
@@ -33,45 +39,46 @@ const kept = (page) => page.evaluate(async () => {
 const near = (a, b) => Math.abs(a - b) <= 1e-5 * Math.max(1, Math.abs(b));
 
 // A slider shows the number that is used, and touching it at its own value moves nothing.
-export async function costates({ open, link, must, after }) {
-  await sizes(async (size, at) => {
-    const page = await open(link(BOTH), size);
-    const [computed, before] = [await used(page), await rows(page)];
-    must(Object.values(computed).some((x) => Math.abs(x - 38.2019394) < 1e-6), `no costate is 38.2019394 ${at}: ${JSON.stringify(computed)}`);
-    must(Object.keys(computed).length === 3 && Object.keys(before).length === 3, `${Object.keys(before)} are shown ${at}, ${Object.keys(computed)} used`);
-    for (const [name, x] of Object.entries(computed)) must(near(before[name], x), `${name}: ${before[name]} shown, ${x} used ${at}`);
-    const [name] = Object.keys(before);
-    const was = await ends(page);
-    await after(page, () => set(page, name, computed[name]));
-    const now = await ends(page);
-    for (const [label, x] of Object.entries(was)) must(Math.abs(now[label] - x) < 1e-4, `touching ${name} moves ${label} from ${x} to ${now[label]} ${at}`);
-    const touched = Object.keys(await kept(page));
-    must(touched.every((other) => other.endsWith(name.split("@")[1])), `touching ${name} sets ${touched} ${at}`);
-    await after(page, () => page.evaluate((name) => document.querySelector(`[data-name="${CSS.escape(name)}"] .plain`).click(), name));
-    must(Object.keys(await kept(page)).length === 0, `↺ leaves ${JSON.stringify(await kept(page))} in the address ${at}`);
-    await after(page, () => set(page, "phi", 0.5));
-    must(JSON.stringify(await kept(page)) === '{"phi":0.5}', `one number sets ${JSON.stringify(await kept(page))} ${at}`);
-    await after(page, () => set(page, name, 3));
-    await after(page, () => page.$eval("#all", (all) => all.click()));
-    const end = await ends(page);
-    must(JSON.stringify(await kept(page)) === "{}" && Object.entries(was).every(([label, x]) => end[label] === x), `not all is as in the text ${at}`);
-    for (const [other, x] of Object.entries(await used(page))) must(near((await rows(page))[other], x), `${other} is not shown as used ${at}`);
-    await page.close();
-  });
+export async function costates({ open, leave, link, must, after }) {
+  const page = await open(link(BOTH));
+  const [computed, before] = [await used(page), await rows(page)];
+  must(Object.values(computed).some((x) => Math.abs(x - 38.2019394) < 1e-6), `no costate is 38.2019394: ${JSON.stringify(computed)}`);
+  must(Object.keys(computed).length === 3 && Object.keys(before).length === 3, `${Object.keys(before)} are shown, ${Object.keys(computed)} used`);
+  for (const [name, x] of Object.entries(computed)) must(near(before[name], x), `${name}: ${before[name]} shown, ${x} used`);
+  const [name] = Object.keys(before);
+  const was = await ends(page);
+  await after(page, () => set(page, name, computed[name]));
+  const now = await ends(page);
+  for (const [label, x] of Object.entries(was)) must(Math.abs(now[label] - x) < 1e-4, `touching ${name} moves ${label} from ${x} to ${now[label]}`);
+  const touched = Object.keys(await kept(page));
+  must(touched.every((other) => other.endsWith(name.split("@")[1])), `touching ${name} sets ${touched}`);
+  await after(page, () => page.evaluate((name) => document.querySelector(`[data-name="${CSS.escape(name)}"] .plain`).click(), name));
+  must(Object.keys(await kept(page)).length === 0, `↺ leaves ${JSON.stringify(await kept(page))} in the address`);
+  await after(page, () => set(page, "phi", 0.5));
+  must(JSON.stringify(await kept(page)) === '{"phi":0.5}', `one number sets ${JSON.stringify(await kept(page))}`);
+  await after(page, () => set(page, name, 3));
+  await after(page, () => page.$eval("#all", (all) => all.click()));
+  const end = await ends(page);
+  must(JSON.stringify(await kept(page)) === "{}" && Object.entries(was).every(([label, x]) => end[label] === x), "not all is as in the text");
+  for (const [other, x] of Object.entries(await used(page))) must(near((await rows(page))[other], x), `${other} is not shown as used`);
+  await leave(page);
 }
 
 // A new scene, and a new number, stand under nothing that is older.
-export async function cleared({ open, link, must, slide }) {
-  await sizes(async (size, at) => {
-    const page = await open(link({ scene: "sledge", tab: "verdict" }), size);
+export async function cleared({ open, leave, link, must, slide, choose }) {
+  const seen = (page) => page.evaluate(() => {
+    const of = (id) => document.getElementById(id);
+    const hidden = (id) => getComputedStyle(of(id)).visibility === "hidden";
+    const busy = ["view", "graph", "verdict", "equations"].map((id) => of(id).getAttribute("aria-busy"));
+    return { words: of("verdict").textContent + of("equations").textContent, title: of("title").textContent, stage: hidden("stage"), plot: hidden("plot"), busy };
+  });
+  const page = await open(link({ scene: "sledge", tab: "verdict", time: 1 }));
+  await sizes(page, async (size, at) => {
     await page.waitForFunction(() => document.getElementById("equations").textContent);
-    const seen = () => page.evaluate(() => {
-      const of = (id) => document.getElementById(id);
-      const hidden = (id) => getComputedStyle(of(id)).visibility === "hidden";
-      const busy = ["view", "graph", "verdict", "equations"].map((id) => of(id).getAttribute("aria-busy"));
-      return { words: of("verdict").textContent + of("equations").textContent, title: of("title").textContent, stage: hidden("stage"), plot: hidden("plot"), busy };
-    });
-    const before = await seen();
+    await slide(page, "phi", 700, false);
+    must((await page.$eval("#verdict", (panel) => panel.textContent + panel.getAttribute("aria-busy"))) === "true", `a number moves, the verdict stays ${at}`);
+    await page.waitForFunction(() => document.getElementById("equations").textContent);
+    const before = await seen(page);
     must(before.words && !before.stage && before.busy.every((busy) => busy !== "true"), `not at rest: ${JSON.stringify(before.busy)} ${at}`);
     const at_once = await page.evaluate(() => {
       const select = document.getElementById("scene");
@@ -80,25 +87,24 @@ export async function cleared({ open, link, must, slide }) {
       return [document.getElementById("verdict").textContent, document.getElementById("view").getAttribute("aria-busy")];
     });
     must(at_once[0] === "" && at_once[1] === "true", `a verdict stays: ${at_once} ${at}`);
-    const fresh = await seen();
+    const fresh = await seen(page);
     must(fresh.words === "" && (fresh.stage || fresh.title.includes("icycle")), `the old picture stays ${at}`);
-    await page.waitForSelector("#deciding:not([hidden])", { timeout: 60000 });
-    must((await seen()).busy[2] === "true", `a decision does not say that it runs ${at}`);
-    await page.click("#undecided");
-    await page.waitForFunction(() => document.getElementById("verdict").textContent === "The decision was stopped.", { timeout: 5000 });
-    must(await page.$eval("#deciding", (element) => element.hidden), `a stopped decision runs on ${at}`);
-    await page.close();
-    const sledge = await open(link({ scene: "sledge" }), size);
-    await slide(sledge, "phi", 700, false);
-    must((await sledge.$eval("#verdict", (panel) => panel.textContent + panel.getAttribute("aria-busy"))) === "true", `a number moves, the verdict stays ${at}`);
-    await sledge.close();
+    await choose(page, "sledge");
   });
+  // what runs long says so, and is stopped
+  await choose(page, "bicycle");
+  await page.waitForSelector("#deciding:not([hidden])", { timeout: 60000 });
+  must((await seen(page)).busy[2] === "true", "a decision does not say that it runs");
+  await page.click("#undecided");
+  await page.waitForFunction(() => document.getElementById("verdict").textContent === "The decision was stopped.", { timeout: 5000 });
+  must(await page.$eval("#deciding", (element) => element.hidden), "a stopped decision runs on");
+  await leave(page);
 }
 
 // A number that is refused ends the motion that was shown, and it is said why.
-export async function refusals({ open, link, must, after, type, OWN }) {
-  await sizes(async (size, at) => {
-    const page = await open(link({ scene: "sledge" }), size);
+export async function refusals({ open, leave, link, must, after, type, OWN }) {
+  const page = await open(link({ scene: "sledge" }));
+  await sizes(page, async (size, at) => {
     for (const [name, x, words] of [["duration", -1, "duration"], ["k", 0, ""]]) {
       await set(page, name, x);
       await page.waitForSelector("#refused:not([hidden])", { timeout: 20000 });
@@ -116,15 +122,15 @@ export async function refusals({ open, link, must, after, type, OWN }) {
       await after(page, () => page.$eval("#all", (all) => all.click()));
       must(await page.$eval("#refused", (element) => element.hidden), `a refusal stays ${at}`);
     }
-    await page.close();
   });
+  await leave(page);
 }
 
 // No part lies over another one, and nothing is wider than the window.
-export async function overlaps({ open, link, must, pictures }) {
-  await sizes(async (size, at) => {
-    for (const scene of ["sledge", "trailer", "ball-in-cone"]) {
-      const page = await open(link({ scene, time: 1 }), size);
+export async function overlaps({ open, leave, link, must, pictures }) {
+  for (const scene of ["sledge", "trailer", "ball-in-cone"]) {
+    const page = await open(link({ scene, time: 1 }));
+    await sizes(page, async (size, at) => {
       const wrong = await page.evaluate(() => {
         const boxes = ["title", "legend", "frame", "clock", "said", "graph"].map((id) => [id, document.getElementById(id).getBoundingClientRect()]);
         const over = boxes.flatMap(([one, a], i) => boxes.slice(i + 1).filter(([, b]) => b.top < a.bottom - 1 && b.height > 0).map(([two]) => `${two} over ${one}`));
@@ -132,13 +138,13 @@ export async function overlaps({ open, link, must, pictures }) {
       });
       must(wrong.length === 0, `${scene}: ${wrong.join(", ")} ${at}`);
       await page.screenshot({ path: join(pictures, `${scene}-${size.width}x${size.height}.png`) });
-      await page.close();
-    }
-  });
+    });
+    await leave(page);
+  }
 }
 
 // A text of one's own is there again after another scene, and the way back leads to it.
-export async function wayBack({ open, link, must, after, choose, type, OWN }) {
+export async function wayBack({ open, leave, link, must, after, choose, type, OWN }) {
   const page = await open(link({ scene: "disc", tab: "text" }));
   await after(page, () => type(page, OWN));
   await choose(page, "sledge");
@@ -153,25 +159,26 @@ export async function wayBack({ open, link, must, after, choose, type, OWN }) {
   await back("Skate");
   must((await page.$eval("#area", (area) => area.value)) === OWN, "the way back loses a text");
   await back("isc");
-  await page.close();
+  await leave(page);
 }
 
 // A link that cannot be read is said to be one, and stays what it is, until something is chosen.
-export async function badLinks({ open, link, must, choose, url }) {
+export async function badLinks({ open, leave, link, must, choose, url }) {
   const cut = link({ scene: "disc", set: { g: 2 } }).slice(0, -3);
   for (const address of [cut, `${url}#5`, `${url}#${Buffer.from("5").toString("base64url")}`, link({ scene: "nowhere" }), link({ scene: "disc", set: { g: "x" } })]) {
     const page = await open(address);
-    await new Promise((resolve) => setTimeout(resolve, 800));
+    // the address would be written a quarter of a second after something was chosen
+    await new Promise((resolve) => setTimeout(resolve, 400));
     must((await page.$eval("#notice:not([hidden])", (notice) => notice.textContent).catch(() => "")).includes("cannot be read"), `nothing is said of ${address.slice(url.length)}`);
     must(page.url() === address, "the address of a link that cannot be read is written over");
-    await choose(page, "turntable");
+    await choose(page, "velocity-pendulum");
     must(await page.$eval("#notice", (notice) => notice.hidden), "a notice stays");
-    await page.close();
+    await leave(page);
   }
 }
 
 // The table has every pair with the verdict that was decided, from when and by how much, in units; and one sentence of why.
-export async function table({ open, link, must, pictures }) {
+export async function table({ open, leave, link, must, pictures }) {
   for (const [state, verdicts] of [[{ scene: "sledge" }, ["different", "different", "different"]], [{ scene: "velocity-pendulum" }, ["same", "same", "same"]]]) {
     const page = await open(link({ ...state, tab: "verdict" }));
     const { pairs, sentence } = await page.evaluate(() => window.decided);
@@ -195,7 +202,7 @@ export async function table({ open, link, must, pictures }) {
     must((await page.$eval("#verdict .sentence", ({ textContent }) => textContent)) === sentence, "the sentence is not shown");
     must((await page.$eval("#said", ({ textContent }) => textContent)) === sentence, "the sentence is not below the picture");
     await page.screenshot({ path: join(pictures, `table-${state.scene}.png`) });
-    await page.close();
+    await leave(page);
   }
   // what was hidden in hints is text
   const page = await open(link({ scene: "sledge", on: ["removed constraint (along-x)"], tab: "verdict" }));
@@ -207,5 +214,5 @@ export async function table({ open, link, must, pictures }) {
   must(causes.length > 0, "no motion ends early");
   for (const text of [notes, ...causes]) must(words.includes(text), `is not to be read: ${text}`);
   must(!(await page.$("#title[title], #legend [title]")), "something is said in a hint only");
-  await page.close();
+  await leave(page);
 }

@@ -1,38 +1,16 @@
 // What is taken along is what was computed; what was done can be undone; texts are kept.
 
 import { execFileSync } from "node:child_process";
-import { existsSync, mkdtempSync, readFileSync, readdirSync, rmSync, writeFileSync } from "node:fs";
+import { mkdtempSync, rmSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { pathToFileURL } from "node:url";
 
-import katex from "katex";
+import { taken } from "./pages.test.mjs";
 
 const LABELS = ["Chetaev", "vakonomic", "removed constraint (arc-length)"];
 
-// Files that the buttons write, by kind.
-async function taken(page, kinds) {
-  const folder = mkdtempSync(join(tmpdir(), "taken-"));
-  const client = await page.createCDPSession();
-  await client.send("Browser.setDownloadBehavior", { behavior: "allow", downloadPath: folder, browserContextId: page.browserContext().id });
-  const files = {};
-  await page.click("#take");
-  for (const kind of kinds) {
-    const before = new Set(readdirSync(folder));
-    await page.click(`[data-take=${kind}]`);
-    for (let i = 0; i < 100 && !files[kind]; i++) {
-      await new Promise((resolve) => setTimeout(resolve, 100));
-      const fresh = readdirSync(folder).find((name) => !before.has(name) && !name.endsWith(".crdownload"));
-      if (fresh && existsSync(join(folder, fresh))) files[kind] = { name: fresh, bytes: readFileSync(join(folder, fresh)) };
-    }
-    files[kind] ??= { name: "nothing", bytes: Buffer.alloc(0) };
-  }
-  await page.click("#taking form button");
-  rmSync(folder, { recursive: true, force: true });
-  return files;
-}
-
-export async function files({ open, link, must, deltaq }) {
+export async function files({ open, leave, link, must, deltaq }) {
   const page = await open(link({ scene: "sledge", set: { phi: 0.5, "P0_y@removed constraint (arc-length)": 0.25 }, time: 2 }));
   const kinds = ["png", "svg", "curves", "csv", "latex", "python", "toml"];
   const files = await taken(page, kinds);
@@ -76,46 +54,11 @@ export async function files({ open, link, must, deltaq }) {
   const script = text("python");
   execFileSync("python3", ["-c", "import sys; compile(sys.stdin.read(), 'script', 'exec')"], { input: script });
   for (const part of ['"phi": 0.5', 'solve("vakonomic")', 'solve("removed-constraint", removal="arc-length", constants=[', "0.25]"]) must(script.includes(part), `the script lacks ${part}:\n${script}`);
-  await page.close();
-}
-
-// Equations of every scene compile: each piece of mathematics by KaTeX in its strict mode, with no command that LaTeX with
-// amsmath lacks; between them nothing stands that TeX takes for a command.
-export async function compiles({ open, url, must, choose, said }) {
-  const page = await open(`${url}#scene=sledge`);
-  const names = await page.$$eval("#scene option:not([hidden])", (all) => all.map(({ value }) => value));
-  const known = new Set("alpha beta gamma delta epsilon zeta eta theta kappa lambda mu nu xi pi rho sigma tau phi varphi chi psi omega Gamma Delta Theta Lambda Sigma Phi Psi Omega dot ddot frac sqrt left right cdot mathrm sin cos tan cot sec csc sinh cosh tanh arcsin arccos arctan exp log ln operatorname quad varepsilon partial to in ne le ge times infty text".split(" "));
-  let count = 0;
-  const strange = new Set();
-  for (const name of names) {
-    if (name !== "sledge") await choose(page, name);
-    const { latex } = await taken(page, ["latex"]);
-    const body = latex.bytes.toString("utf8").split("\\begin{document}")[1] ?? "";
-    const pieces = body.split(/\\begin\{dmath\*\}\n([\s\S]*?)\n\\end\{dmath\*\}|\$([^$]+)\$/);
-    for (const [i, piece] of pieces.entries()) {
-      if (piece === undefined) continue;
-      if (i % 3 === 0) {
-        must(!/[\u0370-\u03ff]/.test(piece), `${name}: Greek that no font of text has in ${piece.slice(0, 60)}`);
-        must(!/(?<!\\)[&%#_^~$]/.test(piece), `${name}: what is no mathematics has ${/.{0,20}(?<!\\)[&%#_^~$].{0,20}/.exec(piece)?.[0]}`);
-        continue;
-      }
-      for (const [, word] of piece.matchAll(/\\([a-zA-Z]+)/g)) if (!known.has(word)) strange.add(word);
-      try {
-        katex.renderToString(piece, { throwOnError: true, strict: "error", output: "mathml" });
-      } catch (error) {
-        must(false, `${name}: ${error.message.slice(0, 200)}`);
-      }
-      count += 1;
-    }
-    must(pieces.length > 3, `${name} has no equations: ${body.slice(0, 100)}`);
-  }
-  must(strange.size === 0, `commands that are not known to be LaTeX's: ${[...strange]}`);
-  said.push(`${count} pieces of LaTeX of ${names.length} scenes compile`);
-  await page.close();
+  await leave(page);
 }
 
 // The page that is saved opens with what was chosen, from another place on the disk.
-export async function savedPage({ open, link, must }) {
+export async function savedPage({ open, leave, link, must }) {
   const state = { scene: "sledge", set: { phi: 0.5 }, off: ["vakonomic"], time: 2, tab: "verdict" };
   const page = await open(link(state));
   const numbers = (page) => page.evaluate(() => window.explored.samples.motions.map((motion) => [motion.label, ...motion.track(motion.rows - 1)].join()).join(" "));
@@ -125,24 +68,24 @@ export async function savedPage({ open, link, must }) {
   const other = await open(pathToFileURL(join(folder, "other.html")).href);
   must((await numbers(other)) === (await numbers(page)), "a page that was saved has other motions");
   must((await other.$eval("#reading", ({ textContent }) => textContent)) === "t = 2.00 s" && await other.$eval("#verdict", ({ hidden }) => !hidden), "a page that was saved opens elsewhere");
-  await other.close();
-  await page.close();
+  await leave(other);
+  await leave(page);
   rmSync(folder, { recursive: true, force: true });
 }
 
 // For slides: the stage alone, in motion.
-export async function onlyStage({ open, url, must, pictures }) {
+export async function onlyStage({ open, leave, url, must, pictures }) {
   const page = await open(`${url}#scene=sledge&only=stage`, { width: 800, height: 500 });
   const seen = await page.evaluate(() => ["header", "#side", "#graph", "#stage", "#play"].map((name) => document.querySelector(name).checkVisibility()).join());
   must(seen === "false,false,false,true,true", `only the stage is to be seen: ${seen}`);
   const { height, bottom } = await page.evaluate(() => ({ height: document.getElementById("stage").clientHeight, bottom: document.documentElement.scrollHeight }));
   must(height > 250 && bottom <= 501, `the stage is ${height} px high, the slide ${bottom}`);
   await page.screenshot({ path: join(pictures, "only-stage.png") });
-  await page.close();
+  await leave(page);
 }
 
 // Undo takes back one change of a number, whatever was moved on the way, and the time goes on; redo brings it again.
-export async function undo({ open, link, must, after, slide, choose }) {
+export async function undo({ open, leave, link, must, after, slide, choose }) {
   const page = await open(link({ scene: "sledge", time: 3 }));
   const value = () => page.$eval("[data-name=phi] input[type=number]", ({ value }) => Number(value));
   const enabled = () => page.evaluate(() => ["undo", "redo"].map((id) => !document.getElementById(id).disabled).join());
@@ -170,18 +113,18 @@ export async function undo({ open, link, must, after, slide, choose }) {
   await after(page, () => slide(page, "phi", 400));
   await press("undo");
   must(await page.$eval("#verdict", ({ hidden }) => !hidden), "undo takes back a panel, too");
-  await page.close();
+  await leave(page);
 }
 
 // A text is kept in the browser under its title, chosen from the list on another visit, and forgotten.
-export async function keeps({ open, fresh, link, must, after, type, choose, OWN }) {
+export async function keeps({ open, leave, forget, fresh, link, must, after, type, choose, OWN }) {
   const context = await fresh();
   const page = await open(link({ scene: "disc", tab: "text" }), { context });
   must(await page.$eval("#keep", ({ hidden }) => hidden), "a built-in scene can be kept");
   await after(page, () => type(page, OWN));
   await page.waitForSelector("#keep:not([hidden])");
   await page.click("#keep");
-  await page.close();
+  await leave(page);
   const later = await open(link({ scene: "sledge" }), { context });
   await choose(later, "kept:Skate");
   must((await later.$eval("#area", ({ value }) => value)) === OWN, "a text that was kept is lost");
@@ -189,5 +132,5 @@ export async function keeps({ open, fresh, link, must, after, type, choose, OWN 
   must((await later.$eval("#keep", ({ textContent }) => textContent)).startsWith("Forget"), "a text that is kept cannot be forgotten");
   await later.click("#keep");
   must((await later.$("[value='kept:Skate']")) === null, "a text that was forgotten is there");
-  await context.close();
+  await forget(context);
 }

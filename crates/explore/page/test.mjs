@@ -16,6 +16,8 @@ import { growth } from "./growth.test.mjs";
 import * as hands from "./hand.test.mjs";
 import * as looking from "./look.test.mjs";
 import * as checks from "./shown.test.mjs";
+import { Pages, after, choose, resize } from "./pages.test.mjs";
+import { eachBody, everyScene } from "./scenes.test.mjs";
 import * as takes from "./take.test.mjs";
 import { tasks } from "./tasks.test.mjs";
 import { tour } from "./tour.test.mjs";
@@ -52,37 +54,16 @@ const browserName = browser.version();
 const complaints = [];
 const said = [];
 
+let held = 0;
+
 function must(holds, what) {
+  held += 1;
   if (!holds) complaints.push(what);
 }
 
+const pages = new Pages(browser, isChromium, (what) => complaints.push(what));
+const [open, leave, look, forget] = [pages.open, pages.leave, pages.look, pages.forget].map((does) => does.bind(pages));
 const link = (state) => `${url}#${Buffer.from(JSON.stringify(state)).toString("base64url")}`;
-
-// A new page at an address, which has shown its motions in full, and what is decided, or what it is waited for until.
-async function open(address, { width = 1280, height = 900, scheme = "light", context = browser, features = [], until = null } = {}) {
-  const page = await context.newPage();
-  if (isChromium) await page.setOfflineMode(true);
-  page.on("console", (message) => ["error", "warn"].includes(message.type()) && complaints.push(`console: ${message.text()}`));
-  page.on("pageerror", (error) => complaints.push(`error: ${error.stack ?? error.message}`));
-  page.on("request", (request) => must(/^(file|data|blob):/.test(request.url()), `asks for ${request.url()}`));
-  await page.setViewport({ width, height });
-  if (isChromium) await page.emulateMediaFeatures([{ name: "prefers-color-scheme", value: scheme }, ...features]);
-  await page.goto(address);
-  if (until) await page.waitForSelector(until, { timeout: 60000 });
-  else await page.waitForFunction(() => window.decided, { timeout: 60000 });
-  return page;
-}
-
-// Waits for newer motions than there are, in full: those at a glance have no error.
-async function after(page, act) {
-  const before = await page.evaluate(() => window.explored.drawn);
-  await act();
-  const isNewer = (before) => window.explored.drawn > before && window.explored.answer.motions.every((m) => m.refused || m.error !== null);
-  await page.waitForFunction(isNewer, { timeout: 60000 }, before);
-}
-
-// Chooses a built-in scene, and waits for its motions.
-const choose = (page, name) => after(page, () => page.select("#scene", name));
 
 const rows = (page, label) => page.evaluate((label) => {
   const motion = window.explored.samples.motions.find((motion) => motion.label === label);
@@ -130,35 +111,12 @@ async function opening() {
   must(size <= LIMITS.megabytes, `${size.toFixed(2)} MB, at most ${LIMITS.megabytes}`);
   const firsts = [];
   for (let i = 0; i < 3; i++) {
-    const page = await open(link({ scene: "sledge" }));
+    const page = await open(link({ scene: "sledge" }), { alone: true });
     firsts.push(await page.evaluate(() => window.explored.first));
-    await page.close();
+    await leave(page);
   }
   must(Math.min(...firsts) <= BUSY * LIMITS.first, `first motion after ${Math.min(...firsts).toFixed(0)} ms, at most ${LIMITS.first}`);
   said.push(`${size.toFixed(2)} MB; first motion after ${Math.min(...firsts).toFixed(0)} ms`);
-}
-
-// Every built-in scene has a motion, and what is drawn of it changes with time.
-async function everyScene() {
-  const page = await open(`${url}#scene=sledge`);
-  const names = await page.evaluate(() => [...document.querySelectorAll("#scene option:not([hidden])")].map(({ value }) => value));
-  must(names.length >= 40, `${names.length} scenes`);
-  for (const name of names) {
-    await choose(page, name);
-    const [moves, motions] = await page.evaluate(() => {
-      const [canvas, bar] = ["stage", "bar"].map((id) => document.getElementById(id));
-      if (document.getElementById("play").getAttribute("aria-label") === "pause") document.getElementById("play").click();
-      const at = (part) => {
-        bar.value = part;
-        bar.dispatchEvent(new Event("input"));
-        return canvas.toDataURL();
-      };
-      return [at(0) !== at(0.6), window.explored.samples.motions.length];
-    });
-    must(moves && motions, `${name} does not move`);
-  }
-  await page.close();
-  said.push(`${names.length} scenes move`);
 }
 
 async function sliders() {
@@ -192,7 +150,7 @@ async function sliders() {
   await page.keyboard.press("Home");
   await page.keyboard.press("ArrowRight");
   must((await page.$eval("#reading", (reading) => reading.textContent)) === "t = 0.10 s", "the arrow does not step");
-  await page.close();
+  await leave(page);
 
   const cone = await open(link({ scene: "ball-in-cone" }));
   const times = [];
@@ -208,7 +166,7 @@ async function sliders() {
   // κ brings its motion
   await slide(cone, "kappa", 500);
   await cone.waitForFunction(() => window.explored.answer.motions.some(({ formulation }) => formulation === "kappa"));
-  await cone.close();
+  await leave(cone);
 }
 
 // Two fingers make it larger.
@@ -224,7 +182,7 @@ async function fingers() {
   await page.evaluate(() => new Promise(requestAnimationFrame));
   must((await picture()) !== before, "two fingers change nothing");
   await page.screenshot({ path: join(pictures, "fingers.png") });
-  await page.close();
+  await leave(page);
 }
 
 // A text of one's own has the numbers of the native program, a faulty one its message, a link all of it.
@@ -250,7 +208,7 @@ async function ownText() {
   const [here, there] = [await rows(page, "vakonomic"), await rows(twin, "vakonomic")];
   must(JSON.stringify(here) === JSON.stringify(there) && here[0][3] !== 0.1, "a link does not bring the motion back");
   must(await twin.$eval("#text", (panel) => !panel.hidden), "a link does not bring the panel back");
-  await twin.close();
+  await leave(twin);
 
   // what a text says is shown as it stands there
   const marked = OWN.replace('x = { unit = "m"', 'x = { unit = "<i>m</i>"') + `[observables]\n'<i>"sum"</i>' = "x + y"\n`;
@@ -267,45 +225,47 @@ async function ownText() {
   must(stderr.trim().replaceAll("stdin:", "own:") === `deltaq: ${message}`, `message:\n${message}\nnative:\n${stderr}`);
   must((await page.$$("#marks .bad")).length > 0, "no line is marked");
   await page.screenshot({ path: join(pictures, "broken.png") });
-  await page.close();
+  await leave(page);
 }
 
 async function looks() {
-  const sizes = [["light", { scheme: "light" }], ["dark", { scheme: "dark" }], ["phone", { width: 400, height: 860 }]];
+  const looks = [["light", "light", { width: 1280, height: 900 }], ["dark", "dark", { width: 1280, height: 900 }], ["phone", "light", { width: 400, height: 860 }]];
   const tabs = { sledge: "numbers", disc: "verdict", "ball-in-cone": "equations", turntable: "text", trailer: "numbers" };
-  for (const [look, options] of sizes) {
-    for (const [scene, tab] of Object.entries(tabs)) {
-      const page = await open(link({ scene, tab, time: 3 }), options);
+  for (const [scene, tab] of Object.entries(tabs)) {
+    const page = await open(link({ scene, tab, time: 3 }));
+    if (tab === "equations") await page.waitForSelector("#equations .formula");
+    for (const [name, scheme, size] of looks) {
+      await look(page, scheme);
+      await resize(page, size);
       const width = await page.evaluate(() => document.documentElement.scrollWidth);
-      must(width <= (options.width ?? 1280), `${scene} is ${width} px wide on ${look}`);
+      must(width <= size.width, `${scene} is ${width} px wide on ${name}`);
       if (tab === "equations") {
-        await page.waitForSelector("#equations .formula");
         const longest = await page.$$eval(".formula", (formulas) => Math.max(...formulas.map(({ children }) => children.length)));
         must(longest > 3, `equations of ${scene} are not in pieces`);
       }
-      await page.screenshot({ path: join(pictures, `${scene}-${look}.png`) });
-      await page.close();
+      await page.screenshot({ path: join(pictures, `${scene}-${name}.png`) });
     }
+    await leave(page);
   }
 }
 
 // A browser that was never here.
 const fresh = () => browser.createBrowserContext();
 
-const tools = { open, fresh, link, must, after, choose, slide, type, said, OWN, url, pictures, deltaq };
-// what asks for nothing that only Chromium is told
-const ELSEWHERE = ["costates", "cleared", "refusals", "overlaps", "wayBack", "badLinks", "table", "tabs", "forces", "down", "camera", "differences",
+const tools = { open, leave, look, forget, fresh, link, must, after, choose, slide, type, said, OWN, url, pictures, deltaq };
+// what asks for nothing that only Chromium is told; every scene is Chromium's, of which eachBody is a part
+const ELSEWHERE = ["eachBody", "costates", "cleared", "refusals", "overlaps", "wayBack", "badLinks", "table", "tabs", "forces", "down", "camera", "differences",
   "runaway", "logarithms", "hand", "rolling"];
 // one that breaks off does not hide what the others find
-const single = { ...checks, ...access, ...drawn, ...looking, ...hands, ...takes, tour, tasks };
-const shown = Object.values(single).map((check) => () => check(tools).catch((error) => complaints.push(`${check.name}: ${error.stack}`)));
+const single = { everyScene, eachBody, ...checks, ...access, ...drawn, ...looking, ...hands, ...takes, tour, tasks };
+const whole = (check) => () => check(tools).catch((error) => complaints.push(`${check.name}: ${error.stack}`));
+const named = (names) => names.map((name) => whole(single[name]));
 
 try {
   const grows = () => growth(tools, Number(what) || ROUNDS);
-  const all = [opening, everyScene, sliders, fingers, ownText, looks, ...shown, grows];
-  const named = what in single ? [shown[Object.keys(single).indexOf(what)]] : null;
-  const elsewhere = [everyScene, ownText, ...ELSEWHERE.map((name) => shown[Object.keys(single).indexOf(name)])];
-  const parts = { all, numbers: [ownText], shown, elsewhere }[what] ?? named ?? [grows];
+  const shown = named(Object.keys(single).filter((name) => name !== "eachBody"));
+  const all = [opening, sliders, fingers, ownText, looks, ...shown, grows];
+  const parts = { all, numbers: [ownText], shown, elsewhere: [ownText, ...named(ELSEWHERE)] }[what] ?? (what in single ? named([what]) : [grows]);
   for (const part of parts) await part();
 } catch (error) {
   complaints.push(error.stack);
@@ -314,6 +274,7 @@ try {
   rmSync(userDataDir, { recursive: true, force: true, maxRetries: 5 });
 }
 if (what === "elsewhere") said.push(`${ELSEWHERE.length} checks in ${await browserName}`);
+said.push(`${held} claims`);
 console.log(said.join("; "));
 if (complaints.length) {
   console.error([...new Set(complaints)].join("\n"));

@@ -37,7 +37,7 @@ function judge(decided, { verdict, answer, nearer }, must, at) {
 
 const step = (page) => page.$eval("#tour .steps", ({ textContent }) => textContent);
 
-export async function tour({ open, fresh, link, must, url, pictures, after }) {
+export async function tour({ open, leave, forget, fresh, link, must, url, pictures, after }) {
   const context = await fresh();
   const page = await open(url, { context });
   for (const [i, expected] of EXPECTED.entries()) {
@@ -82,7 +82,7 @@ export async function tour({ open, fresh, link, must, url, pictures, after }) {
       const twin = await open(page.url(), { context });
       must((await step(twin)) === "Step 3 of 6" && (await revealed(twin)) === (await revealed(page)), "an address does not remember the step");
       must((await twin.$eval("#tour output", ({ textContent }) => textContent)).startsWith("-20"), "an address does not remember the number");
-      await twin.close();
+      await leave(twin);
     }
     if (i < 5) await after(page, () => page.click("#next"));
   }
@@ -96,15 +96,15 @@ export async function tour({ open, fresh, link, must, url, pictures, after }) {
   must((await step(page)) === "Step 5 of 6", "there is no way back");
   await after(page, () => page.select("#scene", "disc"));
   must(await page.$eval("#tour", ({ hidden }) => hidden), "another scene does not leave the tour");
-  await page.close();
+  await leave(page);
   // who has left it is not asked again
   const again = await open(url, { context });
   must(await again.$eval("#tour", ({ hidden }) => hidden), "a second visit begins with the tour");
-  await again.close();
-  await context.close();
+  await leave(again);
+  await forget(context);
   // a link to a scene is no first visit
   const other = await fresh();
   const named = await open(`${url}#scene=disc`, { context: other });
   must((await named.title()).includes("disc") && await named.$eval("#tour", ({ hidden }) => hidden), "a link leads to the tour");
-  await other.close();
+  await forget(other);
 }

@@ -34,7 +34,10 @@ pub(crate) fn check() -> Result<Outcome> {
         Ok(browser) => {
             let (page, size) = fresh(&digest)?;
             let found = tried(&browser, &page, "all")?;
-            tried(&browser, Path::new(COMMITTED), "numbers")?;
+            // to the byte the same page was tried already
+            if std::fs::read(&page)? != committed.as_bytes() {
+                tried(&browser, Path::new(COMMITTED), "numbers")?;
+            }
             let second = match installed(&FIREFOX) {
                 Some(firefox) => tried(&firefox, &page, "elsewhere")?,
                 None => "not tried in Firefox, which is not installed".into(),
@@ -56,7 +59,7 @@ pub(crate) fn write() -> Result<Outcome> {
 }
 
 /// Rounds, each of every slider up and down: some five minutes.
-const ROUNDS: u32 = 150;
+const ROUNDS: u32 = 300;
 
 /// Moves the sliders of a fresh page in the number of rounds given, or [`ROUNDS`]; an error if it grows.
 pub(crate) fn growth(words: &[&str]) -> Result<Outcome> {
