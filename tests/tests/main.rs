@@ -14,3 +14,7 @@ mod scales;
 mod stability;
 mod units;
 mod zero;
+
+// derivations allocate much, and this program derives all the time
+#[global_allocator]
+static ALLOCATOR: mimalloc::MiMalloc = mimalloc::MiMalloc;

@@ -1,8 +1,9 @@
 //! `deltaq bench`: what is measured is right, and what fails is listed.
 
-use bench::{Effort, ensemble_throughput, measure, prepare};
+use bench::{Effort, KeptReferences, ensemble_throughput, measure, prepare, references};
 use bench::{bench_files, bench_json};
 use integrate::Method;
+use validation::{REFERENCES, kept_references};
 
 fn effort(max_steps: usize) -> Effort {
     Effort { seconds: 1e-6, repeats: 1, max_steps, patience: 0.05 }
@@ -10,7 +11,7 @@ fn effort(max_steps: usize) -> Effort {
 
 #[test]
 fn every_formulation_is_measured_by_every_method() {
-    let bench = measure(prepare("sledge", &[]).unwrap(), &effort(20_000), |_| ()).unwrap();
+    let bench = measure(prepare("sledge", &[], &KeptReferences::default()).unwrap(), &effort(20_000), |_| ()).unwrap();
     assert!(bench.entries.len() >= 6);
     for form in deltaq::FORMS {
         assert!(bench.entries.iter().any(|e| e.formulation == form.name), "{} is not measured", form.name);
@@ -30,7 +31,7 @@ fn every_formulation_is_measured_by_every_method() {
 
 #[test]
 fn failures_are_listed_with_their_cause() {
-    let bench = measure(prepare("sledge", &[]).unwrap(), &effort(20), |_| ()).unwrap();
+    let bench = measure(prepare("sledge", &[], &KeptReferences::default()).unwrap(), &effort(20), |_| ()).unwrap();
     let files = bench_files(&[bench], &[]).unwrap();
     let page = &files.iter().find(|f| f.path.ends_with("error-vs-time.md")).unwrap().text;
     assert!(page.contains("more than 20 steps"), "{page}");
@@ -56,4 +57,41 @@ fn ensembles_are_measured_and_reported_with_what_they_agree_to() {
     );
     assert!(section.contains("`deltaq bench --ensemble 1e-10`"), "{section}");
     assert!(!bench_files(&[], &[]).unwrap().pop().unwrap().text.contains("Many motions"));
+}
+
+/// Every tenth of them; `REFERENCES=write cargo test --release --package deltaq-validation bench::` computes
+/// and writes all.
+#[test]
+fn kept_references_are_those_of_the_equations_and_a_tenth_is_found_again() {
+    let names: Vec<&str> = catalogue::SCENES.iter().map(|(name, _)| *name).collect();
+    if std::env::var("REFERENCES").is_ok_and(|asked| asked == "write") {
+        let found = KeptReferences::behind(&references(&names, &[], &KeptReferences::default(), true).unwrap());
+        let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("..").join(REFERENCES);
+        std::fs::write(path, found.text()).unwrap();
+        return;
+    }
+    let kept = kept_references().unwrap();
+    let tenth = |i: usize| i % 10 == 7;
+    let others = kept.only(|i| !tenth(i));
+    let found = KeptReferences::behind(&references(&names, &[], &others, true).unwrap());
+    let formulas = |of: &KeptReferences| -> Vec<(String, u64)> {
+        of.motions().iter().map(|motion| (motion.name.clone(), motion.digests[0])).collect()
+    };
+    assert_eq!(formulas(&found), formulas(&kept), "REFERENCES=write writes them anew");
+    let mut again = 0;
+    for (i, (now, before)) in found.motions().iter().zip(kept.motions()).enumerate() {
+        // the last bits of a start may be others on another machine
+        if now.digests == before.digests {
+            let (apart, limit) = (now.reference.gap(&before.reference), now.reference.error + before.reference.error);
+            assert!(apart <= limit, "{}: {apart:.1e} over {limit:.1e}", now.name);
+            again += usize::from(tenth(i));
+        }
+    }
+    assert!(again >= kept.motions().len() / 20, "{again} of {} found again", kept.motions().len());
+    // what is not of the file is noticed
+    let text = kept.text();
+    assert_eq!(KeptReferences::read(&text).unwrap().text(), text);
+    let digit = text.rfind('1').unwrap();
+    let error = KeptReferences::read(&format!("{}2{}", &text[..digit], &text[digit + 1..])).unwrap_err();
+    assert!(error.to_string().contains("not the numbers"), "{error}");
 }

@@ -38,17 +38,17 @@ fn a_run_that_was_cut_off_goes_on() {
     let folder = tempfile::tempdir().expect("a folder");
     let log = folder.path().join("log.jsonl");
     let path = log.display().to_string();
-    let whole = json(&["--count", "30", "--seed", "2", "--log", &path]);
+    let whole = json(&["--count", "16", "--seed", "2", "--log", &path]);
     let lines = fs::read_to_string(&log).expect("a log");
-    assert_eq!(lines.lines().count(), 31, "a header and one line per system");
+    assert_eq!(lines.lines().count(), 17, "a header and one line per system");
     // cut off in the middle of a line
-    let cut = lines.match_indices('\n').nth(12).expect("lines").0 + 40;
+    let cut = lines.match_indices('\n').nth(6).expect("lines").0 + 40;
     fs::write(&log, &lines[..cut]).expect("written");
-    let again = json(&["--count", "30", "--seed", "2", "--log", &path]);
+    let again = json(&["--count", "16", "--seed", "2", "--log", &path]);
     assert_eq!(whole["summary"], again["summary"]);
-    assert_eq!(fs::read_to_string(&log).expect("a log").lines().count(), 31);
+    assert_eq!(fs::read_to_string(&log).expect("a log").lines().count(), 17);
     // nothing is left to do
-    assert_eq!(json(&["--count", "30", "--seed", "2", "--log", &path])["summary"], whole["summary"]);
+    assert_eq!(json(&["--count", "16", "--seed", "2", "--log", &path])["summary"], whole["summary"]);
 }
 
 #[test]
@@ -58,11 +58,11 @@ fn parts_of_a_batch_are_merged_to_what_the_whole_gives() {
     let part = |from: &str, count: &str, name: &str| {
         random(&["--from", from, "--count", count, "--seed", "2", "--log", &path(name)], 0);
     };
-    part("0", "12", "a");
+    part("0", "6", "a");
     // the parts overlap
-    part("8", "12", "b");
+    part("4", "6", "b");
     let merged = json(&["--merge", &path("a"), &path("b")]);
-    let whole = json(&["--count", "20", "--seed", "2"]);
+    let whole = json(&["--count", "10", "--seed", "2"]);
     assert_eq!(merged["summary"], whole["summary"]);
     assert_eq!(merged["batch"], whole["batch"]);
     random(&["--count", "1", "--seed", "3", "--log", &path("c")], 0);

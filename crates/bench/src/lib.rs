@@ -10,7 +10,7 @@ mod page;
 
 pub use ensemble::{ENSEMBLE_SCENE, FEW_MEMBERS, MEMBERS, Throughput, Time, ensemble_throughput};
 pub use of_scene::{
-    Bench, Effort, Entry, Fastest, Measured, Measurements, Point, Prepared, SAMPLES, Series, TARGETS, Truth, Usual,
-    bench_all, measure, prepare, references,
+    Bench, Effort, Entry, Fastest, KeptMotion, KeptReferences, Measured, Measurements, Point, Prepared, SAMPLES,
+    Series, TARGETS, Truth, Usual, bench_all, measure, prepare, references,
 };
 pub use page::{bench_files, bench_headline, bench_json, bench_table, ensemble_json, ensemble_text};

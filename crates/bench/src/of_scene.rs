@@ -1,9 +1,11 @@
 //! What was measured on one scene.
 
+mod kept;
 mod measure;
 mod truth;
 mod usual;
 
+pub use kept::{KeptMotion, KeptReferences};
 pub use measure::{Measured, Point, Series};
 pub use truth::Truth;
 pub use usual::Usual;
@@ -29,7 +31,8 @@ pub const TARGETS: [f64; 4] = [1e-6, 1e-9, 1e-10, 1e-11];
 /// How much is measured.
 #[derive(Clone, Debug)]
 pub struct Effort {
-    /// Runs of one setting are repeated until they took this many seconds together.
+    /// Runs of one setting are repeated until they took this many seconds together, but for those that take
+    /// over four times as long as a run of another method with no larger error.
     pub seconds: f64,
     /// And at least this often.
     pub repeats: usize,
@@ -169,16 +172,17 @@ fn motion(choice: &Choice) -> String {
     }
 }
 
-/// References of `name`, a built-in scene or a scene file's path: not timed, several may run at once.
+/// References of `name`, a built-in scene or a scene file's path, but for those that are `kept`: not timed,
+/// several may run at once.
 ///
 /// # Errors
 /// Where the scene cannot be read.
-pub fn prepare(name: &str, overrides: &[(String, Number)]) -> Result<Prepared> {
+pub fn prepare(name: &str, overrides: &[(String, Number)], kept: &KeptReferences) -> Result<Prepared> {
     let scene = catalogue::find(name, overrides)?;
     let truth = |choice: &Choice| -> Result<Truth> {
         let equations = derive_at(&scene.system, &scene.start, choice)?;
         let ready = deltaq::prepare(setting(&scene), equations, &choice.constants, &Settings::default())?;
-        Truth::new(&scene, &ready, SAMPLES).context("no reference")
+        Truth::new(&scene, &ready, SAMPLES, kept).context("no reference")
     };
     let mut truths: Vec<(String, Result<Truth, String>)> = Vec::new();
     for choice in choices(&scene) {
@@ -222,11 +226,10 @@ fn measurements(scene: &Scene, choice: &Choice, truth: &mut Truth, effort: &Effo
     let compile = clock.elapsed().as_secs_f64();
     let constants = ConstantsRule::Given(ready.constants.clone());
     let usual = Usual::new(setting(scene), &Choice { constants, ..choice.clone() }, truth, effort);
-    let series = Method::ALL
-        .into_iter()
-        .filter(|method| method.is_built_in())
-        .map(|method| Series::new(method, &mut ready, truth, effort))
-        .collect();
+    let mut series: Vec<Series> = Vec::new();
+    for method in Method::ALL.into_iter().filter(|method| method.is_built_in()) {
+        series.push(Series::new(method, &mut ready, truth, effort, &series));
+    }
     Ok(Measurements {
         derive,
         compile,
@@ -240,9 +243,14 @@ fn measurements(scene: &Scene, choice: &Choice, truth: &mut Truth, effort: &Effo
     })
 }
 
-/// References of these scenes, over all processors.
-pub fn references(names: &[&str], overrides: &[(String, Number)], quiet: bool) -> Result<Vec<Prepared>> {
-    parallel::try_map(names, quiet, |_| "references".into(), |name| prepare(name, overrides))
+/// References of these scenes, over all processors; those that are `kept` are not computed again.
+pub fn references(
+    names: &[&str],
+    overrides: &[(String, Number)],
+    kept: &KeptReferences,
+    quiet: bool,
+) -> Result<Vec<Prepared>> {
+    parallel::try_map(names, quiet, |_| "references".into(), |name| prepare(name, overrides, kept))
 }
 
 /// Measurements, one after the other.

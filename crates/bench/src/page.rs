@@ -41,7 +41,7 @@ pub fn bench_headline(benches: &[Bench]) -> String {
 pub fn bench_files(benches: &[Bench], ensembles: &[Throughput]) -> Result<Vec<File>> {
     let mut files = Vec::new();
     let mut page = format!("# Error against run time\n\n**{}**\n\n", bench_headline(benches));
-    page += "One run of the integrator from compiled equations, dense output included: the least time of several runs, on one processor; what it takes to get to the \
+    page += "One run of the integrator from compiled equations, dense output included: the least time of several runs, on one processor (of one run where that is over four times the time of another method with no larger error); what it takes to get to the \
              equations stands apart. Of each motion there is a table of milliseconds (and evaluations) per method and error. The error is the largest distance from the reference in the kinetic metric $\\sqrt{\\Delta q^T M \\Delta q}$ at 20 times. Times differ from machine to machine \
              and from run to run; the numbers of evaluations do not. (`solve` and the other reports integrate every motion twice, for the sake of an error estimate.)\n\n\
              ";

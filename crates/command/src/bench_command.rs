@@ -4,8 +4,8 @@ use anyhow::{Result, bail};
 
 use crate::cli::BenchArguments;
 use bench::{
-    Effort, bench_all, bench_files, bench_json, bench_table, ensemble_json, ensemble_text, ensemble_throughput,
-    references,
+    Effort, KeptReferences, bench_all, bench_files, bench_json, bench_table, ensemble_json, ensemble_text,
+    ensemble_throughput, references,
 };
 
 /// Repeats of each way to integrate an ensemble; the least time counts.
@@ -28,6 +28,7 @@ pub(crate) fn run(arguments: &BenchArguments, quiet: bool) -> Result<String> {
     let all = || catalogue::SCENES.iter().map(|(name, _)| *name).collect();
     let given: Vec<&str> = arguments.scenes.iter().map(String::as_str).collect();
     let names: Vec<&str> = if given.is_empty() { all() } else { given };
-    let benches = bench_all(references(&names, &arguments.set.overrides, quiet)?, &effort, quiet)?;
+    let benches =
+        bench_all(references(&names, &arguments.set.overrides, &KeptReferences::default(), quiet)?, &effort, quiet)?;
     arguments.output.answer("bench", || bench_files(&benches, &[]), || bench_table(&benches), || bench_json(&benches))
 }

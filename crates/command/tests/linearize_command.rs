@@ -27,8 +27,9 @@ fn every_format_has_the_same_numbers() {
     let weave = value["changes"][0]["value"].as_f64().expect("a change");
     assert!((weave - 4.292382536).abs() < 1e-9, "{weave}");
     let said = "Stability to first order changes at v = 4.292382536";
-    assert!(with("table").contains(said));
-    assert!(with("table").contains("2 have a positive real part below this value, no eigenvalue has above"));
+    let table = with("table");
+    assert!(table.contains(said));
+    assert!(table.contains("2 have a positive real part below this value, no eigenvalue has above"));
 }
 
 #[test]

@@ -131,6 +131,7 @@ fn steps_of_stationary_action_are_symplectic() {
 }
 
 const MILLION: usize = 1_000_000;
+const QUARTER: usize = MILLION / 4;
 
 /// What a long run loses.
 #[derive(Debug)]
@@ -182,10 +183,13 @@ fn round_off_of_a_million_steps_is_a_random_walk_of_increments() {
     let Scene { system, start, removals, .. } = scene("heisenberg");
     let circles = Discrete::vakonomic(&system, &start, &[0.8], 0.02 * MILLION as f64).unwrap();
     let at = RemovedStart::at(&system, &removals[0], &start, &[-0.8]).unwrap();
-    let removed = Discrete::removed(&system, &removals[0], &at, 0.02 * MILLION as f64).unwrap();
-    for (what, discrete) in [("vakonomic", circles), ("removed", removed)] {
-        let found = drift(&discrete.composed(Composition::Sixth), MILLION);
-        assert!(found.energy < 1e-13 && found.trend < 1e-13 && found.constraint < 1e-12, "{what}: {found:?}");
+    let removed = Discrete::removed(&system, &removals[0], &at, 0.02 * QUARTER as f64).unwrap();
+    // a random walk of a quarter of the steps comes half as far
+    for (what, discrete, steps, far) in [("vakonomic", circles, MILLION, 1.0), ("removed", removed, QUARTER, 0.5)] {
+        let found = drift(&discrete.composed(Composition::Sixth), steps);
+        let limits = [1e-13, 1e-13, 1e-12].map(|limit| far * limit);
+        let all = [found.energy, found.trend, found.constraint];
+        assert!(all.iter().zip(limits).all(|(x, limit)| *x < limit), "{what}: {found:?}");
     }
 }
 

@@ -25,12 +25,23 @@ pub fn film(scene: &Scene, header: &str, sigma: f64, seed: u64, times: &[f64], a
     Film::read(scene, "film", &table, &deviations).unwrap_or_else(|error| panic!("{error}"))
 }
 
+/// By Chetaev's and the vakonomic equations, and by a law if it has numbers.
 pub fn fitted(scene: &Scene, films: &[Film], free: &[&str], law: &[&str]) -> Vec<Row> {
+    fitted_by(&[CHETAEV, VAKONOMIC], scene, films, free, law)
+}
+
+pub fn fitted_by(
+    wanted: &[&'static equations::Formulation],
+    scene: &Scene,
+    films: &[Film],
+    free: &[&str],
+    law: &[&str],
+) -> Vec<Row> {
     let parsed = |list: &[&str]| list.iter().map(|text| text.parse().unwrap()).collect::<Vec<Unknown>>();
     let settings = Settings { tolerance: 1e-9, max_steps: 20_000, ..Settings::default() };
     let (unknowns, law) = (parsed(free), parsed(law));
     let question = Question { unknowns: &unknowns, law: &law, starts: 16, robust: None, settings, threads: 0 };
-    let rows = fit_formulations(scene, films, &question, &[CHETAEV, VAKONOMIC]);
+    let rows = fit_formulations(scene, films, &question, wanted);
     rows.unwrap_or_else(|error| panic!("{error}"))
 }
 

@@ -8,3 +8,7 @@ mod noise;
 mod search;
 mod shown;
 mod tables;
+
+// a search allocates in all threads at once
+#[global_allocator]
+static ALLOCATOR: mimalloc::MiMalloc = mimalloc::MiMalloc;

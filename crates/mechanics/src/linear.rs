@@ -121,15 +121,22 @@ impl<T: Entry> Factors<T> {
     }
 
     /// Scales rows and columns by powers of 2 so that their largest and smallest entries are as far from 1.
+    /// Rows and columns that both stay as they are do so in each later sweep.
     fn balance(&mut self) {
         let n = self.n;
+        let mut at_rest = 0;
         for sweep in 0..2 * BALANCES {
+            if at_rest == 2 {
+                return;
+            }
+            at_rest += 1;
             for i in 0..n {
                 let place = |j: usize| if sweep % 2 == 0 { i * n + j } else { j * n + i };
                 let sizes = || (0..n).map(|j| self.lu[place(j)].size()).filter(|size| *size > 0.0);
                 let (least, largest) = (sizes().fold(f64::INFINITY, f64::min), sizes().fold(0.0, f64::max));
                 let scale = (-0.5 * (least.log2() + largest.log2())).round().exp2();
-                if scale.is_normal() {
+                if scale.is_normal() && scale != 1.0 {
+                    at_rest = 0;
                     let scale = T::from_f64(scale);
                     let by = if sweep % 2 == 0 { &mut self.row_scale } else { &mut self.column_scale };
                     by[i] = by[i] * scale;

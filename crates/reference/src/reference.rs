@@ -45,7 +45,7 @@ pub struct Reference<T = DoubleDouble> {
     pub agreement: Agreement,
     /// Largest `|fᵢ|` at the points: no run is projected onto the constraint.
     pub constraint_residual: f64,
-    metric: Vec<Vec<f64>>,
+    pub(crate) metric: Vec<Vec<f64>>,
 }
 
 impl<T: Wide> Reference<T> {

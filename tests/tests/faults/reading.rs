@@ -1,7 +1,7 @@
 //! What equations hand over, in numbers, at a few random states.
 
 use std::cell::RefCell;
-use std::collections::HashMap;
+use std::collections::HashSet;
 
 use equations::{Compiled, Equations, Outputs, Plan};
 use mechanics::{Removal, SingularValues, State, complete_removal_start};
@@ -92,7 +92,9 @@ pub fn samples(scene: &Scene, truth: &Truth, removal: Option<&Removal>, count: u
         if let Some(removal) = removal {
             known.extend(complete_removal_start(&scene.system, removal, &state).ok()?.values());
         }
-        Some(Sample { point, known: known.into_iter().collect(), constants })
+        let mut known: Vec<(Symbol, f64)> = known.into_iter().collect();
+        known.sort_by_key(|(symbol, _)| *symbol);
+        Some(Sample { point, known, constants })
     };
     (0..40).filter_map(around).take(count).collect()
 }
@@ -109,7 +111,7 @@ pub fn read(
     let instants = samples.iter().map(|sample| reader.instant(sample)).collect::<Result<Vec<Instant>, _>>()?;
     let fallbacks = reader.compiled.fallbacks();
     let (t, y) = (samples[0].point.t, &instants[0].y);
-    reader.instant(&samples[0])?;
+    reader.settle(&samples[0])?;
     let guarded = reader.guarded(t, y)?;
     let near = near.map_or(Ok(Vec::new()), |y| reader.rates(t, y))?;
     Ok(Reading {
@@ -145,6 +147,10 @@ pub fn worst_for(equations: &Equations, form: &Plan, sample: &Sample, y: &[f64])
 struct Reader<'a> {
     equations: &'a Equations,
     compiled: Compiled,
+    /// Starts of states, guesses of unknowns, equations for the reader: compiled once for all states.
+    starts: Formulas,
+    guesses: Formulas,
+    sides: Formulas,
     /// Rates by their names in the equations for the reader, with the places of the states.
     names: Vec<(Symbol, usize)>,
 }
@@ -157,10 +163,12 @@ impl<'a> Reader<'a> {
         let rate = |(i, y): (usize, Symbol)| Some((g.find_symbol(&format!("{}'", g.name(y)))?, i));
         let rates = equations.state_symbols().into_iter().enumerate().filter_map(rate);
         let rates = rates.filter(|(s, _)| !known.contains(s));
-        Ok(Reader { equations, compiled, names: rates.collect() })
+        let [starts, guesses, sides] = [(); 3].map(|()| None);
+        Ok(Reader { equations, compiled, starts, guesses, sides, names: rates.collect() })
     }
 
-    fn instant(&mut self, sample: &Sample) -> Result<Instant, String> {
+    /// States and unknowns of a sample, from which equations are solved from now on.
+    fn settle(&mut self, sample: &Sample) -> Result<[Vec<f64>; 2], String> {
         let equations = self.equations;
         let t = sample.point.t;
         let count = equations.free_constants.len();
@@ -168,17 +176,25 @@ impl<'a> Reader<'a> {
         self.compiled.set_constants(constants);
         let mut known = sample.known.clone();
         known.extend(equations.constant_symbols().into_iter().zip(constants.iter().copied()));
-        let starts: Vec<_> = equations.states.iter().map(|y| y.start).collect();
-        let y = evaluated(equations, &known, &starts)?;
+        let starts = || equations.states.iter().map(|y| y.start).collect();
+        let y = evaluated(equations, &known, &mut self.starts, starts)?;
         if self.compiled.needs_guess() {
-            let guesses: Vec<_> = equations.blocks.iter().flat_map(|b| b.guess.iter().copied()).collect();
+            let guesses = || equations.blocks.iter().flat_map(|b| b.guess.iter().copied()).collect();
             // a block that has no guess starts at the accelerations' zero
-            let guess = evaluated(equations, &known, &guesses)?;
+            let guess = evaluated(equations, &known, &mut self.guesses, guesses)?;
             if guess.len() == equations.unknowns().len() {
                 self.compiled.set_guess(&guess);
             }
         }
         let z = self.compiled.settle(t, &y).map_err(|e| e.to_string())?.to_vec();
+        Ok([y, z])
+    }
+
+    fn instant(&mut self, sample: &Sample) -> Result<Instant, String> {
+        let [y, z] = self.settle(sample)?;
+        let equations = self.equations;
+        let t = sample.point.t;
+        let constants = &sample.constants[..equations.free_constants.len()];
         let rates = self.rates(t, &y)?;
         let now = self.compiled.outputs(t, &y).map_err(|e| e.to_string())?;
         let along = self.along(t, &y, &rates, &now)?;
@@ -258,25 +274,39 @@ impl<'a> Reader<'a> {
         failure.map_or(Ok(Outputs { coordinates, velocities, multipliers, invariants }), Err)
     }
 
-    fn statements(&self, values: &[(Symbol, f64)]) -> Result<Vec<f64>, String> {
-        let g = &self.equations.graph;
-        let sides: Vec<_> = self.equations.statements.iter().flat_map(|s| [s.left, s.right]).collect();
-        let defined = self.equations.definitions.iter().map(|d| d.0);
-        let bound: HashMap<Symbol, ()> = values.iter().map(|v| (v.0, ())).chain(defined.map(|s| (s, ()))).collect();
-        let readable = |e: &symbolic::Expr| {
-            let parameter = |s: &Symbol| self.equations.parameters.contains_key(s);
-            g.symbols_of(*e).iter().all(|s| bound.contains_key(s) || parameter(s))
+    fn statements(&mut self, values: &[(Symbol, f64)]) -> Result<Vec<f64>, String> {
+        let equations = self.equations;
+        let pairs = || {
+            let sides: Vec<_> = equations.statements.iter().flat_map(|s| [s.left, s.right]).collect();
+            let defined = equations.definitions.iter().map(|d| d.0);
+            let bound: HashSet<Symbol> = values.iter().map(|v| v.0).chain(defined).collect();
+            let readable = |e: &symbolic::Expr| {
+                let parameter = |s: &Symbol| equations.parameters.contains_key(s);
+                equations.graph.symbols_of(*e).iter().all(|s| bound.contains(s) || parameter(s))
+            };
+            sides.chunks(2).filter(|pair| pair.iter().all(readable)).flatten().copied().collect()
         };
-        let pairs: Vec<_> = sides.chunks(2).filter(|pair| pair.iter().all(readable)).flatten().copied().collect();
-        let sides = evaluated(self.equations, values, &pairs)?;
+        let sides = evaluated(equations, values, &mut self.sides, pairs)?;
         Ok(sides.chunks(2).map(|pair| pair[0] - pair[1]).collect())
     }
 }
 
-fn evaluated(equations: &Equations, known: &[(Symbol, f64)], wanted: &[symbolic::Expr]) -> Result<Vec<f64>, String> {
+/// Compiled formulas, and of which symbols they are.
+type Formulas = Option<(Vec<Symbol>, Evaluator<f64>)>;
+
+/// Values of what is `wanted`, which is compiled once for the same symbols.
+fn evaluated(
+    equations: &Equations,
+    known: &[(Symbol, f64)],
+    compiled: &mut Formulas,
+    wanted: impl Fn() -> Vec<symbolic::Expr>,
+) -> Result<Vec<f64>, String> {
     let (symbols, inputs): (Vec<Symbol>, Vec<f64>) = known.iter().copied().unzip();
-    let tape = equations.tape(&symbols, wanted).map_err(|e| e.to_string())?;
-    Ok(Evaluator::new(tape).evaluate(&inputs).to_vec())
+    if compiled.as_ref().is_none_or(|(of, _)| *of != symbols) {
+        let tape = equations.tape(&symbols, &wanted()).map_err(|e| e.to_string())?;
+        *compiled = Some((symbols, Evaluator::new(tape)));
+    }
+    Ok(compiled.as_mut().map_or_else(Vec::new, |(_, formulas)| formulas.evaluate(&inputs).to_vec()))
 }
 
 fn largest(a: &[f64]) -> f64 {

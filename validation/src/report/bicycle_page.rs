@@ -14,18 +14,17 @@ use program::File;
 /// Speed or name, real and imaginary part, in 25 digits.
 const REFERENCE: &str = include_str!("../../linear/bicycle.csv");
 
-/// Speeds in the table, and in the picture, m/s.
-const SPEEDS: (f64, f64, usize) = (0.0, 10.0, 11);
+/// Speeds in the picture, m/s; every tenth of them is in the table, too.
 const DRAWN: (f64, f64, usize) = (0.0, 10.0, 101);
+const IN_TABLE: usize = 10;
 
 /// So close eigenvalues and speeds have to be.
 const LIMIT: f64 = 1e-12;
 
 /// The eigenvalues of the upright bicycle over its speed, and how far they are from the reference.
 pub struct BicycleReport {
-    table: Sweep,
     drawn: Sweep,
-    /// At each speed.
+    /// At each speed in the table.
     differences: Vec<f64>,
     /// What changes, the speed, and its difference.
     changes: Vec<(&'static str, f64, f64)>,
@@ -37,9 +36,8 @@ impl BicycleReport {
     /// # Errors
     /// Where there is no linearization, or the reference has another number of eigenvalues.
     pub fn new() -> Result<BicycleReport> {
-        let [table, drawn] = [bicycle(SPEEDS)?, bicycle(DRAWN)?];
-        let rows = reference()?;
-        let differences = table.points.iter().map(|point| difference(point, &rows)).collect::<Result<Vec<f64>>>()?;
+        let (drawn, rows) = (bicycle(DRAWN)?, reference()?);
+        let differences = in_table(&drawn).map(|point| difference(point, &rows)).collect::<Result<Vec<f64>>>()?;
         let [weave, capsize] = &drawn.changes[..] else {
             bail!("{} changes of stability in the place of two", drawn.changes.len());
         };
@@ -48,7 +46,7 @@ impl BicycleReport {
             Ok((name, change.value, (change.value - known.1.re).abs()))
         });
         let changes = changes.into_iter().collect::<Result<Vec<_>>>()?;
-        Ok(BicycleReport { table, drawn, differences, changes })
+        Ok(BicycleReport { drawn, differences, changes })
     }
 
     fn largest(&self) -> f64 {
@@ -79,7 +77,7 @@ impl BicycleReport {
     /// Where the picture cannot be drawn.
     pub fn files(&self) -> Result<Vec<File>> {
         let mut table = Table::new([">v, m/s", ">s1", ">s2", ">s3", ">s4", ">estimated error", ">difference"]);
-        for (point, difference) in self.table.points.iter().zip(&self.differences) {
+        for (point, difference) in in_table(&self.drawn).zip(&self.differences) {
             let error = point.part.eigenvalues.iter().fold(0.0_f64, |a, e| a.max(e.error));
             let rounded = |e: &Eigenvalue| Eigenvalue { error: e.error.max(1e-9), ..*e };
             let mut cells = pairs(&point.part.eigenvalues.iter().map(rounded).collect::<Vec<_>>());
@@ -91,7 +89,7 @@ impl BicycleReport {
         for (name, value, difference) in &self.changes {
             speeds.row(&[name, &format!("{value:.12}"), &format!("{difference:.0e}")]);
         }
-        let SweepPoint { linearization, part, .. } = &self.table.points[0];
+        let SweepPoint { linearization, part, .. } = &self.drawn.points[0];
         let of: Vec<&str> = part.states.iter().map(|&i| &linearization.states[i][..]).collect();
         let page = fill(
             include_str!("pages/bicycle.md"),
@@ -111,6 +109,10 @@ impl BicycleReport {
             },
         ])
     }
+}
+
+fn in_table(drawn: &Sweep) -> impl Iterator<Item = &SweepPoint> {
+    drawn.points.iter().step_by(IN_TABLE)
 }
 
 /// Lean and steer of the upright bicycle at these speeds.

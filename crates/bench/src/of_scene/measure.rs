@@ -48,8 +48,21 @@ fn tightest(method: Method) -> i32 {
     }
 }
 
+/// A run that takes over this many times as long as another that is as good is not repeated: the least of its
+/// times would be no less than that one's.
+const BEYOND: f64 = 4.0;
+
 impl Series {
-    pub(super) fn new(method: Method, ready: &mut Prepared, truth: &mut Truth, effort: &Effort) -> Self {
+    /// `others` are those of the same equations so far.
+    pub(super) fn new(
+        method: Method,
+        ready: &mut Prepared,
+        truth: &mut Truth,
+        effort: &Effort,
+        others: &[Series],
+    ) -> Self {
+        let known: Vec<Measured> =
+            others.iter().flat_map(|series| &series.points).filter_map(|p| p.outcome.as_ref().ok().copied()).collect();
         // the two that go down to round-off are worth waiting for
         let reaches = matches!(method, Method::Taylor | Method::Dop853);
         let patience = if reaches { 4.0 * effort.patience } else { effort.patience };
@@ -58,7 +71,9 @@ impl Series {
             let mut options = Options::with_tolerance(10.0_f64.powi(-exponent));
             options.method = method;
             options.max_steps = effort.max_steps;
-            let outcome = measure(ready, &options, truth, effort);
+            // the first run of a method pays for what it needs of the equations
+            let known: &[Measured] = if points.is_empty() { &[] } else { &known };
+            let outcome = measure(ready, &options, truth, effort, known);
             let slow = outcome.as_ref().map_or(0.0, |m| m.seconds) > patience;
             points.push(Point { tolerance: options.relative_tolerance, outcome });
             if slow {
@@ -69,9 +84,16 @@ impl Series {
     }
 }
 
-fn measure(ready: &mut Prepared, options: &Options, truth: &mut Truth, effort: &Effort) -> Result<Measured, String> {
+fn measure(
+    ready: &mut Prepared,
+    options: &Options,
+    truth: &mut Truth,
+    effort: &Effort,
+    known: &[Measured],
+) -> Result<Measured, String> {
     let (mut seconds, mut total) = (f64::INFINITY, 0.0);
     let mut repeats = 0;
+    let mut first: Option<f64> = None;
     loop {
         let clock = Instant::now();
         let run = ready.integrate(truth.end(), options).map_err(|error| error.to_string())?;
@@ -82,9 +104,14 @@ fn measure(ready: &mut Prepared, options: &Options, truth: &mut Truth, effort: &
         seconds = elapsed.min(seconds);
         total += elapsed;
         repeats += 1;
+        // the same in each run
+        let error = match first {
+            Some(error) => error,
+            None => *first.insert(error(&run, ready, truth)?),
+        };
         let enough = total >= effort.seconds && repeats >= effort.repeats;
-        if enough || total > effort.patience {
-            let error = error(&run, ready, truth)?;
+        let beaten = || known.iter().any(|other| other.error <= error && BEYOND * other.seconds < seconds);
+        if enough || total > effort.patience || beaten() {
             return Ok(Measured { seconds, error, work: run.solution.work });
         }
     }

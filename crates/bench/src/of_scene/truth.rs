@@ -4,8 +4,10 @@ use anyhow::Result;
 use deltaq::{Metric, Prepared};
 use integrate::{Options, Status};
 use mechanics::State;
-use reference::{Question, Reference, reference};
+use reference::{Kept, Question, reference};
 use scene::Scene;
+
+use super::KeptReferences;
 
 /// Where a motion truly is at some times.
 pub struct Truth {
@@ -17,12 +19,14 @@ pub struct Truth {
     pub origin: String,
     /// Whether the motion ends before the scene does, and the times therefore before its end.
     pub shortened: bool,
+    /// [`Question::digests`].
+    pub(super) digests: [u64; 2],
     source: Source,
 }
 
 enum Source {
     /// In double-double arithmetic.
-    Wide(Box<Reference>),
+    Wide(Kept),
     /// In `f64`, where the other failed: coordinates and velocities at each time.
     Narrow(Vec<(Vec<f64>, Vec<f64>)>, Box<Metric>),
 }
@@ -34,11 +38,12 @@ const PART: f64 = 0.9;
 const ACCURACY: f64 = 1e-15;
 
 impl Truth {
-    /// `count` times of the motion that `ready` starts, up to the scene's end or just before its own.
+    /// `count` times of the motion that `ready` starts, up to the scene's end or just before its own. What is
+    /// `kept` of these equations from this start is not computed again.
     ///
     /// # Errors
     /// Where the motion cannot be computed.
-    pub fn new(scene: &Scene, ready: &Prepared, count: usize) -> Result<Truth> {
+    pub fn new(scene: &Scene, ready: &Prepared, count: usize, kept: &KeptReferences) -> Result<Truth> {
         let mut ready = ready.clone();
         let end = scene.start.t + scene.duration;
         let [looser, tighter] =
@@ -53,17 +58,16 @@ impl Truth {
         let start = State { t: ready.t, ..scene.start.clone() };
         let question =
             Question { system: &scene.system, start: &start, equations: &ready.equations, constants: &ready.constants };
+        let digests = question.digests(&times, ACCURACY);
+        let wide = |found: Kept, origin: &str| {
+            let (error, origin) = (found.error, origin.into());
+            Truth { times: times.clone(), error, origin, shortened, digests, source: Source::Wide(found) }
+        };
+        if let Some(found) = kept.find(digests).filter(|found| found.times() == count) {
+            return Ok(wide(found.clone(), "double-double, two methods, kept"));
+        }
         let refused = match reference(&question, &times, ACCURACY) {
-            Ok(found) => {
-                let origin = "double-double, two methods".into();
-                return Ok(Truth {
-                    times,
-                    error: found.error(),
-                    origin,
-                    shortened,
-                    source: Source::Wide(Box::new(found)),
-                });
-            }
+            Ok(found) => return Ok(wide(Kept::from(&found), "double-double, two methods")),
             Err(error) => error,
         };
         let mut metric = Metric::new(&scene.system)?;
@@ -75,12 +79,20 @@ impl Truth {
             places.push((here.coordinates, here.velocities));
         }
         let origin = format!("DOP853 at tolerance 2e-15 (none in double-double arithmetic: {refused})");
-        Ok(Truth { times, error, origin, shortened, source: Source::Narrow(places, Box::new(metric)) })
+        Ok(Truth { times, error, origin, shortened, digests, source: Source::Narrow(places, Box::new(metric)) })
     }
 
     /// Time of the last sample.
     pub fn end(&self) -> f64 {
         self.times.last().copied().unwrap_or(f64::NAN)
+    }
+
+    /// What may be kept of it.
+    pub(super) fn wide(&self) -> Option<&Kept> {
+        match &self.source {
+            Source::Wide(found) => Some(found),
+            Source::Narrow(..) => None,
+        }
     }
 
     /// Distance of the coordinates `q` from the motion at the time of index `i`, kinetic metric.

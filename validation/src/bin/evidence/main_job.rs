@@ -19,6 +19,7 @@ use bench::{Effort, bench_all, bench_files, bench_headline, references};
 use pages::{Headline, scene_files, verdicts};
 use program::{Answer, File, TextOrJson, parallel, pretty, write_all, write_own};
 use validation::casadi_job::{self, Outcome};
+use validation::kept_references;
 use validation::report::{overview, referees_section};
 
 /// A compared scene with its page and pictures.
@@ -77,7 +78,7 @@ impl Results {
             let referee = asked(&Section::Casadi).then(|| scope.spawn(|| casadi_job::section(names)));
             let scenes = || parallel::in_turn(SCENES_FIRST, || compare_all(names, quiet));
             let scenes = asked(&Section::Scenes).then(|| scope.spawn(scenes));
-            let prepared = || parallel::in_turn(REFERENCES_THEN, || references(names, &[], quiet));
+            let prepared = || parallel::in_turn(REFERENCES_THEN, || references(names, &[], &kept_references()?, quiet));
             let prepared = (timed && asked(&Section::ErrorVsTime)).then(|| scope.spawn(prepared));
             let jobs = JOBS.iter().filter(|(section, ..)| asked(section));
             let jobs: Vec<_> =
