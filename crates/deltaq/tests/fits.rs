@@ -119,6 +119,11 @@ fn failures(name: &str, at_most: f64) -> Vec<String> {
             println!("{pair}: nothing left, {:.1e}", fitted.gap.largest);
             continue;
         }
+        // taken over from the same family in other constants, which is swept; `FITS_OF` sweeps both
+        if fitted.starts == 0 && std::env::var_os("FITS_OF").is_none() {
+            println!("{pair}: {:.6e}, taken over", fitted.gap.largest);
+            continue;
+        }
         let gap = fitted.gap.largest;
         let (least, at, count) = swept(&scene, runs, fit, fitted);
         let gain = 100.0 * (1.0 - least / gap);

@@ -293,6 +293,10 @@ fn null_tests_are_held_to_a_thousand_millionth_of_the_way() {
 fn a_disc_is_off_from_a_millionth_of_the_way_on() {
     fn light(scene: &mut Scene) {
         let system = &mut scene.system;
+        // of the other two nothing is asked here, and without inertia they would turn ever faster
+        if system.dimension() != 4 {
+            return;
+        }
         let (g, v) = (&system.graph, system.velocities());
         let square = g.dot(&g.variables(&v[..2]), &g.variables(&v[..2]));
         system.lagrangian = g.sub(system.lagrangian, g.mul(g.number(0.5 * (1.0 - PULL.get())), square));

@@ -6,6 +6,7 @@ use deltaq::{
 };
 use mechanics::{ConstantsRule, Integrability, Removal, SingularValues, complete_removal_start};
 use nalgebra::{DMatrix, DVector};
+use scene::Scene;
 use symbolic::Symbol;
 
 use super::CheckError;
@@ -13,7 +14,7 @@ use super::growth::is_certain;
 use crate::case::Which;
 use crate::derived::{equations, free_constants};
 use crate::realization::{augmented_start, momenta, numbers};
-use crate::{Case, Kind, Truth};
+use crate::{Case, Findings, Kind, Recipe, Truth};
 
 /// Residual of linear equations under which they have a solution, relative to their terms.
 const SOLVABLE: f64 = 1e-9;
@@ -140,9 +141,17 @@ pub(super) fn bijection(case: &mut Case) -> Result<(), CheckError> {
 
 /// T11.
 pub(super) fn frobenius(case: &mut Case) -> Result<(), CheckError> {
-    let (system, start) = (&case.scene.system, &case.scene.start);
-    let found = integrability(&case.scene)?;
-    let right = match (case.recipe.truth(), found) {
+    integrals_put_in(&case.recipe, &case.scene, &mut case.found)
+}
+
+/// T11 of a recipe and its scene: it needs no motion.
+///
+/// # Errors
+/// Where integrals cannot be counted by ranks.
+pub fn integrals_put_in(recipe: &Recipe, scene: &Scene, findings: &mut Findings) -> Result<(), CheckError> {
+    let (system, start) = (&scene.system, &scene.start);
+    let found = integrability(scene)?;
+    let right = match (recipe.truth(), found) {
         (Truth::Unconstrained, Integrability::Unconstrained)
         | (Truth::Integrable, Integrability::Integrable { .. })
         | (Truth::Nonintegrable, Integrability::Nonintegrable { .. })
@@ -152,25 +161,23 @@ pub(super) fn frobenius(case: &mut Case) -> Result<(), CheckError> {
         }
         _ => false,
     };
-    let by_ranks = match case.recipe.truth() {
+    let by_ranks = match recipe.truth() {
         Truth::Unconstrained | Truth::NotLinear => None,
         _ => integrals_by_ranks(system, start)?,
     };
     let claim = "Frobenius' test finds what the construction put in";
     match found {
         // its words begin with that one
-        Integrability::Undecided { .. } => {
-            case.found.undecided(11, claim, found.to_string().replace("undecided: ", ""))
-        }
-        _ => case.found.require(11, claim, right, found),
+        Integrability::Undecided { .. } => findings.undecided(11, claim, found.to_string().replace("undecided: ", "")),
+        _ => findings.require(11, claim, right, found),
     }
     if let Some((integrals, _)) = by_ranks {
         let note = format!("{integrals} by ranks");
-        let right = integrals == case.recipe.integrals();
-        case.found.require(11, "ranks over a finite field count the integrals", right, note);
+        let right = integrals == recipe.integrals();
+        findings.require(11, "ranks over a finite field count the integrals", right, note);
     }
     if let Integrability::Integrable { exact } = found {
-        case.found.count(11, "integrable, and the brackets vanish by simplification", exact);
+        findings.count(11, "integrable, and the brackets vanish by simplification", exact);
     }
     Ok(())
 }

@@ -17,7 +17,7 @@ use symbolic::CompileError;
 use super::{Case, Unjudged};
 use referees::maggi::MaggiError;
 
-pub use agreement::{DIVERGES, Divergence};
+pub use agreement::{DIVERGES, Divergence, integrals_put_in};
 pub use null_tests::{NullTest, broken_null_test, null_test};
 
 /// Why a check could not be made.
