@@ -139,6 +139,11 @@ impl ExactStart {
         })
     }
 
+    /// Whether something that varies stands under a root of `L`, `f` or `Q`, or has a kink there.
+    pub fn has_branches(&self) -> bool {
+        self.has_branches
+    }
+
     /// Names of given velocities solved from the constraints, which their decimals miss by round-off.
     pub(crate) fn series(&self) -> Result<(SeriesStart<Modular>, Vec<String>), NoExactStart> {
         if let Some(problem) = &self.problem {

@@ -186,7 +186,8 @@ impl Design {
             Aim::Estimate(name) => Some(Unknown::named(name).of_law()),
             Aim::Tell(..) => None,
         };
-        law.extend(estimated.clone().filter(|unknown| is_of_a_law(&unknown.name)));
+        let is_free = |unknown: &Unknown| question.unknowns.iter().any(|own| own.name == unknown.name);
+        law.extend(estimated.clone().filter(|unknown| is_of_a_law(&unknown.name) && !is_free(unknown)));
         let (scene, law, unknowns) = Question { law: &law, ..question.clone() }.prepared(scene)?;
         let (scene, question) = (&scene, &Question { unknowns: &unknowns, law: &law, ..question.clone() });
         let first = |wanted: &'static Formulation| {
@@ -197,7 +198,8 @@ impl Design {
             Aim::Tell(truth, rival) if truth == rival => return Err(FitError::ToldFromItself(truth.name)),
             Aim::Tell(truth, rival) => vec![first(truth)?, first(rival)?],
             Aim::Estimate(_) => {
-                vec![first(if law.is_empty() { CHETAEV } else { LAW })?]
+                let is_law = law.iter().chain(&unknowns).any(|unknown| is_of_a_law(&unknown.name));
+                vec![first(if is_law { LAW } else { CHETAEV })?]
             }
         };
         let (choice, rival) = (&choices[0], choices.get(1));

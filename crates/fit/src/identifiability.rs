@@ -5,7 +5,8 @@
 //! being as written, `∂c_k/∂θ` comes from series whose coefficients carry derivatives ([`Dual`]).
 //!
 //! - Full rank: a minor that is not zero modulo a prime is not zero. Analytic in θ, it is not zero at almost all
-//!   θ, near which different θ give different films: *identifiable, proved*.
+//!   θ, and there other θ nearby give other films: *proved*. What is known before counts as measured. Where
+//!   something that varies stands under a root, or has kinks, there are several pieces: *open*.
 //! - Less, to the order of as many coefficients as there are states and unknowns, in two fields: no proof; what
 //!   kernels contain is named.
 //!
@@ -31,8 +32,11 @@ const MORE: usize = 2;
 /// Whether films of these columns can show the unknowns.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Identifiability {
-    /// At almost all unknowns films show each of them, near its value: proved.
-    Proved,
+    /// At almost all unknowns films tell each of them from values nearby: proved.
+    Proved {
+        /// Whether something is known before, which counts as measured.
+        with_priors: bool,
+    },
     /// At almost all unknowns derivatives to this order do not change with these combinations, by ranks in two
     /// fields. Each is given by the unknowns in it.
     Hidden {
@@ -49,7 +53,10 @@ impl Identifiability {
     /// In words.
     pub fn words(&self) -> String {
         match self {
-            Identifiability::Proved => "at almost all numbers such films show each of the unknowns: proved".into(),
+            Identifiability::Proved { with_priors } => {
+                let known = if *with_priors { ", with what is known before," } else { "" };
+                format!("at almost all numbers such films{known} tell each of the unknowns from others nearby: proved")
+            }
             Identifiability::Hidden { combinations, order } => {
                 let each: Vec<String> = combinations.iter().map(|names| names.join(" with ")).collect();
                 format!("no such film shows {} (derivatives to order {order}, in two finite fields)", each.join(", "))
@@ -71,7 +78,8 @@ pub(crate) fn identifiability(scene: &Scene, choice: &Choice, parts: &[Part], un
             let found = agreed(seeds, |seed| question.hidden(orders, seed), Vec::is_empty);
             let hidden = found.map_err(|fault| fault.unwrap_or_else(|| "finite fields do not agree".into()))?;
             if hidden.is_empty() {
-                return Ok(Identifiability::Proved);
+                let with_priors = unknowns.iter().any(|unknown| unknown.prior.is_some());
+                return Ok(Identifiability::Proved { with_priors });
             }
             if orders == all {
                 let names = |of: &Vec<usize>| of.iter().map(|&i| unknowns[i].label()).collect();
@@ -103,6 +111,9 @@ impl<'a> Question<'a> {
         let system = &scene.system;
         let start = ExactStart::new(system, &scene.start, &scene.completion, choice.removal.as_ref());
         let start = start.map_err(|fault| fault.to_string())?;
+        if start.has_branches() {
+            return Err("something that varies stands under a root or has a kink in L, f or Q".into());
+        }
         let equations = derive(system, choice).map_err(|fault| fault.to_string())?;
         let dynamics = Dynamics::new(system, &equations).map_err(|fault| fault.to_string())?;
         let constants = match &choice.removal {
@@ -118,6 +129,9 @@ impl<'a> Question<'a> {
         let program = |film: &Film| {
             let columns = film.columns.iter().map(|column| expression(scene, &column.name));
             let columns = columns.collect::<Result<Vec<_>, _>>().map_err(|fault| fault.to_string())?;
+            if !system.graph.kinks(&columns).is_empty() || !system.graph.radicands(&columns).is_empty() {
+                return Err("a column contains a root or has a kink".into());
+            }
             Program::new(&system.graph, &inputs, &columns).map_err(|fault| fault.to_string())
         };
         let columns = parts.iter().map(|part| program(&part.film)).collect::<Result<_, _>>()?;

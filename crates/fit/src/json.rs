@@ -62,7 +62,7 @@ fn row(row: &Row) -> Value {
 
 fn shown(shown: &Identifiability) -> Value {
     let (answer, hidden, order) = match shown {
-        Identifiability::Proved => ("proved", Vec::new(), None),
+        Identifiability::Proved { .. } => ("proved", Vec::new(), None),
         Identifiability::Hidden { combinations, order } => ("hidden", combinations.clone(), Some(*order)),
         Identifiability::Open(_) => ("open", Vec::new(), None),
     };

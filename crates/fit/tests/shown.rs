@@ -23,7 +23,7 @@ fn asked(scene: &Scene, formulation: &Formulation, columns: &[&str], free: &[&st
 fn hidden(scene: &Scene, formulation: &Formulation, columns: &[&str], free: &[&str]) -> Vec<Vec<String>> {
     match asked(scene, formulation, columns, free).1 {
         Identifiability::Hidden { combinations, .. } => combinations,
-        Identifiability::Proved => Vec::new(),
+        Identifiability::Proved { .. } => Vec::new(),
         Identifiability::Open(reason) => panic!("{reason}"),
     }
 }
@@ -43,6 +43,14 @@ fn combinations_of_closed_forms_are_named() {
     ["g", "clock", "x'", "phi'"].iter().for_each(|name| assert!(scaled[0].contains(&name.to_string()), "{scaled:?}"));
     // gravity that is known is a clock
     assert!(of(&["clock"]).is_empty());
+    let words = |more: &[&str]| asked(&sledge, CHETAEV, &["x", "y"], &[&start, more].concat()).1.words();
+    assert!(
+        !words(&["g"]).contains("known before")
+            && words(&["g~9.81±0.1", "alpha"]).contains("with what is known before")
+    );
+    // which of its pieces a root is on is not asked
+    let root = asked(&sledge, CHETAEV, &["sqrt(x^2)", "y"], &start).1;
+    assert!(matches!(&root, Identifiability::Open(reason) if reason.contains("root")), "{root:?}");
     // an angle alone does not say where
     assert_eq!(hidden(&sledge, CHETAEV, &["phi"], &["x", "phi", "phi'"]), [["x"]]);
 }
@@ -75,7 +83,7 @@ fn ranks_are_those_of_motions() {
             let infinite = |i: &usize| numbers.errors[*i].is_infinite();
             let mut seen: Vec<&str> = (0..free.len()).filter(infinite).map(|i| free[i]).collect();
             let mut by_ranks: Vec<String> = match shown {
-                Identifiability::Proved => Vec::new(),
+                Identifiability::Proved { .. } => Vec::new(),
                 Identifiability::Hidden { combinations, .. } => combinations.concat(),
                 Identifiability::Open(reason) => panic!("{name}: {reason}"),
             };

@@ -8,8 +8,8 @@ from ._native import Comparison, Ensemble, Motion, UnknownNameError
 from ._needs import needed
 from ._tables import units
 
-COLOURS = {"chetaev": "#0072b2", "vakonomic": "#d55e00", "removed-constraint": "#009e73", "kappa": "#cc79a7"}
-_STYLES = {"chetaev": "-", "vakonomic": "--", "removed-constraint": "-.", "kappa": ":"}
+COLOURS = {"chetaev": "#0072b2", "vakonomic": "#d55e00", "removed-constraint": "#009e73", "kappa": "#cc79a7", "first-order": "#8a6d00"}
+_STYLES: dict[str, Any] = {"chetaev": "-", "vakonomic": "--", "removed-constraint": "-.", "kappa": ":", "first-order": (0, (3, 1, 1, 1))}
 
 
 def _look(formulation: str) -> dict[str, Any]:
