@@ -150,7 +150,7 @@ impl ExactStart {
             return Err(problem.clone());
         }
         let (parameters, time) = self.given();
-        let (q, v) = self.written_state(&parameters, time, &[])?;
+        let [q, v] = self.written_state(&parameters, time, &[])?;
         let start = |v: Vec<Jet<Modular>>| SeriesStart {
             parameters: parameters.clone(),
             time,
@@ -176,8 +176,8 @@ impl ExactStart {
         }
     }
 
-    /// The start with other numbers for some parameters, coordinates and velocities: what is written by way of
-    /// these follows, and velocities that the constraints supply are solved for.
+    /// The start with other numbers for some parameters, coordinates and velocities: what is written by way
+    /// of these follows, and velocities that the constraints supply are solved for.
     ///
     /// # Errors
     /// [`NoExactStart`].
@@ -192,7 +192,7 @@ impl ExactStart {
         let other = |symbol: Symbol| others.iter().find(|(own, _)| *own == symbol).map(|(_, x)| *x);
         let own = self.system.parameters.iter().map(|p| other(p.symbol));
         parameters.iter_mut().zip(own).for_each(|(x, own)| *x = own.unwrap_or(*x));
-        let (positions, v) = self.written_state(&parameters, time, others)?;
+        let [positions, v] = self.written_state(&parameters, time, others)?;
         let h = self.system.constraints.len();
         let open = if self.supplied.len() == h { &self.supplied } else { &self.spare };
         let velocities = self.solved(&parameters, time, &positions, &v, open)?;
@@ -209,7 +209,7 @@ impl ExactStart {
         parameters: &[Jet<C>],
         time: Jet<C>,
         others: &[(Symbol, Jet<C>)],
-    ) -> Result<(Vec<Jet<C>>, Vec<Jet<C>>), NoExactStart>
+    ) -> Result<[Vec<Jet<C>>; 2], NoExactStart>
     where
         Jet<C>: Scalar,
     {
@@ -230,7 +230,7 @@ impl ExactStart {
             return Err(flaw.into());
         }
         let velocities = values.split_off(n);
-        Ok((values, velocities))
+        Ok([values, velocities])
     }
 
     /// Places of velocities solved from the constraints, where [`Self::series`] `completed` these.

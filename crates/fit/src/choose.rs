@@ -32,8 +32,8 @@ pub struct Best {
 
 impl Design {
     /// The best films that were found, from a scan of `points` beside the corners; the scene's own where
-    /// nothing can be chosen: without points as [`Design::point`] has it. Over this many threads (0: as many as there are processors), on which no result
-    /// depends.
+    /// nothing can be chosen: without points as [`Design::point`] has it. Over this many threads (0: as many
+    /// as there are processors), on which no result depends.
     ///
     /// # Errors
     /// The first reason where no point has motions.

@@ -172,8 +172,9 @@ impl Design {
     /// matter. Free are `question.unknowns`, and the constants that formulations start from.
     ///
     /// # Errors
-    /// [`FitError`]: of [`Problem::new`]; a formulation that the scene does not have, or one that is to be told
-    /// from itself; a number that is chosen and is none of the scene; an unknown to be estimated that is not free.
+    /// [`FitError`]: of [`Problem::new`]; a formulation that the scene does not have, or one that is to be
+    /// told from itself; a number that is chosen and is none of the scene; an unknown to be estimated that is
+    /// not free.
     pub fn new(
         scene: &Scene,
         films: &[Film],

@@ -1,17 +1,17 @@
 //! What films of some columns can show at all: the rank of their time derivatives in the unknowns.
 //!
-//! A film without gaps and noise shows the coefficients `c_k` of its columns, `c(t₀ + s) = Σ c_k s^k`. These are
-//! algebraic in the numbers of the scene (see [`decision`]); at random unknowns in a finite field, known numbers
-//! being as written, `∂c_k/∂θ` comes from series whose coefficients carry derivatives ([`Dual`]).
+//! A film without gaps and noise shows the coefficients `c_k` of its columns, `c(t₀ + s) = Σ c_k s^k`. These
+//! are algebraic in the numbers of the scene (see [`decision`]); at random unknowns in a finite field, known
+//! numbers being as written, `∂c_k/∂θ` comes from series whose coefficients carry derivatives ([`Dual`]).
 //!
-//! - Full rank: a minor that is not zero modulo a prime is not zero. Analytic in θ, it is not zero at almost all
-//!   θ, and there other θ nearby give other films: *proved*. What is known before counts as measured. Where
-//!   something that varies stands under a root, or has kinks, there are several pieces: *open*.
-//! - Less, to the order of as many coefficients as there are states and unknowns, in two fields: no proof; what
-//!   kernels contain is named.
+//! - Full rank: a minor that is not zero modulo a prime is not zero. Analytic in θ, it is not zero at almost
+//!   all θ, and there other θ nearby give other films: *proved*. What is known before counts as measured.
+//!   Where something that varies stands under a root, or has kinks, there are several pieces: *open*.
+//! - Less, to the order of as many coefficients as there are states and unknowns, in two fields: no proof;
+//!   what kernels contain is named.
 //!
-//! Source: A. Sedoglavic, *A probabilistic algorithm to test local algebraic observability in polynomial time*,
-//! J. Symbolic Computation 33 (2002) 735.
+//! Source: A. Sedoglavic, *A probabilistic algorithm to test local algebraic observability in polynomial
+//! time*, J. Symbolic Computation 33 (2002) 735.
 
 use decision::exact::{Coefficient, Dual, Exact, Jet, Modular, ORDERS, agreed, nullspace};
 use decision::{Dynamics, ExactStart, Program};
@@ -37,8 +37,8 @@ pub enum Identifiability {
         /// Whether something is known before, which counts as measured.
         with_priors: bool,
     },
-    /// At almost all unknowns derivatives to this order do not change with these combinations, by ranks in two
-    /// fields. Each is given by the unknowns in it.
+    /// At almost all unknowns derivatives to this order do not change with these combinations, by ranks in
+    /// two fields. Each is given by the unknowns in it.
     Hidden {
         /// Labels of the unknowns of each combination.
         combinations: Vec<Vec<String>>,

@@ -129,9 +129,8 @@ impl Part {
         Ok(each.map(|(t, at)| seen.at(*t, at, &parameters).iter().map(|(value, _)| *value).collect()).collect())
     }
 
-    /// The unknown that its clock is, and derivatives of the values by it.
-    fn by_clock(&mut self, theta: &[f64]) -> Result<Option<(usize, Vec<Vec<f64>>)>, String> {
-        let Some(Place::Unknown(j)) = self.clock else { return Ok(None) };
+    /// Derivatives of the values by its clock, unknown `j`.
+    fn by_clock(&self, theta: &[f64], j: usize) -> Result<Vec<Vec<f64>>, String> {
         let ends = [CLOCK_STEP, -CLOCK_STEP].map(|step| {
             let mut moved = theta.to_vec();
             moved[j] += step;
@@ -139,8 +138,7 @@ impl Part {
         });
         let [high, low] = ends;
         let slope = |(a, b): (&f64, &f64)| (a - b) / (2.0 * CLOCK_STEP);
-        let rows = high?.iter().zip(&low?).map(|(a, b)| a.iter().zip(b).map(slope).collect()).collect();
-        Ok(Some((j, rows)))
+        Ok(high?.iter().zip(&low?).map(|(a, b)| a.iter().zip(b).map(slope).collect()).collect())
     }
 
     /// Calls `with` for every cell that is not empty: its row and column, `r`, and by which unknowns it
@@ -150,7 +148,11 @@ impl Part {
         if let Some(clock) = self.clock {
             self.set_clock(clock.value(theta))?;
         }
-        let by_clock = if derivatives { self.by_clock(theta)? } else { None };
+        let unknown_clock = match self.clock {
+            Some(Place::Unknown(j)) if derivatives => Some(j),
+            _ => None,
+        };
+        let by_clock = unknown_clock.map(|j| self.by_clock(theta, j)).transpose()?;
         let times = self.model.times().to_vec();
         let read = if derivatives { self.model.derivatives(&row) } else { self.model.outputs(&row) };
         if let Some(reason) = read.ended {
@@ -172,7 +174,7 @@ impl Part {
                     let own = self.parameters.iter().position(|&p| p == l).map_or(0.0, |p| slopes[2 * n + p]);
                     by.push((j, (along + own) / sigma));
                 }
-                by.extend(by_clock.iter().map(|(j, slopes)| (*j, slopes[k][c] / sigma)));
+                by.extend(unknown_clock.zip(by_clock.as_ref()).map(|(j, slopes)| (j, slopes[k][c] / sigma)));
                 with((k, c), (value - seen) / sigma, &by);
             }
         }

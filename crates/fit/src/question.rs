@@ -14,8 +14,8 @@ use crate::{Film, FitError, Problem, Unknown};
 /// Residuals above this size count linearly where outliers are to count little.
 pub const ROBUST: f64 = 1.345;
 
-/// The constraint law with numbers. That of κ is none of these: where Chetaev's law is right, κ is infinite, and
-/// motions with large κ are stiff; ε is the number for it.
+/// The constraint law with numbers. That of κ is none of these: where Chetaev's law is right, κ is infinite,
+/// and motions with large κ are stiff; ε is the number for it.
 pub(crate) const LAW: &Formulation = FIRST_ORDER;
 pub(crate) const SLIP: &str = "slip";
 
@@ -49,8 +49,8 @@ pub struct Question<'a> {
 }
 
 impl Question<'_> {
-    /// The scene with the parameters of the law that it lacks, the numbers of the law, and the unknowns one by
-    /// one.
+    /// The scene with the parameters of the law that it lacks, the numbers of the law, and the unknowns one
+    /// by one.
     ///
     /// # Errors
     /// [`FitError::Unknown`] for a number of another law.

@@ -19,8 +19,8 @@ pub struct Prior {
 /// By how much the clock of a film is slow, unless the scene has a parameter of this name.
 pub(crate) const CLOCK: &str = "clock";
 
-/// A number of a scene that is not known: a parameter, a start value, `mu0_1`, `P0_w`; or that of a film: by how
-/// much its clock is slow, `clock`: what it calls `t` is `t₀ + (1 + clock)(t − t₀)`.
+/// A number of a scene that is not known: a parameter, a start value, `mu0_1`, `P0_w`; or that of a film: by
+/// how much its clock is slow, `clock`: what it calls `t` is `t₀ + (1 + clock)(t − t₀)`.
 ///
 /// Written `NAME`, `NAME@2` for the second film alone, `NAME~VALUE` with a value at which the search begins,
 /// `NAME~MEAN±DEVIATION` with what is known before; `NAME>=BOUND`.

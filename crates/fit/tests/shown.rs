@@ -97,8 +97,8 @@ fn ranks_are_those_of_motions() {
     assert!(found[0] >= 3 && found[1] >= 3, "{found:?}");
 }
 
-/// A straight run down a slope, `x = g sin α t²/2`, filmed by a clock that is 2 % slow: with gravity known, it
-/// is the clock that is found.
+/// A straight run down a slope, `x = g sin α t²/2`, filmed by a clock that is 2 % slow: with gravity known,
+/// it is the clock that is found.
 #[test]
 fn a_slow_clock_is_found() {
     let mut scene = built_in("sledge");
@@ -110,7 +110,8 @@ fn a_slow_clock_is_found() {
     let fit = rows[0].fit.as_ref().unwrap();
     let clock = fit.estimates.iter().find(|e| e.name == "clock").unwrap();
     assert!((clock.value - 0.02).abs() < 3.0 * clock.error && clock.error < 1e-4, "{clock:?}");
-    // x(T) = 8 m is known to 1 mm or so: half that part of time, by the closed form of a parabola through 120 points
+    // x(T) = 8 m is known to 1 mm or so: half that part of time, by the closed form of a parabola through 120
+    // points
     let squares: f64 = times(2.0).iter().map(|t| (down * t * t * 1.02 / 1e-3).powi(2)).sum();
     let mean: f64 = times(2.0).iter().map(|t| down * t * t * 1.02 / 1e-3).sum();
     let known = (squares - mean * mean / 120.0).powf(-0.5);

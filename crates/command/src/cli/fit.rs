@@ -20,7 +20,8 @@ pub struct FitArguments {
     /// What is not known: parameters, start values; `NAME~VALUE` where the search begins,
     /// `NAME~MEAN±DEVIATION` what is known before, `NAME>=BOUND`. Each film has start values of its own and
     /// shares parameters; `NAME@2` is the second film's own; `start` is all coordinates and given velocities;
-    /// `clock` by how much clocks of films are slow. Multipliers and costates at the start are unknown anyway.
+    /// `clock` by how much clocks of films are slow. Multipliers and costates at the start are unknown
+    /// anyway.
     #[arg(long, value_name = "NAME,…", value_delimiter = ',', required = true, allow_hyphen_values = true)]
     pub free: Vec<Unknown>,
     /// Numbers of the law of first order, which adds a row: `eps` (ε ≥ 0), `slip` (1/N, above 0); as in

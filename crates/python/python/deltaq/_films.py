@@ -308,7 +308,7 @@ def designs(
     Columns: what varies, then `value` (least chi squared of the other formulation, or the standard error; null where
     films do not show it or there is no motion), `minima` (that the search saw), `cause` (why there is no value).
 
-    >>> grid = deltaq.designs(deltaq.built_in("heisenberg"), {"mu0_1": [0.1, 1.0]}, ("vakonomic", "chetaev"), film="20Hz,1mm,1s", free=["x'", "y'"])
+    >>> grid = deltaq.designs(deltaq.built_in("heisenberg"), {"mu0_1": [0.01, 1.0]}, ("vakonomic", "chetaev"), film="20Hz,1mm,1s", free=["x'", "y'"])
     >>> [value > 15 for value in grid["value"].to_pylist()]
     [False, True]
     """
