@@ -15,6 +15,7 @@
 //! - [`Problem`]: residuals of several films in one formulation, with shared unknowns and others of their
 //!   own.
 //! - [`fit()`]: estimates, intervals of 95 %, tests on residuals ([`residual_tests`]).
+//! - [`Identifiability`]: what films of some columns can show at all, by ranks over finite fields.
 //! - [`standard_errors`]: what films that are not yet made would show; [`Design`]: which would show most.
 //! - [`fit_formulations`]: formulations side by side, and the verdict ([`Verdict`]).
 //!
