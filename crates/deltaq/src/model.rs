@@ -81,8 +81,9 @@ impl Model {
     /// # Errors
     /// [`SolveError::Member`] for times that make no sense.
     pub fn with_times(&self, times: &[f64]) -> Result<Self, SolveError> {
-        check(self.start, times)?;
-        Ok(Model { times: times.to_vec(), ..self.clone() })
+        let mut other = self.clone();
+        other.set_times(times)?;
+        Ok(other)
     }
 
     /// From now on at other times.

@@ -70,12 +70,12 @@ impl Identifiability {
 
 /// What films of the columns of `parts` can show of the unknowns, as motions of `choice`.
 pub(crate) fn identifiability(scene: &Scene, choice: &Choice, parts: &[Part], unknowns: &[Unknown]) -> Identifiability {
-    let found = Question::new(scene, choice, parts, unknowns).and_then(|question| {
+    let found = Jets::new(scene, choice, parts, unknowns).and_then(|jets| {
         let few = unknowns.len() + MORE;
-        let all = (question.states + few).min(ORDERS - 1);
+        let all = (jets.states + few).min(ORDERS - 1);
         for orders in [few.min(all), all] {
             let seeds = std::array::from_fn(|i| i as u64 + 1);
-            let found = agreed(seeds, |seed| question.hidden(orders, seed), Vec::is_empty);
+            let found = agreed(seeds, |seed| jets.hidden(orders, seed), Vec::is_empty);
             let hidden = found.map_err(|fault| fault.unwrap_or_else(|| "finite fields do not agree".into()))?;
             if hidden.is_empty() {
                 let with_priors = unknowns.iter().any(|unknown| unknown.prior.is_some());
@@ -92,7 +92,8 @@ pub(crate) fn identifiability(scene: &Scene, choice: &Choice, parts: &[Part], un
     found.unwrap_or_else(Identifiability::Open)
 }
 
-struct Question<'a> {
+/// Columns of films as series in the time since the start, with derivatives by the unknowns.
+struct Jets<'a> {
     start: ExactStart,
     dynamics: Dynamics,
     /// The columns, from parameters, `t`, `q`, `v`; film by film.
@@ -106,7 +107,7 @@ struct Question<'a> {
     unknowns: &'a [Unknown],
 }
 
-impl<'a> Question<'a> {
+impl<'a> Jets<'a> {
     fn new(scene: &'a Scene, choice: &Choice, parts: &'a [Part], unknowns: &'a [Unknown]) -> Result<Self, String> {
         let system = &scene.system;
         let start = ExactStart::new(system, &scene.start, &scene.completion, choice.removal.as_ref());
@@ -137,7 +138,7 @@ impl<'a> Question<'a> {
         let columns = parts.iter().map(|part| program(&part.film)).collect::<Result<_, _>>()?;
         let (states, inputs) = (equations.states.len(), inputs.len());
         let constants = constants[..count].to_vec();
-        Ok(Question { start, dynamics, columns, inputs, states, constants, scene, parts, unknowns })
+        Ok(Jets { start, dynamics, columns, inputs, states, constants, scene, parts, unknowns })
     }
 
     /// Unknowns in each combination that coefficients up to this many do not show.

@@ -127,6 +127,13 @@ impl Question<'_> {
     }
 }
 
+/// A digest of a text (FNV-1a, 64 bits).
+pub fn digest(text: &str) -> u64 {
+    let mut digest = Digest::new();
+    digest.add(text.as_bytes());
+    digest.0
+}
+
 struct Digest(u64);
 
 impl Digest {

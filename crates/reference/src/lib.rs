@@ -23,7 +23,7 @@ mod wide;
 pub use double_double::DoubleDouble;
 pub use error::ReferenceError;
 pub use instant::{Instant, Point};
-pub use kept::Kept;
+pub use kept::{Kept, digest};
 pub use mechanics::linear::Entry;
 pub use reference::{Agreement, Question, Reference, reference, reference_in};
 pub use wide::Wide;

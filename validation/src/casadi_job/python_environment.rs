@@ -41,11 +41,6 @@ fn cache(named: Option<PathBuf>, home: Option<PathBuf>) -> PathBuf {
     folder.join("deltaq")
 }
 
-/// FNV-1a, 64 bits.
-fn hash(text: &str) -> u64 {
-    text.bytes().fold(0xcbf2_9ce4_8422_2325, |h, byte| (h ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3))
-}
-
 pub(super) fn files(what: &'static str) -> impl Fn(std::io::Error) -> NotRun {
     move |error| NotRun::Files(what, error.kind())
 }
@@ -54,7 +49,7 @@ pub(super) fn files(what: &'static str) -> impl Fn(std::io::Error) -> NotRun {
 /// What is half made is never seen: it is built beside its place and moved there when it is complete.
 pub(super) fn interpreter(requirements: &str) -> Result<PathBuf, NotRun> {
     let target = target();
-    let place = target.join(format!("casadi-{:016x}", hash(requirements)));
+    let place = target.join(format!("casadi-{:016x}", reference::digest(requirements)));
     let python = Path::new("bin").join("python");
     if place.join(&python).exists() {
         return Ok(place.join(python));

@@ -4,7 +4,7 @@ use std::collections::HashMap;
 use std::fmt::Write;
 
 use anyhow::{Context, Result, ensure};
-use reference::Kept;
+use reference::{Kept, digest};
 
 use super::Prepared;
 
@@ -46,11 +46,11 @@ impl KeptReferences {
             let (head, lines) = part.split_once('\n').context("a motion without numbers")?;
             let words: Vec<&str> = head.rsplitn(5, ' ').collect();
             let [dimension, own, numbers, formulas, name] = words[..] else { anyhow::bail!("`{head}` is no heading") };
-            let digest = |word: &str| u64::from_str_radix(word, 16).with_context(|| format!("{name}: digest `{word}`"));
-            ensure!(digest(own)? == fnv(lines), "{name}: not the numbers that were written");
+            let number = |word: &str| u64::from_str_radix(word, 16).with_context(|| format!("{name}: digest `{word}`"));
+            ensure!(number(own)? == digest(lines), "{name}: not the numbers that were written");
             let reference = dimension.parse().ok().and_then(|n| Kept::read(lines, n));
             let reference = reference.with_context(|| format!("{name}: no reference"))?;
-            Ok(KeptMotion { name: name.into(), digests: [digest(formulas)?, digest(numbers)?], reference })
+            Ok(KeptMotion { name: name.into(), digests: [number(formulas)?, number(numbers)?], reference })
         };
         let parts = text.strip_prefix(BEGINS).context("no heading")?.split("\n# ").map(|part| part.trim_end());
         Ok(KeptReferences::of(parts.map(motion).collect::<Result<_>>()?))
@@ -90,14 +90,9 @@ impl KeptReferences {
         for KeptMotion { name, digests: [formulas, numbers], reference } in &self.motions {
             let lines = reference.text();
             let lines = lines.trim_end();
-            let (own, dimension) = (fnv(lines), reference.dimension());
+            let (own, dimension) = (digest(lines), reference.dimension());
             let _ = writeln!(text, "{BEGINS}{name} {formulas:016x} {numbers:016x} {own:016x} {dimension}\n{lines}");
         }
         text
     }
-}
-
-/// FNV-1a.
-fn fnv(text: &str) -> u64 {
-    text.bytes().fold(0xcbf2_9ce4_8422_2325, |digest, byte| (digest ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3))
 }

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import math
 import os
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
@@ -15,7 +14,7 @@ import numpy.typing as npt
 from . import _parts
 from ._native import DeltaqError, System, UnknownNameError, __version__, _Fitted
 from ._needs import needed
-from ._sweep import _written
+from ._sweep import _Grid, _written
 
 if TYPE_CHECKING:
     import pyarrow as pa
@@ -261,20 +260,16 @@ def design(
     return {"schema": "deltaq/design/1"} | found
 
 
-class _DesignPart:
+class _DesignPart(_Grid):
     """Rows of a grid of films: what each shows, no other one looked for."""
 
     def __init__(self, system: System, over: dict[str, list[float]], size: int, options: dict[str, Any]):
-        self.system, self.over, self.size, self.options = system, over, size, options
-
-    def count(self) -> int:
-        return math.prod(len(values) for values in self.over.values())
+        super().__init__(over, size)
+        self.system, self.options = system, options
 
     def __call__(self, part: int) -> pa.Table:
         pa = needed("pyarrow")
-        index = np.arange(part * self.size, min((part + 1) * self.size, self.count()))
-        places = np.unravel_index(index, [len(values) for values in self.over.values()])
-        values = np.stack([np.asarray(v)[i] for v, i in zip(self.over.values(), places)], axis=1)
+        values = self.rows(part)
         found: list[tuple[float | None, int, str]] = []
         for row in values:
             try:

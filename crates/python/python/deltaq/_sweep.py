@@ -35,21 +35,32 @@ _SWEEP_PART = 64
 _ENSEMBLE_PART = 4096
 
 
-class _SweepPart:
-    """Rows of a sweep: all combinations of some values; the last ones change fastest."""
+class _Grid:
+    """All combinations of some values, in parts of `size` rows; the last ones change fastest."""
 
-    def __init__(self, system: System, over: dict[str, list[float]], size: int, options: tuple[Any, ...]):
-        self.system, self.over, self.size, self.options = system, over, size, options
+    def __init__(self, over: dict[str, list[float]], size: int):
+        self.over, self.size = over, size
 
     def count(self) -> int:
         return math.prod(len(values) for values in self.over.values())
 
-    def __call__(self, part: int) -> pa.Table:
-        pa = needed("pyarrow")
+    def rows(self, part: int) -> npt.NDArray[np.float64]:
         first = part * self.size
         index = np.arange(first, min(first + self.size, self.count()))
         places = np.unravel_index(index, [len(values) for values in self.over.values()])
-        values = np.stack([np.asarray(v)[i] for v, i in zip(self.over.values(), places)], axis=1)
+        return np.stack([np.asarray(v)[i] for v, i in zip(self.over.values(), places)], axis=1)
+
+
+class _SweepPart(_Grid):
+    """Rows of a sweep."""
+
+    def __init__(self, system: System, over: dict[str, list[float]], size: int, options: tuple[Any, ...]):
+        super().__init__(over, size)
+        self.system, self.options = system, options
+
+    def __call__(self, part: int) -> pa.Table:
+        pa = needed("pyarrow")
+        values = self.rows(part)
         found = self.system._sweep_points(list(self.over), values, *self.options)
         columns = {name: pa.array(values[:, i]) for i, name in enumerate(self.over)}
         columns |= {name: pa.array(found[name], pa.type_for_alias(kind)) for name, kind in _COLUMNS.items()}
