@@ -20,7 +20,7 @@ export async function tabs({ open, leave, link, must }) {
     return [tab.dataset.tab, open.join(), stops.join(), tab.getAttribute("aria-selected"), String(named)].join(" ");
   });
   await page.focus("[data-tab=numbers]");
-  for (const [key, tab] of [["ArrowRight", "verdict"], ["ArrowRight", "equations"], ["End", "text"], ["ArrowLeft", "equations"], ["ArrowLeft", "verdict"], ["ArrowLeft", "numbers"]]) {
+  for (const [key, tab] of [["ArrowRight", "verdict"], ["ArrowRight", "equations"], ["End", "text"], ["ArrowLeft", "derivatives"], ["ArrowLeft", "integrals"], ["ArrowLeft", "equations"], ["ArrowLeft", "verdict"], ["ArrowLeft", "numbers"]]) {
     await page.keyboard.press(key);
     must((await now()) === `${tab} ${tab} ${tab} true true`, `${key} leads to: ${await now()}`);
   }
@@ -78,6 +78,7 @@ export async function calm({ open, leave, forget, link, must, choose, fresh, url
 
 const STATES = [
   ...["numbers", "verdict", "equations", "text"].map((tab) => [tab, { scene: "sledge", tab, time: 1 }]),
+  ...["integrals", "derivatives"].map((tab) => [tab, { scene: "sledge", tab }, (page) => page.waitForSelector(`#${tab} table`)]),
   ["tour, a question", { scene: "velocity-pendulum", tab: "tour", step: 1, guess: -1 }],
   ["tour, an answer", { scene: "sledge", tab: "tour", step: 3, guess: 1, set: { mu0_1: 2, duration: 5 }, time: 1 }],
   ["forces", { scene: "sledge", forces: true, time: 1 }],

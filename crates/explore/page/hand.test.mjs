@@ -41,6 +41,14 @@ export async function hand({ open, leave, link, must, after, pictures }) {
   must(start.seen.join() === "place,heading,velocity", `rings: ${start.seen}`);
   must((await page.$eval("#reading", ({ textContent }) => textContent)) === "t = 0.00 s", "the start is not shown");
   await page.screenshot({ path: join(pictures, "hand.png") });
+  // the body is where the blade touches the slope of 0.4, in pixels of the page
+  const blade = await page.evaluate((place) => {
+    const { stage } = window.explored;
+    const { left, top } = stage.canvas.getBoundingClientRect();
+    const [x, y] = stage.projection().project(place);
+    return [left + x / devicePixelRatio, top + y / devicePixelRatio];
+  }, [Math.cos(0.4) * start.q.x, start.q.y, -Math.sin(0.4) * start.q.x]);
+  must(far(start.place, blade) < 1.5, `the ring is at ${start.place}, the blade at ${blade}`);
 
   // the mouse: each ring comes where it is dragged, as far as the constraint leaves it
   await drag(page, start.place, [60, 25]);
@@ -108,6 +116,17 @@ export async function rolling({ open, leave, link, must, after }) {
   must(Object.keys(typed).join() === "psi'", `numbers: ${JSON.stringify(typed)}`);
   must(Math.abs(v["x'"] - 0.5 * v["psi'"] * Math.cos(q.phi)) < 1e-9 && v["psi'"] !== 2, `it slips: ${JSON.stringify(v)}`);
   await leave(page);
+}
+
+// Where the start gives a velocity of the body, it is in the hand.
+export async function velocities({ open, leave, link, must }) {
+  for (const scene of ["appell-hamel", "isokinetic", "sledge", "disc"]) {
+    const page = await open(link({ scene, grips: true }));
+    await page.waitForFunction(() => window.explored.samples.grips, { timeout: 20000 });
+    const { seen } = await state(page);
+    must(seen.includes("velocity"), `rings of ${scene}: ${seen}`);
+    await leave(page);
+  }
 }
 
 // A finger does it, too, and does not turn the view.

@@ -211,8 +211,7 @@ function show(reply, anew) {
 
 // What takes longer, in the other worker.
 function decide() {
-  const more = { motions: shown() };
-  deciding.decide((ask) => question(ask, more), { notes: scene.notes, motions: latest }, (answer) => {
+  deciding.decide((ask, further) => question(ask, { motions: shown(), ...further }), { ...scene, motions: latest }, (answer) => {
     window.decided = answer;
     tour.update();
   });
@@ -277,6 +276,7 @@ function showTour() {
   classList.toggle("asking", asks());
   stage.veil(asks());
   if (state.tab === "tour") tour.show(state.step, state.guess);
+  deciding.look(state.tab);
 }
 
 // Opens a panel that was chosen; the tour goes on where it was left.

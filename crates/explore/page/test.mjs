@@ -1,6 +1,7 @@
 // node test.mjs BROWSER DELTAQ PAGE PICTURES all|numbers|shown|elsewhere|CHECK|ROUNDS: the page in a browser without network,
 // against the native program; or its numbers only; or whether what is shown is what was computed; or what another browser,
-// Firefox, can be asked; or one of these checks by name; or whether it grows while sliders are moved, in this number of rounds.
+// Firefox, can be asked; or one of these checks by name; or whether it grows, or its frames come slower, in this number of
+// rounds of slider moves, and of seconds.
 
 import { execFileSync, spawnSync } from "node:child_process";
 import { mkdirSync, mkdtempSync, rmSync, statSync } from "node:fs";
@@ -12,7 +13,8 @@ import puppeteer from "puppeteer-core";
 
 import * as access from "./access.test.mjs";
 import * as drawn from "./drawn.test.mjs";
-import { growth } from "./growth.test.mjs";
+import * as further from "./further.test.mjs";
+import { frames, growth } from "./growth.test.mjs";
 import * as hands from "./hand.test.mjs";
 import * as looking from "./look.test.mjs";
 import * as checks from "./shown.test.mjs";
@@ -257,12 +259,15 @@ const tools = { open, leave, look, forget, fresh, link, must, after, choose, sli
 const ELSEWHERE = ["eachBody", "costates", "cleared", "refusals", "overlaps", "wayBack", "badLinks", "table", "tabs", "forces", "down", "camera", "differences",
   "runaway", "logarithms", "hand", "rolling"];
 // one that breaks off does not hide what the others find
-const single = { everyScene, eachBody, ...checks, ...access, ...drawn, ...looking, ...hands, ...takes, tour, tasks };
+const single = { everyScene, eachBody, ...checks, ...access, ...drawn, ...looking, ...hands, ...takes, ...further, tour, tasks };
 const whole = (check) => () => check(tools).catch((error) => complaints.push(`${check.name}: ${error.stack}`));
 const named = (names) => names.map((name) => whole(single[name]));
 
 try {
-  const grows = () => growth(tools, Number(what) || ROUNDS);
+  const grows = async () => {
+    await growth(tools, Number(what) || ROUNDS);
+    await frames(tools, Number(what) || ROUNDS);
+  };
   const shown = named(Object.keys(single).filter((name) => name !== "eachBody"));
   const all = [opening, sliders, fingers, ownText, looks, ...shown, grows];
   const parts = { all, numbers: [ownText], shown, elsewhere: [ownText, ...named(ELSEWHERE)] }[what] ?? (what in single ? named([what]) : [grows]);

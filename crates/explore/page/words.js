@@ -99,3 +99,29 @@ export function verdict({ verdict, why, sure, sentence, pairs, decisions, refuse
     <h3>Verdict</h3><p>${escape(verdict)}</p><h3>Why</h3><p>${escape(why)}</p><h3>How sure</h3><p>${escape(sure)}</p>${decided}${ends}
     ${notes ? `<h3>Notes on the scene</h3><p>${escape(notes)}</p>` : ""}`;
 }
+
+// Invariant measures and integrals of one motion: what each answer is about, and the answer.
+export function integrals({ label, near, degree, lines, refused }) {
+  if (refused) return `<p>${escape(refused)}</p>`;
+  const row = ([about, words]) => `<tr><th scope="row">${escape(about)}</th><td>${escape(words).replaceAll(/[*^/]|\w\(/g, "$&<wbr>")}</td></tr>`;
+  const more = degree < 2 ? `<p><button type="button">Quadratic ones, too</button></p>` : "";
+  return `<p>Of the motion of <b>${escape(label)}</b>${near ? `, ${escape(near)}` : ""}:</p>
+    <div class="wide" tabindex="0" role="region" aria-label="integrals"><table class="said"><tbody>${lines.map(row).join("")}</tbody></table></div>${more}`;
+}
+
+// An error is shown where it is more than this of a derivative.
+const SEEN = 1e-3;
+
+// Derivatives of the coordinates at the end by the numbers: a table for each motion.
+export function derivatives({ motions, refused }, coordinates) {
+  if (refused) return `<p>${escape(refused)}</p>`;
+  const named = (name, unit) => `<i>${readable(escape(name))}</i>${unit ? `, ${escape(unit)}` : ""}`;
+  const cell = (by, error) => `<td>${figure(by)}${error > SEEN * Math.abs(by) && error > 0 ? ` ± ${figure(error)}` : ""}</td>`;
+  const row = ({ name, unit, by, error }) => `<tr><th scope="row">${named(name, unit)}</th>${by.map((x, i) => cell(x, error[i])).join("")}</tr>`;
+  const table = ({ label, rows }) => `<div class="wide" tabindex="0" role="region" aria-label="derivatives, ${escape(label)}"><table><thead><tr><th scope="col">by</th>
+    ${coordinates.map(({ name, unit }) => `<th scope="col">${named(name, unit)}</th>`).join("")}</tr></thead><tbody>${rows.map(row).join("")}</tbody></table></div>`;
+  const section = (motion, i) => `<details${i ? "" : " open"}><summary>${escape(motion.label)}${motion.refused ? "" : `, at ${figure(motion.end)} s`}</summary>
+    ${motion.refused ? `<p>refused: ${escape(motion.refused)}</p>` : table(motion)}</details>`;
+  return `<p>By how much the coordinates at the end change with each number: the derivative, in the unit of the column per unit of the row.
+    An error is shown where it is more than a thousandth.</p>${motions.map(section).join("")}`;
+}

@@ -6,7 +6,7 @@ use serde_json::{Value, json};
 use crate::kept::Kept;
 use crate::question::{Answer, Ask, Question, Refused};
 use crate::subject::Subject;
-use crate::{controls, motions, words};
+use crate::{controls, further, motions, words};
 
 /// Answers questions; the same ones in the same way, whatever was asked before, but for how near motions at a
 /// glance come.
@@ -36,6 +36,8 @@ fn answered(question: &str, kept: &mut Kept, numbers: &mut Vec<f64>) -> Result<V
         Ask::Motions => motions::sampled(&subject, &question, kept, numbers),
         Ask::Equations => words::equations(&subject),
         Ask::Text => Ok(json!({ "text": subject.scene.to_toml() })),
+        Ask::Integrals => further::integrals(&subject, &question),
+        Ask::Derivatives => Ok(further::derivatives(&subject, &question)),
         Ask::Decision => words::decision(subject, &question),
     }
 }

@@ -13,6 +13,8 @@
 //!   where they are asked for, arrows and what a hand takes hold of at the start;
 //! - `equations`: in LaTeX;
 //! - `decision`: the comparison in words, as `deltaq compare` says it, and pair by pair;
+//! - `integrals`: those of the first motion, as `deltaq integrals` says it;
+//! - `derivatives`: of where every motion ends, by the numbers that can be set;
 //! - `text`: the scene with the numbers that are set.
 //!
 //! ```
@@ -38,6 +40,7 @@ mod bodies;
 mod controls;
 #[cfg(target_family = "wasm")]
 mod exports;
+mod further;
 mod grips;
 mod kept;
 mod motions;

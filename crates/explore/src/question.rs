@@ -17,6 +17,10 @@ pub enum Ask {
     Equations,
     /// The comparison in words.
     Decision,
+    /// Invariant measures and integrals of the first motion.
+    Integrals,
+    /// Derivatives of where every motion ends by the numbers that can be set.
+    Derivatives,
     /// The scene as a text with the numbers that are set in it; costates are not.
     Text,
 }
@@ -42,6 +46,9 @@ pub struct Question {
     /// Tolerance of the looser run of every motion; 0 for that of a comparison.
     #[serde(default)]
     pub tolerance: f64,
+    /// Integrals are polynomials in the velocities up to this degree.
+    #[serde(default)]
+    pub degree: usize,
     /// One run of every motion only, coarser and without an error estimate: to follow a hand on a slider.
     #[serde(default)]
     pub glance: bool,
@@ -71,6 +78,9 @@ pub(crate) enum Refused {
     /// A motion cannot be computed or evaluated.
     #[error(transparent)]
     Motion(#[from] deltaq::SolveError),
+    /// Nothing can be said of integrals.
+    #[error(transparent)]
+    Integrals(#[from] integrals::NoAnswer),
     /// The question is none.
     #[error("the question cannot be read: {0}")]
     Question(#[from] serde_json::Error),

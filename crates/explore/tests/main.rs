@@ -1,6 +1,7 @@
 //! The answers, against the library.
 
 mod arrows;
+mod further;
 
 use deltaq::words::Headline;
 use deltaq::{Settings, choices, compare_unfitted, solve_choice};

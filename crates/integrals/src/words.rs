@@ -15,54 +15,60 @@ pub(crate) fn degree(below: usize) -> &'static str {
 impl Display for Integrals {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
         writeln!(f, "{}: {}", self.scene.name, self.formulation)?;
+        if self.reversed.is_some() {
+            writeln!(f, "{NEAR}")?;
+        }
+        self.lines().into_iter().try_for_each(|(about, words)| writeln!(f, "{about:<14}{words}"))
+    }
+}
+
+/// What is meant by a measure, and where it is.
+pub const NEAR: &str =
+    "near almost every place q; a measure is e^sigma(q) dq dp, sigma smooth there, its periods not asked for";
+
+impl Integrals {
+    /// What each answer is about, and the answer in words.
+    pub fn lines(&self) -> Vec<(&'static str, String)> {
+        let mut lines = Vec::new();
         if let Some(found) = &self.reversed {
-            writeln!(
-                f,
-                "near almost every place q; a measure is e^sigma(q) dq dp, sigma smooth there, its periods not asked for"
-            )?;
-            writeln!(f, "{:<14}{}", "measure", measure_words(&self.scene.system, &found.measure))?;
-            for line in multiplier_lines(&self.scene.system, &found.reductions) {
-                writeln!(f, "{:<14}{line}", "multiplier")?;
-            }
-            for (i, found) in found.integrals.iter().enumerate() {
-                writeln!(f, "{:<14}{}", degree(i), count_words(found))?;
-            }
+            lines.push(("measure", measure_words(&self.scene.system, &found.measure)));
+            let multipliers = multiplier_lines(&self.scene.system, &found.reductions);
+            lines.extend(multipliers.into_iter().map(|line| ("multiplier", line)));
+            lines.extend(found.integrals.iter().enumerate().map(|(i, found)| (degree(i), count_words(found))));
         }
         match &self.ansatz {
-            Err(open) => writeln!(f, "{:<14}open ({open})", "ansatz")?,
+            Err(open) => lines.push(("ansatz", format!("open ({open})"))),
             Ok(found) => {
                 let names = if found.names.is_empty() { "no coordinate".into() } else { found.names.join(", ") };
-                writeln!(
-                    f,
-                    "{:<14}{} functions, in {names} to degree {}: {} constant combinations, {} without the products",
-                    "ansatz",
+                let words = format!(
+                    "{} functions, in {names} to degree {}: {}, {} without the products",
                     found.functions,
                     found.spatial,
-                    found.dimension,
+                    number(found.dimension, "constant combination"),
                     found.printed.len() + found.unprinted,
-                )?;
+                );
+                lines.push(("ansatz", words));
                 for (i, integral) in found.printed.iter().enumerate() {
                     let drift = match &self.drifts {
                         Ok(drifts) => format!("drift {:.0e}", drifts[i]),
                         Err(why) => format!("no motion to try it on: {why}"),
                     };
-                    writeln!(f, "{:<14}{} = const ({drift})", kind(integral), integral.text)?;
+                    lines.push((kind(integral), format!("{} = const ({drift})", integral.text)));
                 }
                 if found.unprinted > 0 {
-                    writeln!(f, "{:<14}{} with coefficients that are no moderate fractions", "", found.unprinted)?;
+                    let words = format!("{} with coefficients that are no moderate fractions", found.unprinted);
+                    lines.push(("", words));
                 }
             }
         }
         match &self.invariants {
-            Err(open) => writeln!(f, "{:<14}of the scene: open ({open})", "invariants")?,
-            Ok(invariants) => {
-                for (name, held) in invariants {
-                    let words = if *held { "constant, at random points of two fields" } else { "not constant: proved" };
-                    writeln!(f, "{:<14}`{name}` of the scene: {words}", "invariant")?;
-                }
-            }
+            Err(open) => lines.push(("invariants", format!("of the scene: open ({open})"))),
+            Ok(invariants) => lines.extend(invariants.iter().map(|(name, held)| {
+                let words = if *held { "constant, at random points of two fields" } else { "not constant: proved" };
+                ("invariant", format!("`{name}` of the scene: {words}"))
+            })),
         }
-        Ok(())
+        lines
     }
 }
 
@@ -151,14 +157,18 @@ fn count_words(found: &Result<Found, Open>) -> String {
         Ok(found) if found.none_proved() => {
             format!("none but {} of energy, constants and products: proved", found.trivial)
         }
-        Ok(found) if found.settled => format!("{} local ones{}", found.further(), beside(found)),
+        Ok(found) if found.settled => format!("{}{}", number(found.further(), "local one"), beside(found)),
         Ok(found) => format!(
-            "open (at most {} local ones{}: proved; not settled at order {})",
-            found.further(),
+            "open (at most {}{}: proved; not settled at order {})",
+            number(found.further(), "local one"),
             beside(found),
             found.order
         ),
     }
+}
+
+fn number(count: usize, of: &str) -> String {
+    format!("{count} {of}{}", if count == 1 { "" } else { "s" })
 }
 
 fn beside(found: &Found) -> String {

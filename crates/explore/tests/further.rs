@@ -1,0 +1,60 @@
+//! Integrals and derivatives, against the library and against motions from other numbers.
+
+use deltaq::choices;
+use integrals::Integrals;
+use scene::Scene;
+use serde_json::{Value, json};
+
+use super::{SLEDGE, ask, coordinates};
+
+#[test]
+fn integrals_are_those_of_the_library() {
+    let question = json!({ "ask": "integrals", "name": "sledge", "text": SLEDGE, "set": { "k": 0.5 }, "degree": 1 });
+    let (answer, _) = ask(question);
+    let scene = Scene::parse_with("sledge", SLEDGE, &[("k".to_string(), 0.5)]).unwrap();
+    let found = Integrals::find(&scene, &choices(&scene)[0], 1, &[]).unwrap();
+    assert_eq!(answer["lines"], json!(found.lines()));
+    assert!(answer["lines"].as_array().unwrap().iter().any(|line| line[0] == "integral"), "{answer}");
+    let wrong = json!({ "ask": "integrals", "name": "sledge", "text": SLEDGE, "motions": ["none of these"] });
+    assert_eq!(ask(wrong).0["refused"], "no motion is shown");
+}
+
+/// Where motions end, from numbers a little larger and smaller.
+#[test]
+fn derivatives_are_those_of_motions() {
+    let labels = ["Chetaev", "vakonomic", "removed constraint (arc-length)"];
+    let question = |ask: &str, set: Value| {
+        json!({ "ask": ask, "name": "sledge", "text": SLEDGE, "set": set, "motions": labels, "steps": 1,
+                "tolerance": 1e-12 })
+    };
+    let (found, _) = ask(question("derivatives", json!({ "duration": 2.0 })));
+    for (i, label) in labels.iter().enumerate() {
+        let motion = &found["motions"][i];
+        assert_eq!(motion["end"], 2.0, "{label}");
+        let rows = motion["rows"].as_array().unwrap();
+        let has_multiplier = rows.iter().any(|row| row["name"] == "mu0_1");
+        assert_eq!(has_multiplier, *label == "vakonomic", "{label}");
+        assert!(rows.len() >= 8, "{label}: {motion}");
+        for row in rows {
+            let name = row["name"].as_str().unwrap();
+            let (value, step) = (value_of(name), 1e-4);
+            let ends = [-step, step].map(|by| {
+                let (all, numbers) = ask(question("motions", json!({ "duration": 2.0, name: value + by })));
+                coordinates(&all["motions"][i], &numbers, 1, 3).to_vec()
+            });
+            for (j, by) in row["by"].as_array().unwrap().iter().enumerate() {
+                let (by, quotient) = (by.as_f64().unwrap(), (ends[1][j] - ends[0][j]) / (2.0 * step));
+                assert!((by - quotient).abs() < 1e-5 * (1.0 + by.abs()), "{label}, {name}, {j}: {by} {quotient}");
+                assert!(row["error"][j].as_f64().unwrap() < 1e-6, "{label}, {name}: {row}");
+            }
+        }
+    }
+}
+
+/// What the sliders of the sledge say.
+fn value_of(name: &str) -> f64 {
+    let (scene, _) = ask(json!({ "ask": "scene", "name": "sledge", "text": SLEDGE }));
+    let of = |control: &&Value| control["name"].as_str().unwrap().split('@').next() == Some(name);
+    let control = scene["controls"].as_array().unwrap().iter().find(of).unwrap();
+    control["value"].as_f64().unwrap_or(0.0)
+}
