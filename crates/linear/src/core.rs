@@ -1,7 +1,8 @@
 //! The eigenvalues of one block other than zero.
 
 use mechanics::SingularValues;
-use nalgebra::{Complex, DMatrix, DVector, Schur, linalg::balancing::balance_parlett_reinsch};
+use nalgebra::{DMatrix, DVector, Schur, linalg::balancing::balance_parlett_reinsch};
+use num_complex::Complex;
 
 use crate::discs::Discs;
 use crate::weyl::Weyl;

@@ -4,7 +4,8 @@
 //! eigenvalue `z`. Where that holds all round a circle, as many eigenvalues are within it whatever the error.
 //! For one eigenvalue such a circle has a radius of about `κ‖E‖`, for a chain of `k` one of `(κ‖E‖)^(1/k)`.
 
-use nalgebra::{Complex, DMatrix};
+use nalgebra::DMatrix;
+use num_complex::Complex;
 
 /// Points on a circle round an eigenvalue, and of a contour.
 const ROUND: usize = 8;

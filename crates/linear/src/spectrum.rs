@@ -1,7 +1,8 @@
 //! Eigenvalues of a matrix whose entries are known up to some error, block by block.
 
 use mechanics::SingularValues;
-use nalgebra::{Complex, DMatrix};
+use nalgebra::DMatrix;
+use num_complex::Complex;
 
 use crate::core::{Core, allowed, balanced, nullity, structural_rank};
 use crate::discs::Discs;
