@@ -54,8 +54,8 @@
 //! Ju. I. Neimark, N. A. Fufaev, *Dynamics of Nonholonomic Systems*, 1972.
 
 use equations::{Block, Derivation, DerivationError, Equations, Formulation, Named, Needs};
-use mechanics::{System, fresh_symbol};
-use symbolic::{Expr, Matrix, Symbol};
+use mechanics::System;
+use symbolic::Matrix;
 
 /// Entry of the table of formulations.
 pub const FORMULATION: Formulation =
@@ -131,18 +131,13 @@ fn balance(formulation: &'static str, system: &System, rows: &Matrix) -> Equatio
     let (q, v, a) = (system.positions(), system.velocities(), system.accelerations());
     let flow = system.flow();
     let prescribed = rows.entries() != system.constraint_jacobian().entries();
-    let lambda: Vec<Symbol> = (1..=system.constraints.len()).map(|i| fresh_symbol(g, &format!("lambda_{i}"))).collect();
+    let lambda = system.multipliers("lambda", "");
 
     // d/dt ∂L/∂v − ∂L/∂q − Q − Wᵀλ = 0
     let momenta = g.gradient(system.lagrangian, &v);
     let gradient = g.gradient(system.lagrangian, &q);
     let reaction = g.transpose_vec(rows, &g.variables(&lambda));
-    let mut residuals: Vec<Expr> = (0..q.len())
-        .map(|i| {
-            let inertia = g.total_derivative(momenta[i], &flow);
-            g.sub(inertia, g.sum(&[gradient[i], system.forces[i], reaction[i]]))
-        })
-        .collect();
+    let mut residuals = system.balances(&momenta, &[&gradient, &system.forces, &reaction], &flow);
     equations.state_balances(&system, &residuals);
     // d/dt f = 0
     residuals.extend(system.constraints.iter().map(|&f| g.total_derivative(f, &flow)));

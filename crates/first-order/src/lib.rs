@@ -45,8 +45,8 @@
 //! Source: V. V. Kozlov 1992 for the family; the expansion is this page's.
 
 use equations::{Block, Derivation, DerivationError, Equations, Formulation, Named, Needs, parameter};
-use mechanics::{System, fresh_symbol};
-use symbolic::{Expr, Symbol};
+use mechanics::System;
+use symbolic::Expr;
 
 /// Entry of the table of formulations.
 pub const FORMULATION: Formulation = Formulation {
@@ -103,8 +103,7 @@ pub fn law(system: &System, epsilon: Expr, slip: Option<Expr>) -> Equations {
     let mut equations = Equations::new(FORMULATION.name, &system);
     let (q, v) = (system.positions(), system.velocities());
     let flow = system.flow();
-    let multipliers: Vec<Symbol> =
-        (1..=system.constraints.len()).map(|i| fresh_symbol(g, &format!("lambda_{i}"))).collect();
+    let multipliers = system.multipliers("lambda", "");
     let lambda = g.variables(&multipliers);
 
     // d/dt ∂L/∂v − ∂L/∂q − Q − Aᵀλ + ε Cλ = 0
@@ -114,12 +113,7 @@ pub fn law(system: &System, epsilon: Expr, slip: Option<Expr>) -> Equations {
     let along = g.transpose_vec(&system.constraint_jacobian(), &lambda);
     let curvature = curvature(&system, &lambda);
     let reaction: Vec<Expr> = along.iter().zip(curvature).map(|(&a, c)| g.add(a, g.mul(trace, c))).collect();
-    let mut residuals: Vec<Expr> = (0..q.len())
-        .map(|i| {
-            let inertia = g.total_derivative(momenta[i], &flow);
-            g.sub(inertia, g.sum(&[gradient[i], system.forces[i], reaction[i]]))
-        })
-        .collect();
+    let mut residuals = system.balances(&momenta, &[&gradient, &system.forces, &reaction], &flow);
     equations.state_balances(&system, &residuals);
     match slip {
         // f + λ/N = 0

@@ -34,8 +34,8 @@ use equations::{
     Block, Derivation, DerivationError, Equations, Formulation, FreeConstant, Named, Needs, Role, StateVariable,
     parameter,
 };
-use mechanics::{System, fresh_symbol};
-use symbolic::{Expr, Symbol};
+use mechanics::System;
+use symbolic::Expr;
 
 /// Entry of the table of formulations.
 pub const FORMULATION: Formulation = Formulation {
@@ -71,10 +71,7 @@ pub fn derive(system: &System, _: &Derivation) -> Result<Equations, DerivationEr
     let kappa = parameter(&system, "kappa").ok_or(missing)?;
     let mut equations = Equations::new(FORMULATION.name, &system);
     let (q, v, a) = (system.positions(), system.velocities(), system.accelerations());
-    let fresh = |stem: &str, tail: &str| -> Vec<Symbol> {
-        (1..=system.constraints.len()).map(|i| fresh_symbol(g, &format!("{stem}_{i}{tail}"))).collect()
-    };
-    let (multipliers, starts, rates) = (fresh("mu", ""), fresh("mu0", ""), fresh("mu", "'"));
+    let [multipliers, starts, rates] = [("mu", ""), ("mu0", ""), ("mu", "'")].map(|(m, p)| system.multipliers(m, p));
     let mu = g.variables(&multipliers);
     let mut flow = system.flow();
     flow.extend(multipliers.iter().copied().zip(g.variables(&rates)));

@@ -182,6 +182,19 @@ impl System {
         [&[self.lagrangian], &self.constraints[..], &self.forces, &self.virtual_conditions].concat()
     }
 
+    /// `d/dt p − Σ F`, n expressions, for `momenta` p and lists F of `forces`, one entry per coordinate; `flow`
+    /// has the rates, as [`System::flow`].
+    pub fn balances(&self, momenta: &[Expr], forces: &[&[Expr]], flow: &[(Symbol, Expr)]) -> Vec<Expr> {
+        let g = &self.graph;
+        let on = |i: usize| g.sum(&forces.iter().map(|list| list[i]).collect::<Vec<Expr>>());
+        momenta.iter().enumerate().map(|(i, &p)| g.sub(g.total_derivative(p, flow), on(i))).collect()
+    }
+
+    /// New symbols, one per constraint: `stem_1`, `stem_2`, …, each with these primes.
+    pub fn multipliers(&self, stem: &str, primes: &str) -> Vec<Symbol> {
+        (1..=self.constraints.len()).map(|i| fresh_symbol(&self.graph, &format!("{stem}_{i}{primes}"))).collect()
+    }
+
     /// Constraint Jacobian `A = ∂f/∂v`, h×n.
     pub fn constraint_jacobian(&self) -> Matrix {
         self.graph.jacobian(&self.constraints, &self.velocities())

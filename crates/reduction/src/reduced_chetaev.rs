@@ -35,7 +35,7 @@ use equations::{
     Block, Definitions, Derivation, DerivationError, Equations, Formulation, Named, Needs, Role, StateVariable,
     Statement,
 };
-use mechanics::{System, fresh_symbol};
+use mechanics::System;
 use symbolic::{Expr, Symbol};
 
 /// The same motion in quasi-velocities; for constraints linear in the velocities.
@@ -237,7 +237,7 @@ fn reactions(
     }
     let whole = mass.iter().zip(force).map(|(row, &force)| g.add(g.sum(&products(g, row, &moved)), force));
     let adjoints = adjoints(g, quasi, &whole.collect::<Vec<Expr>>(), definitions);
-    let lambda: Vec<Symbol> = (1..=system.constraints.len()).map(|i| fresh_symbol(g, &format!("lambda_{i}"))).collect();
+    let lambda = system.multipliers("lambda", "");
     multipliers(g, quasi, &lambda, &adjoints, definitions);
     equations.multipliers = lambda.iter().map(|&s| Named { name: g.name(s), expression: g.variable(s) }).collect();
 }

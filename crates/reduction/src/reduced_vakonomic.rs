@@ -307,14 +307,7 @@ fn hand_over(equations: &mut Equations, system: &System, augmented: &Augmented, 
     let named = |&mu: &Symbol| Named { name: g.name(mu), expression: g.variable(mu) };
     equations.multipliers = augmented.multipliers.iter().map(named).collect();
     equations.free_constants = augmented.free_constants();
-    if system.is_autonomous() && !system.has_forces() {
-        let energy = g.sub(g.dot(&v, p), system.lagrangian);
-        equations.invariants.push(Named { name: "energy".into(), expression: energy });
-    }
-    for (i, c) in system.coordinates.iter().enumerate() {
-        if g.is_zero(augmented.applied[i]) {
-            equations.invariants.push(Named { name: format!("momentum {}", c.name), expression: p[i] });
-        }
-    }
+    let energy = g.sub(g.dot(&v, p), system.lagrangian);
+    equations.add_invariants(system, Some(energy), p, &[&augmented.applied]);
     equations.velocities = v;
 }

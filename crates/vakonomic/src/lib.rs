@@ -90,9 +90,7 @@ impl Augmented {
     /// With multipliers of its own, in the graph of the system.
     pub fn new(system: &System) -> Self {
         let graph = &system.graph;
-        let fresh = |stem: &str, i: usize| fresh_symbol(graph, &format!("{stem}_{i}"));
-        let multipliers: Vec<Symbol> = (1..=system.constraints.len()).map(|i| fresh("mu", i)).collect();
-        let starts = (1..=system.constraints.len()).map(|i| fresh("mu0", i)).collect();
+        let [multipliers, starts] = ["mu", "mu0"].map(|stem| system.multipliers(stem, ""));
         let coupling = graph.dot(&graph.variables(&multipliers), &system.constraints);
         let lagrangian = graph.add(system.lagrangian, coupling);
         let momenta = graph.gradient(lagrangian, &system.velocities());
@@ -129,15 +127,14 @@ pub fn derive(system: &System, _: &Derivation) -> Result<Equations, DerivationEr
     let g = &system.graph;
     let mut equations = Equations::new(FORMULATION.name, &system);
     let augmented = Augmented::new(&system);
-    let (q, v, a) = (system.positions(), system.velocities(), system.accelerations());
+    let (v, a) = (system.velocities(), system.accelerations());
     let rates: Vec<Symbol> =
         augmented.multipliers.iter().map(|&mu| fresh_symbol(g, &format!("{}'", g.name(mu)))).collect();
     let mut flow = system.flow();
     flow.extend(augmented.multipliers.iter().zip(&rates).map(|(&mu, &rate)| (mu, g.variable(rate))));
 
     // d/dt ∂𝓛/∂v − ∂𝓛/∂q − Q = 0
-    let mut residuals: Vec<Expr> =
-        (0..q.len()).map(|i| g.sub(g.total_derivative(augmented.momenta[i], &flow), augmented.applied[i])).collect();
+    let mut residuals = system.balances(&augmented.momenta, &[&augmented.applied], &flow);
     equations.state_balances(&system, &residuals);
     // d/dt f = 0
     residuals.extend(system.constraints.iter().map(|&f| g.total_derivative(f, &flow)));
