@@ -6,35 +6,20 @@ use symbolic::CompileError;
 
 /// Why a question cannot be put or decided.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[expect(missing_docs, reason = "the messages say what fields are")]
 pub enum DecisionError {
     /// The equations cannot be read as a condition on the constants.
     #[error("{formulation}: {reason}")]
-    Unsuited {
-        /// Name of the formulation.
-        formulation: &'static str,
-        /// What about its equations, and what to take instead.
-        reason: String,
-    },
+    Unsuited { formulation: &'static str, reason: String },
     /// The family leaves no solvable system of one instant along the curve.
     #[error("at t = {t} the equations of the {formulation} family are singular along the curve")]
-    Singular {
-        /// Name of the formulation.
-        formulation: &'static str,
-        /// Where.
-        t: f64,
-    },
+    Singular { formulation: &'static str, t: f64 },
     /// The curve could not be followed.
     #[error("the curve cannot be followed: {reason}")]
-    Curve {
-        /// In the words of the curve or of the time loop.
-        reason: String,
-    },
+    Curve { reason: String },
     /// The limit on steps was reached.
     #[error("the curve cannot be followed: more than {limit} steps")]
-    Steps {
-        /// It.
-        limit: usize,
-    },
+    Steps { limit: usize },
     /// A tape could not be made.
     #[error(transparent)]
     Compile(#[from] CompileError),

@@ -8,22 +8,17 @@ use crate::family::{CostateRate, Family};
 
 /// Why there are no series.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[expect(missing_docs, reason = "the messages say what fields are")]
 pub enum NoSeries {
     /// A number of it has no image.
     #[error("{0}")]
     Flaw(#[from] Flaw),
     /// A matrix of an instant has the determinant zero.
     #[error("the equations of the {of} are singular at the start")]
-    Singular {
-        /// Whose.
-        of: &'static str,
-    },
+    Singular { of: &'static str },
     /// A number is missing.
     #[error("the start of `{name}` is not written")]
-    Unwritten {
-        /// Its name.
-        name: String,
-    },
+    Unwritten { name: String },
 }
 
 /// A start in numbers of one kind, with their exact values where they are followed.

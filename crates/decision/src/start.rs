@@ -12,6 +12,7 @@ use crate::series::SeriesStart;
 
 /// Why a start has no exact numbers.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[expect(missing_docs, reason = "the messages say what fields are")]
 pub enum NoExactStart {
     /// A number of it has no image.
     #[error("{0}")]
@@ -30,12 +31,7 @@ pub enum NoExactStart {
     Product,
     /// The start is given by way of a parametrization whose own start is not written.
     #[error("the start goes by way of the removal `{removal}`, and {what}")]
-    Removal {
-        /// Its name.
-        removal: String,
-        /// What is missing.
-        what: String,
-    },
+    Removal { removal: String, what: String },
 }
 
 /// A start as it is written: positions and some velocities as expressions in parameters and time.

@@ -10,6 +10,7 @@ use symbolic::CompileError;
 
 /// A motion that could not be started. How a motion that was started ended is [`crate::Ending`].
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[expect(missing_docs, reason = "the messages say what fields are")]
 pub enum SolveError {
     /// The formulation has no equations for this system.
     #[error(transparent)]
@@ -31,31 +32,16 @@ pub enum SolveError {
         "{formulation}: the equations for {unknowns} are not linear in them, and are not written as code; ask for another form or \
          formulation"
     )]
-    NotLinear {
-        /// Name of the formulation.
-        formulation: String,
-        /// The unknowns.
-        unknowns: String,
-    },
+    NotLinear { formulation: String, unknowns: String },
     /// The start is where a formula, as it was written, has no value.
     #[error("at the start {expression} is {value:?}: a root or logarithm of it that was written has no value")]
-    OutsideDomain {
-        /// What is negative.
-        expression: String,
-        /// Its value.
-        value: f64,
-    },
+    OutsideDomain { expression: String, value: f64 },
     /// The equations cannot be evaluated at the start.
     #[error("at the start: {0}")]
     AtStart(EvaluationFailure),
     /// The equations cannot be evaluated where a motion is read off.
     #[error("at t = {t:?}: {failure}")]
-    Reading {
-        /// The time asked for.
-        t: f64,
-        /// What is wrong there.
-        failure: EvaluationFailure,
-    },
+    Reading { t: f64, failure: EvaluationFailure },
     /// The motion was not kept at this time.
     #[error(transparent)]
     Dense(#[from] DenseError),
@@ -64,98 +50,45 @@ pub enum SolveError {
         "{formulation} has {expected} free constants ({names}); {found} were given (the costate of a memory variable that L does not \
          need is zero, and no free constant)"
     )]
-    ConstantCount {
-        /// Name of the formulation.
-        formulation: String,
-        /// Number of free constants.
-        expected: usize,
-        /// Their names.
-        names: String,
-        /// Number given.
-        found: usize,
-    },
+    ConstantCount { formulation: String, expected: usize, names: String, found: usize },
     /// A free constant is NaN or infinite.
     #[error("{formulation}: a free constant is {value}; it must be finite")]
-    ConstantNotFinite {
-        /// Name of the formulation.
-        formulation: String,
-        /// Its value.
-        value: f64,
-    },
+    ConstantNotFinite { formulation: String, value: f64 },
     /// A natural boundary condition where the formulation has none.
     #[error("{formulation} has no natural boundary condition for its free constants")]
-    NoNaturalCondition {
-        /// Name of the formulation.
-        formulation: String,
-    },
+    NoNaturalCondition { formulation: String },
     /// The horizon is not after the start.
     #[error("the horizon {horizon:?} is not after the start {start:?}")]
-    Horizon {
-        /// Horizon asked for.
-        horizon: f64,
-        /// Start time.
-        start: f64,
-    },
+    Horizon { horizon: f64, start: f64 },
     /// No free constants satisfy the natural boundary condition at the horizon, as far as was found.
     #[error("natural boundary condition at the horizon {horizon:?}: {error}")]
-    Boundary {
-        /// Horizon asked for.
-        horizon: f64,
-        /// What the boundary-value solver says.
-        error: BoundaryError,
-    },
+    Boundary { horizon: f64, error: BoundaryError },
     /// The search for free constants that satisfy the natural boundary condition takes too many steps.
     #[error(
         "natural boundary condition at the horizon {horizon:?}: given up after {steps} steps in all; the search has come to motions that take far more steps \
          than the one it started from, as beside a singularity: a shorter horizon, another removal or constants that are given may help"
     )]
-    Search {
-        /// Horizon asked for.
-        horizon: f64,
-        /// Steps of all runs together.
-        steps: usize,
-    },
+    Search { horizon: f64, steps: usize },
     /// The search for free constants was ended.
     #[error("natural boundary condition at the horizon {horizon:?}: not found, {cause}")]
-    Ended {
-        /// Horizon asked for.
-        horizon: f64,
-        /// By what.
-        cause: StopCause,
-    },
+    Ended { horizon: f64, cause: StopCause },
     /// There is no discrete motion, or it cannot be read off.
     #[error(transparent)]
     Discrete(#[from] DiscreteError),
     /// The formulation has no discrete principle.
     #[error("{formulation} has no discrete principle to step by")]
-    NoPrinciple {
-        /// Name of the formulation.
-        formulation: String,
-    },
+    NoPrinciple { formulation: String },
     /// The length of a step makes no sense.
     #[error(
         "a step of {step:?} over a time of {length:?}: it must be above 0 and at most that time; at most {limit} steps are possible"
     )]
-    Step {
-        /// The step asked for.
-        step: f64,
-        /// The time to go.
-        length: f64,
-        /// Largest number of steps.
-        limit: usize,
-    },
+    Step { step: f64, length: f64, limit: usize },
     /// No step of those of equal length ends at a breakpoint.
     #[error("no step ends at the breakpoint {t:?}: equal steps of {step:?} do not lead there")]
-    Breakpoint {
-        /// The breakpoint.
-        t: f64,
-        /// The length of the steps.
-        step: f64,
-    },
+    Breakpoint { t: f64, step: f64 },
     /// No run can have this tolerance.
     #[error("{}", tolerance_words(*tolerance, *least))]
     Tolerance {
-        /// What was given.
         tolerance: f64,
         /// The least that can be given; the limit above is 1.
         least: f64,
@@ -165,22 +98,13 @@ pub enum SolveError {
     Scene(Box<SceneError>),
     /// What is to vary in an ensemble or a sweep does not, or a motion cannot be a member.
     #[error("{reason}")]
-    Member {
-        /// Why not.
-        reason: String,
-    },
+    Member { reason: String },
     /// A two-point problem makes no sense.
     #[error("{reason}")]
-    TwoPoint {
-        /// Why not.
-        reason: String,
-    },
+    TwoPoint { reason: String },
     /// A search was ended from outside.
     #[error("the search was ended: {cause}")]
-    Interrupted {
-        /// By what.
-        cause: StopCause,
-    },
+    Interrupted { cause: StopCause },
     /// The time integrator was called wrongly.
     #[error(transparent)]
     Call(#[from] CallError),

@@ -6,6 +6,7 @@ use symbolic::CompileError;
 
 /// A film that cannot be read, or a question that cannot be asked.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[expect(missing_docs, reason = "the messages say what fields are")]
 pub enum FitError {
     /// The table cannot be read.
     #[error(transparent)]
@@ -15,81 +16,38 @@ pub enum FitError {
     NoColumn,
     /// A column is neither in `[film]` nor an expression.
     #[error("no expression belongs to the column `{column}`: it is not in [film], and as an expression: {reason}")]
-    Column {
-        /// Its name.
-        column: String,
-        /// What is wrong with it as an expression.
-        reason: String,
-    },
+    Column { column: String, reason: String },
     /// The expression of a column contains what the scene does not have.
     #[error("the column `{column}`: {error}")]
-    Expression {
-        /// Its name.
-        column: String,
-        /// Why it cannot be evaluated.
-        error: CompileError,
-    },
+    Expression { column: String, error: CompileError },
     /// A column has no standard deviation.
     #[error("the column `{0}` has no standard deviation, neither in [film] nor by name nor for all columns")]
     NoDeviation(String),
     /// A standard deviation is not positive.
     #[error("the standard deviation of `{of}` is {found}; it must be finite and above 0")]
-    Deviation {
-        /// Of what.
-        of: String,
-        /// What was given.
-        found: f64,
-    },
+    Deviation { of: String, found: f64 },
     /// A film begins before the scene.
     #[error("line {line}: t = {t} is before the start of the scene, t = {start}")]
-    BeforeTheStart {
-        /// Line of the file.
-        line: usize,
-        /// The first time.
-        t: f64,
-        /// The time of the start.
-        start: f64,
-    },
+    BeforeTheStart { line: usize, t: f64, start: f64 },
     /// There are no more numbers in the films than unknowns.
     #[error("the films have {found} numbers, and there are {unknowns} unknowns; more numbers are needed")]
     TooShort {
         /// Cells that are not empty.
         found: usize,
-        /// Unknowns.
         unknowns: usize,
     },
     /// A quantity cannot be read.
     #[error("`{text}` is no number with a unit; units are {units}")]
-    Quantity {
-        /// What stands there.
-        text: String,
-        /// Units that are known.
-        units: String,
-    },
+    Quantity { text: String, units: String },
     /// An unknown cannot be read.
     #[error("`{text}` is no unknown: {reason}")]
-    Unknown {
-        /// What stands there.
-        text: String,
-        /// Why not.
-        reason: String,
-    },
+    Unknown { text: String, reason: String },
     /// When a film looks cannot be read.
     #[error("`{text}` is no film to be made: {reason}")]
-    Sampling {
-        /// What stands there.
-        text: String,
-        /// Why not.
-        reason: String,
-    },
+    Sampling { text: String, reason: String },
     /// A number that is to be chosen cannot be read, or does not belong there.
     #[error("`{text}` cannot be chosen: {reason}")]
-    Choose {
-        /// What stands there.
-        text: String,
-        /// Why not.
-        reason: String,
-    },
+    Choose { text: String, reason: String },
     /// A number of the scene is unknown twice.
     #[error("`{0}` is unknown twice")]
     Twice(String),
@@ -98,12 +56,7 @@ pub enum FitError {
     NoUnknown,
     /// No start of the search leads to a motion through the film.
     #[error("of {starts} starts of the search none leads to a motion: {reason}")]
-    NoMotion {
-        /// Starts that were tried.
-        starts: usize,
-        /// What the first of them says.
-        reason: String,
-    },
+    NoMotion { starts: usize, reason: String },
     /// The scene lacks a formulation.
     #[error("the scene has no {0} motion")]
     NoMotionOf(&'static str),

@@ -4,6 +4,7 @@ use decision::exact::Flaw;
 
 /// What keeps an answer from being given.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[expect(missing_docs, reason = "the messages say what fields are")]
 pub enum Open {
     /// A number has no image in the finite field.
     #[error("{0}")]
@@ -31,55 +32,29 @@ pub enum Open {
     Singular,
     /// Series would have too many coefficients.
     #[error("series to order {order} have more than {most} coefficients")]
-    Size {
-        /// Up to this order.
-        order: usize,
-        /// Most that are taken.
-        most: usize,
-    },
+    Size { order: usize, most: usize },
     /// There are many ways to solve the constraints.
     #[error("the constraints can be solved for {found} sets of velocities; at most {most} are tried")]
     Choices {
         /// Sets of as many coordinates as there are constraints.
         found: usize,
-        /// Most that are tried.
         most: usize,
     },
     /// Brackets of the constraints' kernel do not span all directions.
     #[error("the constraints are integrable in part: brackets span {rank} of {dimension} directions")]
-    Integrable {
-        /// Of the brackets.
-        rank: usize,
-        /// Number of coordinates.
-        dimension: usize,
-    },
+    Integrable { rank: usize, dimension: usize },
     /// A name that is no coordinate.
     #[error("`{name}` is no coordinate: there are {all}")]
-    Name {
-        /// As given.
-        name: String,
-        /// Names of the coordinates.
-        all: String,
-    },
+    Name { name: String, all: String },
     /// Two fields disagree, or random numbers are dependent.
     #[error("random points of two fields do not agree")]
     Accident,
     /// A step would have too many unknowns.
     #[error("the equations of order {order} have more than {most} unknowns")]
-    Columns {
-        /// The weight.
-        order: usize,
-        /// Most that are taken.
-        most: usize,
-    },
+    Columns { order: usize, most: usize },
     /// Coefficients are free at the last weight: what is left bounds nothing.
     #[error("{free} coefficients are free still at order {order}, the highest that was looked at: there is no bound")]
-    Free {
-        /// The weight.
-        order: usize,
-        /// How many.
-        free: usize,
-    },
+    Free { order: usize, free: usize },
     /// Two roads do not agree: a fault of the program.
     #[error("a contradiction, please report it: {0}")]
     Contradiction(String),

@@ -70,37 +70,22 @@ pub struct Shot {
 /// No unknowns were found, or the question makes no sense.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
+#[expect(missing_docs, reason = "the messages say what fields are")]
 pub enum BoundaryError {
     /// There are no unknowns, or fewer residuals than unknowns.
     #[error("{residuals} residuals for {unknowns} unknowns; needed: unknowns ≥ 1, residuals ≥ unknowns")]
-    Dimension {
-        /// Length of the guess.
-        unknowns: usize,
-        /// Number of residuals.
-        residuals: usize,
-    },
+    Dimension { unknowns: usize, residuals: usize },
     /// An option, or a component of the guess, is out of its range.
     #[error("{name} is {found}, it must be {needed}")]
-    Option {
-        /// Which one.
-        name: &'static str,
-        /// Its value.
-        found: f64,
-        /// Its range.
-        needed: &'static str,
-    },
+    Option { name: &'static str, found: f64, needed: &'static str },
     /// The residual cannot be evaluated at the guess; in the caller's words.
     #[error("the residual cannot be evaluated: {reason}")]
-    Residual {
-        /// The caller's own words.
-        reason: String,
-    },
+    Residual { reason: String },
     /// A residual is NaN or infinite at the guess.
     #[error("residual {index} is {found}")]
     NotFinite {
         /// Which one, counted from 0.
         index: usize,
-        /// Its value.
         found: f64,
     },
     /// The integration inside the residual was a bad call.
@@ -108,32 +93,18 @@ pub enum BoundaryError {
     Call(#[from] CallError),
     /// The integration inside the residual stopped before its end.
     #[error("the integration stopped at t = {t}: {cause}")]
-    Stopped {
-        /// Where it stopped.
-        t: f64,
-        /// Why.
-        cause: StopCause,
-    },
+    Stopped { t: f64, cause: StopCause },
     /// The residual stays above the tolerance.
     #[error("the residual is {residual:.1e} after {iterations} iterations, the tolerance is {limit:.0e}")]
     NotConverged {
-        /// The smallest `|r|` found.
         residual: f64,
         /// [`ShootOptions::tolerance`].
         limit: f64,
-        /// Jacobians evaluated.
         iterations: usize,
     },
     /// The residual stays above the tolerance; the last Jacobian does not fix the unknowns.
     #[error("the residual is {residual}; the condition number of its Jacobian is {condition}, the limit is {limit}")]
-    Singular {
-        /// The smallest `|r|` found.
-        residual: f64,
-        /// Condition number of that Jacobian.
-        condition: f64,
-        /// 1e12.
-        limit: f64,
-    },
+    Singular { residual: f64, condition: f64, limit: f64 },
 }
 
 impl Solution {

@@ -63,6 +63,7 @@ pub enum Status {
 /// Why an integration stopped before its end.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
+#[expect(missing_docs, reason = "the messages say what fields are")]
 pub enum StopCause {
     /// An event function changed sign, or reached or touched zero.
     #[error("event {index}")]
@@ -72,10 +73,7 @@ pub enum StopCause {
     },
     /// F could not be evaluated however small the step.
     #[error("the rates cannot be evaluated: {reason}")]
-    Evaluation {
-        /// The problem's own words.
-        reason: String,
-    },
+    Evaluation { reason: String },
     /// A rate or a state became NaN or infinite however small the step.
     #[error("component {component} of the state or of its rates is NaN or infinite")]
     NotFinite {
@@ -101,22 +99,13 @@ pub enum StopCause {
     },
     /// The error estimate asked for a step that no longer moves the time.
     #[error("a step of length {step:e} is asked for, the shortest possible is {limit:e}")]
-    StepTooSmall {
-        /// The length of the step asked for.
-        step: f64,
-        /// The smallest length allowed there.
-        limit: f64,
-    },
+    StepTooSmall { step: f64, limit: f64 },
     /// The limit on attempted steps was reached.
     #[error("more than {limit} steps")]
-    TooManySteps {
-        /// [`crate::Options::max_steps`].
-        limit: usize,
-    },
+    TooManySteps { limit: usize },
     /// Many steps hardly moved the time, at a singularity or at what is too fast for the length of the run.
     #[error("the last {steps} steps moved time by {moved:.1e} only: steps became too short to come to the end")]
     Creeping {
-        /// How many.
         steps: usize,
         /// Time they took together.
         moved: f64,
@@ -132,25 +121,16 @@ pub enum StopCause {
     /// There is no memory for the polynomials of more steps.
     #[error("the steps so far take {} MB, and there is no memory for more: end earlier, or ask for fewer times",
             bytes / 1_000_000)]
-    Memory {
-        /// What the polynomials take.
-        bytes: usize,
-    },
+    Memory { bytes: usize },
     /// [`crate::Options::interrupt`] was raised.
     #[error("interrupted")]
     Interrupted,
     /// The time that [`crate::Interrupt::within`] allows is over.
     #[error("the time limit of {seconds:?} s is over")]
-    TimeLimit {
-        /// The limit, wall clock.
-        seconds: f64,
-    },
+    TimeLimit { seconds: f64 },
     /// The library behind the method gave up.
     #[error("the solver gave up: {reason}")]
-    Solver {
-        /// Its words.
-        reason: String,
-    },
+    Solver { reason: String },
 }
 
 /// What an integration cost.

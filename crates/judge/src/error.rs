@@ -5,37 +5,23 @@ use symbolic::CompileError;
 
 /// A judgement that there is not.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[expect(missing_docs, reason = "the messages say what fields are")]
 pub enum JudgeError {
     /// The table cannot be read.
     #[error(transparent)]
     Table(#[from] TableError),
     /// Rates are given of some coordinates only.
     #[error("there are rates of {given} of {of} coordinates: column `{missing}` is missing")]
-    SomeRates {
-        /// Columns of rates that there are.
-        given: usize,
-        /// Coordinates.
-        of: usize,
-        /// The first rate that is missing.
-        missing: String,
-    },
+    SomeRates { given: usize, of: usize, missing: String },
     /// There are too few samples for differences.
     #[error("there are {found} samples, and {needed} are needed")]
-    TooFew {
-        /// Samples.
-        found: usize,
-        /// The least number.
-        needed: usize,
-    },
+    TooFew { found: usize, needed: usize },
     /// The scene has no constraint.
     #[error("the scene has no constraint: there is one law only")]
     Unconstrained,
     /// The mass matrix is not positive definite, so that no length of a force is defined.
     #[error("at t = {t}: the mass matrix is not positive definite")]
-    MassMatrix {
-        /// The time.
-        t: f64,
-    },
+    MassMatrix { t: f64 },
     /// Forces and accelerations do not stand out from what differences make of the samples.
     #[error(
         "forces and accelerations are {scale:.1e}, differences of the samples are sure to {noise:.1e}: every law has this motion"
@@ -48,10 +34,7 @@ pub enum JudgeError {
     },
     /// Constraints are dependent.
     #[error("at t = {t}: the constraints are dependent, or something in the scene is not finite")]
-    Dependent {
-        /// The time.
-        t: f64,
-    },
+    Dependent { t: f64 },
     /// The scene cannot be evaluated.
     #[error(transparent)]
     Compile(#[from] CompileError),

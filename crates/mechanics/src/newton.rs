@@ -101,21 +101,18 @@ pub struct Root {
 
 /// Why no root was found.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[expect(missing_docs, reason = "the messages say what fields are")]
 pub enum NewtonError {
     /// The iteration ended where the residual is least nearby, but not zero.
     #[error("residual {:.3e} (limit {limit:.0e}) after {} steps", .best.residual, .best.iterations)]
     NotConverged {
         /// Where the iteration ended: stationary for `‖W r‖` unless the steps ran out.
         best: Box<Root>,
-        /// Largest residual that is accepted.
         limit: f64,
     },
     /// Residual or Jacobian is not finite.
     #[error("residual or Jacobian is not finite at step {iteration}")]
-    NotFinite {
-        /// Steps taken before.
-        iteration: usize,
-    },
+    NotFinite { iteration: usize },
 }
 
 /// Solves `r(x) = 0` from `x0`.

@@ -2,31 +2,22 @@
 
 /// A parametrization that does not remove the constraints.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[expect(missing_docs, reason = "the messages say what fields are")]
 pub enum RemovalError {
     /// The number of parameters is not `n − h`.
     #[error("removal `{removal}` has {found} parameters; n − h = {expected} are needed")]
-    WrongCount {
-        /// Name of the removal.
-        removal: String,
-        /// Number of parameters found.
-        found: usize,
-        /// `n − h`.
-        expected: usize,
-    },
+    WrongCount { removal: String, found: usize, expected: usize },
     /// A constraint does not vanish identically.
     #[error(
         "removal `{removal}` does not satisfy constraint {constraint} ({text}): residual {residual:.3e} where round-off allows {limit:.1e}"
     )]
     ConstraintRemains {
-        /// Name of the removal.
         removal: String,
         /// Number of the constraint, from 1.
         constraint: usize,
-        /// The constraint as entered.
         text: String,
         /// Residual at a random point.
         residual: f64,
-        /// Largest residual that round-off explains.
         limit: f64,
     },
     /// Automatic removal needs constraints linear in the velocities.
@@ -36,7 +27,6 @@ pub enum RemovalError {
     NotLinear {
         /// Number of the constraint, from 1.
         constraint: usize,
-        /// The constraint as entered.
         text: String,
     },
     /// The constraint Jacobian has no full row rank at the start.
@@ -44,7 +34,6 @@ pub enum RemovalError {
     Dependent {
         /// Largest pivot that was left, rows scaled to 1.
         pivot: f64,
-        /// Smallest pivot that is accepted.
         limit: f64,
     },
     /// A constraint with the parametrization put in has a finite value at too few of the points tried.
@@ -52,11 +41,9 @@ pub enum RemovalError {
         "removal `{removal}`: constraint {constraint} ({text}) is finite at too few of the points tried, so it cannot be checked"
     )]
     NotCheckable {
-        /// Name of the removal.
         removal: String,
         /// Number of the constraint, from 1.
         constraint: usize,
-        /// The constraint as entered.
         text: String,
     },
 }

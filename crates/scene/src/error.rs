@@ -33,122 +33,50 @@ pub struct SceneError {
 /// What is wrong with a scene.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
+#[expect(missing_docs, reason = "the messages say what fields are")]
 pub enum SceneErrorKind {
     /// The file is larger than a scene can be.
     #[error("the file has {size} bytes or more; a scene has at most {limit}")]
-    TooLarge {
-        /// Size in bytes, as far as it was looked at.
-        size: u64,
-        /// Limit in bytes.
-        limit: u64,
-    },
+    TooLarge { size: u64, limit: u64 },
     /// The file could not be read.
     #[error("the file cannot be read: {reason}")]
-    Unreadable {
-        /// What the operating system said.
-        reason: std::io::ErrorKind,
-    },
+    Unreadable { reason: std::io::ErrorKind },
     /// The file is not UTF-8.
     #[error("byte {byte:#04x} at offset {offset} is not UTF-8 text")]
-    NotUtf8 {
-        /// The first offending byte.
-        byte: u8,
-        /// Its place.
-        offset: usize,
-    },
+    NotUtf8 { byte: u8, offset: usize },
     /// Nothing in it.
     #[error("the scene is empty; it needs title, [coordinates], [system], [start.velocities] and [run]")]
     Empty,
     /// Not TOML.
     #[error("not valid TOML: {message}")]
-    Syntax {
-        /// What the TOML parser said.
-        message: String,
-    },
+    Syntax { message: String },
     /// A key that means nothing here.
     #[error("unknown key `{key}` in {section}{}; known here: {}", meant(.suggestion), .known.join(", "))]
-    UnknownKey {
-        /// The key.
-        key: String,
-        /// Where it stands.
-        section: String,
-        /// A similar key.
-        suggestion: Option<String>,
-        /// All keys of this section.
-        known: Vec<String>,
-    },
+    UnknownKey { key: String, section: String, suggestion: Option<String>, known: Vec<String> },
     /// A name that stands for nothing here.
     #[error("`{name}` is no {expected}{}", meant(.suggestion))]
-    UnknownName {
-        /// The name.
-        name: String,
-        /// What was expected.
-        expected: &'static str,
-        /// A similar name.
-        suggestion: Option<String>,
-    },
+    UnknownName { name: String, expected: &'static str, suggestion: Option<String> },
     /// A key that is needed.
     #[error("`{key}` is missing in {section}; expected {expected}")]
-    MissingKey {
-        /// The key.
-        key: &'static str,
-        /// Where it should stand.
-        section: String,
-        /// What it should be.
-        expected: &'static str,
-    },
+    MissingKey { key: &'static str, section: String, expected: &'static str },
     /// A section without content.
     #[error("{section} is empty; expected {expected}")]
-    EmptySection {
-        /// The section.
-        section: String,
-        /// What should be in it.
-        expected: &'static str,
-    },
+    EmptySection { section: String, expected: &'static str },
     /// A value of the wrong type.
     #[error("expected {expected}, found {found}")]
-    WrongType {
-        /// What was found.
-        found: &'static str,
-        /// What was expected.
-        expected: &'static str,
-    },
+    WrongType { found: &'static str, expected: &'static str },
     /// A word that is not one of those that can stand here.
     #[error("expected {expected}, found {found:?}")]
-    WrongWord {
-        /// What was found.
-        found: String,
-        /// What was expected.
-        expected: &'static str,
-    },
+    WrongWord { found: String, expected: &'static str },
     /// A list of the wrong length.
     #[error("{found} {what} where {expected} are needed")]
-    WrongLength {
-        /// Entries of the list.
-        what: &'static str,
-        /// Number found.
-        found: usize,
-        /// Number needed.
-        expected: usize,
-    },
+    WrongLength { what: &'static str, found: usize, expected: usize },
     /// A number, vector or matrix of the wrong shape.
     #[error("expected {expected}, found {found}")]
-    WrongShape {
-        /// What was found.
-        found: String,
-        /// What was expected.
-        expected: &'static str,
-    },
+    WrongShape { found: String, expected: &'static str },
     /// Too few or too many sizes of a body.
     #[error("the size of a {word} is [{sizes}], found {found} number{}", if *.found == 1 { "" } else { "s" })]
-    WrongSizes {
-        /// What it looks like.
-        word: &'static str,
-        /// Its sizes.
-        sizes: String,
-        /// How many there are.
-        found: usize,
-    },
+    WrongSizes { word: &'static str, sizes: String, found: usize },
     /// A matrix that does not rotate.
     #[error(
         "no rotation at the start: R Rᵀ differs from the unit matrix by {residual:.3e}, limit {limit:.0e}, and det R is {determinant:.3}"
@@ -156,48 +84,24 @@ pub enum SceneErrorKind {
     NoRotation {
         /// Largest entry of `R Rᵀ − 1` in magnitude.
         residual: f64,
-        /// Largest value that is accepted.
         limit: f64,
-        /// `det R`, which has to be positive.
         determinant: f64,
     },
     /// A number that is not finite.
     #[error("{what} must be finite, found {value}")]
-    NotFinite {
-        /// What.
-        what: String,
-        /// Its value.
-        value: f64,
-    },
+    NotFinite { what: String, value: f64 },
     /// A number out of its range.
     #[error("{what} must be greater than {limit}, found {value}")]
-    OutOfRange {
-        /// What.
-        what: &'static str,
-        /// Its value.
-        value: f64,
-        /// What it has to exceed.
-        limit: f64,
-    },
+    OutOfRange { what: &'static str, value: f64, limit: f64 },
     /// A name that cannot be used.
     #[error("`{name}` cannot be a name: {fault}")]
-    InvalidName {
-        /// The name.
-        name: String,
-        /// Why.
-        fault: NameFault,
-    },
+    InvalidName { name: String, fault: NameFault },
     /// A formula that cannot be read.
     #[error(transparent)]
     Expression(ParseErrorKind),
     /// A name that is defined but cannot be used here.
     #[error("`{name}` cannot be used here: {reason}")]
-    Unavailable {
-        /// The name.
-        name: String,
-        /// Why.
-        reason: Unavailable,
-    },
+    Unavailable { name: String, reason: Unavailable },
     /// A constraint that the motion has no part in.
     #[error("constraint {number} contains no velocity and no coordinate")]
     NoVelocity {
@@ -206,12 +110,7 @@ pub enum SceneErrorKind {
     },
     /// The sides of a start equation do not go together.
     #[error("the left side has {left} components, the right side {right}")]
-    UnequalSides {
-        /// Components of the left side.
-        left: usize,
-        /// Components of the right side.
-        right: usize,
-    },
+    UnequalSides { left: usize, right: usize },
     /// A start equation that no velocity can fulfil.
     #[error("start equation {number} contains no velocity; starts of coordinates stand in [coordinates]")]
     StartAtRest {
@@ -225,39 +124,23 @@ pub enum SceneErrorKind {
     OffPosition {
         /// Number of the constraint, from 1.
         number: usize,
-        /// Its value at the start.
         residual: f64,
-        /// Largest value that is accepted.
         limit: f64,
     },
     /// Definitions or parameters that need each other.
     #[error("these are defined in a circle: {}", .names.join(" → "))]
-    Circle {
-        /// The names; the first is also the last.
-        names: Vec<String>,
-    },
+    Circle { names: Vec<String> },
     /// A name that could not be read itself.
     #[error("`{name}` has a fault of its own")]
-    Faulty {
-        /// The name.
-        name: String,
-    },
+    Faulty { name: String },
     /// An angle in degrees.
     #[error(
         "`{unit}` would have to be converted, and angles are in radians: write unit = \"rad\" and, for the start, \"30*pi/180\"; other units are labels"
     )]
-    Degrees {
-        /// The unit.
-        unit: String,
-    },
+    Degrees { unit: String },
     /// Not as many conditions on virtual displacements as constraints.
     #[error("{found} conditions in `virtual` for {expected} constraints; one for each is needed")]
-    VirtualConditions {
-        /// Conditions found.
-        found: usize,
-        /// Number of constraints, `h`.
-        expected: usize,
-    },
+    VirtualConditions { found: usize, expected: usize },
     /// A condition on virtual displacements without a rate.
     #[error("condition {number} in `virtual` contains no velocity: write δx as x', as in \"x' - y'*tan(phi)\"")]
     NoRate {
@@ -266,22 +149,10 @@ pub enum SceneErrorKind {
     },
     /// As many constraints as coordinates.
     #[error("{found} constraints for {dimension} coordinates leave nothing to move; at most {} are possible", .dimension.saturating_sub(1))]
-    TooManyConstraints {
-        /// Number of constraints, `h`.
-        found: usize,
-        /// Number of coordinates, `n`.
-        dimension: usize,
-    },
+    TooManyConstraints { found: usize, dimension: usize },
     /// A coordinate that a removal does not know what to do with.
     #[error("removal `{removal}`: coordinate `{coordinate}` is {}; it must be exactly one of: a parameter, in rates, in direct", joined(.roles))]
-    CoordinateRole {
-        /// Name of the removal.
-        removal: String,
-        /// Name of the coordinate.
-        coordinate: String,
-        /// What it is.
-        roles: Vec<&'static str>,
-    },
+    CoordinateRole { removal: String, coordinate: String, roles: Vec<&'static str> },
     /// A wrong parametrization.
     #[error(transparent)]
     Removal(RemovalError),

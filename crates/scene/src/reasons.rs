@@ -2,6 +2,7 @@
 
 /// Why something cannot be a name.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[expect(missing_docs, reason = "the messages say what fields are")]
 pub enum NameFault {
     /// Not a letter followed by letters, digits and underscores.
     #[error("a name is a letter followed by letters, digits and underscores")]
@@ -20,21 +21,16 @@ pub enum NameFault {
     Overriding(&'static str),
     /// Used twice.
     #[error("it is already {by}")]
-    Taken {
-        /// What uses it.
-        by: String,
-    },
+    Taken { by: String },
 }
 
 /// Why a defined name cannot be used at some place.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[expect(missing_docs, reason = "the messages say what fields are")]
 pub enum Unavailable {
     /// A start value that is not known yet.
     #[error("it has no value yet; known are {known}")]
-    NotYetKnown {
-        /// What can be used.
-        known: &'static str,
-    },
+    NotYetKnown { known: &'static str },
     /// A time derivative written with `dot`.
     #[error("a time derivative is {0}'")]
     Dot(String),

@@ -15,6 +15,7 @@ pub struct Table {
 
 /// A table that cannot be read.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[expect(missing_docs, reason = "the messages say what fields are")]
 pub enum TableError {
     /// There is no such column.
     #[error("there is no column `{0}`")]
@@ -24,31 +25,15 @@ pub enum TableError {
     NotANumber {
         /// Line of the file, the header being the first.
         line: usize,
-        /// Name of the column.
         column: String,
-        /// What stands there.
         text: String,
     },
     /// A line has another number of cells than the header.
     #[error("line {line} has {found} cells, and the header has {expected}")]
-    Ragged {
-        /// Line of the file.
-        line: usize,
-        /// Cells there.
-        found: usize,
-        /// Cells of the header.
-        expected: usize,
-    },
+    Ragged { line: usize, found: usize, expected: usize },
     /// Times do not grow.
     #[error("line {line}: t = {t} is not later than t = {before} of the row before")]
-    TimesNotGrowing {
-        /// Line of the file.
-        line: usize,
-        /// The time there.
-        t: f64,
-        /// The time before.
-        before: f64,
-    },
+    TimesNotGrowing { line: usize, t: f64, before: f64 },
 }
 
 /// Cells that show nothing.

@@ -21,13 +21,11 @@ use std::collections::HashMap;
 /// ```
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
+#[expect(missing_docs, reason = "the messages say what fields are")]
 pub enum CompileError {
     /// A symbol that is neither input nor constant.
     #[error("`{name}` has no value: it is neither an input nor a constant")]
-    Unbound {
-        /// Its name.
-        name: String,
-    },
+    Unbound { name: String },
     /// A part that depends on no input and is not a finite number.
     #[error("`{expression}` is not finite")]
     NotFinite {

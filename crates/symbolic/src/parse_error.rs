@@ -32,32 +32,20 @@ pub struct ParseError {
 /// What is wrong with a formula.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
+#[expect(missing_docs, reason = "the messages say what fields are")]
 pub enum ParseErrorKind {
     /// There is no formula.
     #[error("there is no expression here")]
     Empty,
     /// A character that no formula contains.
     #[error("unexpected character {found:?}{}", hinted(.hint.as_deref()))]
-    UnexpectedCharacter {
-        /// The character.
-        found: char,
-        /// What may have been meant.
-        hint: Option<String>,
-    },
+    UnexpectedCharacter { found: char, hint: Option<String> },
     /// Something that cannot stand here.
     #[error("expected {expected}, found `{}`", shortened(.found))]
-    UnexpectedToken {
-        /// What was found.
-        found: String,
-        /// What could stand here.
-        expected: &'static str,
-    },
+    UnexpectedToken { found: String, expected: &'static str },
     /// The formula stops too early.
     #[error("the expression ends where {expected} is expected")]
-    UnexpectedEnd {
-        /// What could stand here.
-        expected: &'static str,
-    },
+    UnexpectedEnd { expected: &'static str },
     /// An opening parenthesis without its partner.
     #[error("this parenthesis is never closed")]
     UnclosedParenthesis,
@@ -66,112 +54,49 @@ pub enum ParseErrorKind {
     UnmatchedParenthesis,
     /// A name that means nothing here.
     #[error("undefined name `{}`{}", shortened(.name), meant(.suggestion.as_deref()))]
-    Undefined {
-        /// The name.
-        name: String,
-        /// A similar name that is defined.
-        suggestion: Option<String>,
-    },
+    Undefined { name: String, suggestion: Option<String> },
     /// A call of something that is not known at all.
     #[error("unknown function `{}`{}", shortened(.name), meant(.suggestion.as_deref()))]
-    UnknownFunction {
-        /// The name.
-        name: String,
-        /// A similar function.
-        suggestion: Option<String>,
-    },
+    UnknownFunction { name: String, suggestion: Option<String> },
     /// A function that has no derivative everywhere.
     #[error("`{name}` is not differentiable, and equations of motion need two derivatives; {instead}")]
-    NotSmooth {
-        /// The function.
-        name: String,
-        /// What to write instead.
-        instead: &'static str,
-    },
+    NotSmooth { name: String, instead: &'static str },
     /// A function with too few or too many arguments.
     #[error("`{function}` takes {expected} argument{}, found {found}", plural(*.expected))]
-    WrongArgumentCount {
-        /// The function.
-        function: String,
-        /// How many arguments it takes.
-        expected: usize,
-        /// How many were given.
-        found: usize,
-    },
+    WrongArgumentCount { function: String, expected: usize, found: usize },
     /// A function that is used like a variable.
     #[error("`{name}` is a function and needs an argument: write {name}(…)")]
-    FunctionWithoutArgument {
-        /// The function.
-        name: String,
-    },
+    FunctionWithoutArgument { name: String },
     /// A variable that is used like a function.
     #[error("`{name}` is not a function; for a product write {name}*(…)")]
-    VariableCalled {
-        /// The variable.
-        name: String,
-    },
+    VariableCalled { name: String },
     /// Two factors without a multiplication sign between them.
     #[error("a multiplication sign is missing: write {left}*{right}")]
-    ImplicitMultiplication {
-        /// The end of the first factor.
-        left: String,
-        /// The start of the second.
-        right: String,
-    },
+    ImplicitMultiplication { left: String, right: String },
     /// A vector or matrix where a number has to be.
     #[error("expected a number, found {found}")]
-    NotANumber {
-        /// What was found.
-        found: String,
-    },
+    NotANumber { found: String },
     /// Things that cannot be added or multiplied.
     #[error("{left} and {right} cannot be {verb}{}", if *.verb == "multiplied" { "; products of vectors are dot(a, b) and cross(a, b)" } else { "" })]
-    Shapes {
-        /// What was tried.
-        verb: &'static str,
-        /// What stands at the left.
-        left: String,
-        /// What stands at the right.
-        right: String,
-    },
+    Shapes { verb: &'static str, left: String, right: String },
     /// A list that is neither a vector nor a matrix.
     #[error("a vector has two or more numbers, a matrix two or more vectors of one length")]
     NoList,
     /// A function of vectors with something else.
     #[error("`{function}` takes {expected}, found {found}")]
-    WrongShape {
-        /// The function.
-        function: String,
-        /// What it takes.
-        expected: &'static str,
-        /// What was given.
-        found: String,
-    },
+    WrongShape { function: String, expected: &'static str, found: String },
     /// A component that there is not.
     #[error("{shape} has no component `{name}`; they are .x .y .z of a vector, .xx to .zz of a matrix")]
-    NoComponent {
-        /// What was asked for.
-        name: String,
-        /// Of what.
-        shape: String,
-    },
+    NoComponent { name: String, shape: String },
     /// Axes of a rotation that mean nothing, or not as many as angles.
     #[error("axes are some of the letters x, y and z with an angle each, as in rotation(zxz, psi, theta, phi); found `{letters}` and {found} angle{}", plural(*.found))]
-    Axes {
-        /// The axes.
-        letters: String,
-        /// The number of angles.
-        found: usize,
-    },
+    Axes { letters: String, found: usize },
     /// A derivative that cannot be written.
     #[error("this has no time derivative here: it contains a velocity, and its derivative would contain accelerations")]
     NoRate,
     /// A literal beyond the range of numbers.
     #[error("the number {} is out of range (about 1e-308 to 1e308)", shortened(.literal))]
-    NumberOutOfRange {
-        /// The literal.
-        literal: String,
-    },
+    NumberOutOfRange { literal: String },
     /// A divisor that is the number zero.
     #[error("division by zero")]
     DivisionByZero,
@@ -180,10 +105,7 @@ pub enum ParseErrorKind {
     NotFinite,
     /// More nested parentheses or powers than are accepted.
     #[error("more than {limit} nested parentheses or powers")]
-    TooDeep {
-        /// The greatest accepted depth.
-        limit: usize,
-    },
+    TooDeep { limit: usize },
 }
 
 impl ParseErrorKind {

@@ -5,6 +5,7 @@ use deltaq::SolveError;
 
 /// Why a scene cannot be put to the engine, or compared with it.
 #[derive(Debug, thiserror::Error)]
+#[expect(missing_docs, reason = "the messages say what fields are")]
 pub enum EngineError {
     /// The scene cannot be read.
     #[error(transparent)]
@@ -17,16 +18,7 @@ pub enum EngineError {
     Missing(String, String),
     /// At the start the body does not do what the scene says.
     #[error("scene `{scene}`: at the start the {what} of the rigid body is {body:e}, that of the scene {expected:e}")]
-    Mapping {
-        /// The scene.
-        scene: String,
-        /// The quantity.
-        what: &'static str,
-        /// Its value in the engine.
-        body: f64,
-        /// Its value in the scene.
-        expected: f64,
-    },
+    Mapping { scene: String, what: &'static str, body: f64, expected: f64 },
     /// Steps that do not fall onto the sampling times.
     #[error("{0} steps cannot be read off at {1} equidistant times")]
     Steps(usize, usize),

@@ -34,11 +34,11 @@ impl std::fmt::Display for Quantity {
 
 /// Why there is no start.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[expect(missing_docs, reason = "the messages say what fields are")]
 pub enum StartError {
     /// The given velocities, constraints and start equations leave some velocities open.
     #[error("too few start velocities: {} not determined by the given ones and the constraints{}; give more under [start.velocities], as in {}", listed(.velocities), idle_equations(.idle), lines(.velocities))]
     Undetermined {
-        /// Velocities among which more have to be given.
         velocities: Vec<String>,
         /// Numbers of start equations, from 1, that hold whenever all other conditions do.
         idle: Vec<usize>,
@@ -54,7 +54,6 @@ pub enum StartError {
         value: f64,
         /// The same relative to the size of its terms.
         residual: f64,
-        /// Largest residual that is accepted.
         limit: f64,
     },
     /// No velocities satisfy the constraints together with the given ones.
@@ -66,19 +65,16 @@ pub enum StartError {
         constraint: usize,
         /// Its residual at the least-squares point, relative to the size of its terms.
         residual: f64,
-        /// Largest residual that is accepted.
         limit: f64,
     },
     /// A constraint that is not linear has no real solution in the velocities that are left.
     #[error("no real {} satisfies constraint {constraint} with the given velocities: relative residual {residual:.3e} at best, limit {limit:.0e}", listed(.velocities))]
     NoRealSolution {
-        /// Velocities that were looked for.
         velocities: Vec<String>,
         /// Number of the constraint with the largest residual, from 1.
         constraint: usize,
         /// Its residual at the least-squares point, relative to the size of its terms.
         residual: f64,
-        /// Largest residual that is accepted.
         limit: f64,
     },
     /// Start equations for velocities that are to be projected.
@@ -86,20 +82,10 @@ pub enum StartError {
     ProjectedEquations,
     /// Constraints or start equations nonlinear in the velocities have several solutions.
     #[error("the constraints leave a choice of {}: {} or {}; choose by a [start.guess]", listed(.velocities), values(.first), values(.second))]
-    Ambiguous {
-        /// Velocities in question.
-        velocities: Vec<String>,
-        /// Their values in one solution.
-        first: Vec<f64>,
-        /// Their values in another.
-        second: Vec<f64>,
-    },
+    Ambiguous { velocities: Vec<String>, first: Vec<f64>, second: Vec<f64> },
     /// The equations for the start velocities are finite at none of the points tried.
     #[error("the equations for the start velocities are not finite at any of {points} points tried")]
-    NotSolved {
-        /// Points from which Newton's method was started.
-        points: usize,
-    },
+    NotSolved { points: usize },
     /// `A` has no full row rank.
     #[error("the constraints are dependent at the start: smallest singular value of the scaled constraint Jacobian {ratio:.1e} of the largest, limit {limit:.0e} (singular values {}){}", values(.singular_values), redundant(.combination))]
     DependentConstraints {
@@ -110,7 +96,6 @@ pub enum StartError {
         singular_values: Vec<f64>,
         /// Smallest over largest.
         ratio: f64,
-        /// Smallest ratio that is accepted.
         limit: f64,
     },
     /// `NᵀMN` is singular.
@@ -120,7 +105,6 @@ pub enum StartError {
         singular_values: Vec<f64>,
         /// Smallest over largest.
         ratio: f64,
-        /// Smallest ratio that is accepted.
         limit: f64,
     },
     /// Reactions along prescribed rows `W` cannot keep the constraints.
@@ -130,35 +114,22 @@ pub enum StartError {
         singular_values: Vec<f64>,
         /// Smallest over largest.
         ratio: f64,
-        /// Smallest ratio that is accepted.
         limit: f64,
     },
     /// Something is not finite at the start.
     #[error("{quantity} is not finite at the start: {value}")]
-    NotFinite {
-        /// What.
-        quantity: Quantity,
-        /// Its value.
-        value: f64,
-    },
+    NotFinite { quantity: Quantity, value: f64 },
     /// A parametrization cannot represent the start.
     #[error("removal `{removal}` cannot represent the start: relative residual {residual:.3e}, limit {limit:.0e}")]
     RemovalStart {
-        /// Name of the removal.
         removal: String,
         /// Smallest residual found, infinite if nothing was finite.
         residual: f64,
-        /// Largest residual that is accepted.
         limit: f64,
     },
     /// A state of the wrong length.
     #[error("{found} positions or velocities for a system with {expected} coordinates")]
-    WrongLength {
-        /// Length found.
-        found: usize,
-        /// Number of coordinates.
-        expected: usize,
-    },
+    WrongLength { found: usize, expected: usize },
     /// A velocity outside the constraint that cannot be moved onto it.
     #[error("the velocity cannot be projected onto the constraint: {0}")]
     Projection(NewtonError),

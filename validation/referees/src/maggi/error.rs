@@ -6,58 +6,36 @@ use thiserror::Error;
 /// The referee cannot answer.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
+#[expect(missing_docs, reason = "the messages say what fields are")]
 pub enum MaggiError {
     /// `L`, `f` or `Q` contains a name without a value, or something that is not finite.
     #[error("the system cannot be compiled: {0}")]
     Compile(#[from] CompileError),
     /// As many constraints as coordinates, or more: nothing is left to move.
     #[error("{found} constraints on {limit} coordinates leave no motion")]
-    NoFreedom {
-        /// Number of constraints, h.
-        found: usize,
-        /// Number of coordinates, n.
-        limit: usize,
-    },
+    NoFreedom { found: usize, limit: usize },
     /// A slice has the wrong length.
     #[error("the {what} have {found} components, the system has {expected} coordinates")]
-    Length {
-        /// Positions, velocities or accelerations.
-        what: &'static str,
-        /// Its length.
-        found: usize,
-        /// n.
-        expected: usize,
-    },
+    Length { what: &'static str, found: usize, expected: usize },
     /// A quantity is NaN or infinite.
     #[error("{what} is {found} at t = {t}")]
-    NotFinite {
-        /// Which quantity.
-        what: &'static str,
-        /// Its value.
-        found: f64,
-        /// Time.
-        t: f64,
-    },
+    NotFinite { what: &'static str, found: f64, t: f64 },
     /// The rows of `A` are linearly dependent (or one is zero).
     #[error(
         "the constraints are dependent at t = {t}: smallest over largest pivot of their Jacobian {found}, limit {limit}"
     )]
     DependentConstraints {
-        /// Time.
         t: f64,
         /// Smallest over largest diagonal entry of the QR of `Aᵀ`, rows of length 1; 0 for a zero row.
         found: f64,
-        /// [`super::PIVOT_LIMIT`].
         limit: f64,
     },
     /// `[NᵀM; A]` is singular: `M` does not determine the motion along the directions left.
     #[error("the accelerations are not determined at t = {t}: smallest over largest pivot {found}, limit {limit}")]
     Singular {
-        /// Time.
         t: f64,
         /// Smallest over largest diagonal entry of the QR factorization; 0 where `M` is 0.
         found: f64,
-        /// [`super::PIVOT_LIMIT`].
         limit: f64,
     },
     /// The start is not on the constraint.
@@ -65,7 +43,6 @@ pub enum MaggiError {
     OffConstraint {
         /// [`super::Maggi::constraint_residual`] there.
         found: f64,
-        /// [`super::START_LIMIT`].
         limit: f64,
     },
     /// The integrator refuses the call.
