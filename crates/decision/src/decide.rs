@@ -131,16 +131,6 @@ impl Decision {
         let reach = (1.0 + self.scaled(constants).norm_squared()).sqrt();
         verdict_on(self.mismatch_at(constants), reach, &self.sizes)
     }
-
-    /// The same question with only the constants `kept` (by their places), the others zero.
-    pub fn keeping(&self, kept: &[usize]) -> Decision {
-        let last = self.triangle.ncols() - 1;
-        let columns: Vec<usize> = kept.iter().copied().chain([last]).collect();
-        let triangle = compressed(self.triangle.select_columns(&columns));
-        let constants = kept.iter().map(|&i| self.constants[i].clone()).collect();
-        let columns = kept.iter().map(|&i| self.columns[i]).collect();
-        judge(triangle, self.sizes, self.until, constants, columns)
-    }
 }
 
 /// Decides whether a curve is a motion of `family` for some choice of the family's constants.

@@ -14,13 +14,6 @@ pub struct Number {
     pub error: f64,
 }
 
-impl Number {
-    /// How many errors it is from zero.
-    pub fn significance(self) -> f64 {
-        self.value.abs() / self.error
-    }
-}
-
 /// The estimates `θ` of `y = X θ` with a row of `X` and an entry of `y` a line, in the order of time, and
 /// their errors: `(XᵀX)⁻¹ (Σ s sᵀ) (XᵀX)⁻¹`, `s` the sum of `x r` over one of twenty blocks of neighbours. A
 /// column of zeros has no estimate; where columns are dependent within 1e-10, none has.

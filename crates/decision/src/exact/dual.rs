@@ -4,7 +4,7 @@ use std::ops::{Add, Mul, Neg, Sub};
 
 use symbolic::Function;
 
-use super::{Coefficient, Exact, Flaw, Modular};
+use super::{Coefficient, Entry, Exact, Flaw, Modular};
 
 /// `value + slope ε` with `ε² = 0`: as a coefficient of a series, that of its derivative stands beside it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -55,17 +55,8 @@ impl Mul for Dual {
     }
 }
 
-impl Coefficient for Dual {
+impl Entry for Dual {
     const ZERO: Self = Dual { value: Modular::ZERO, slope: Modular::ZERO };
-    const FOLLOWED: bool = true;
-
-    fn of(x: Exact) -> Result<Self, Flaw> {
-        Ok(Dual { value: Modular::of(x)?, slope: Modular::ZERO })
-    }
-
-    fn of_float(_: f64) -> Result<Self, Flaw> {
-        Err(Flaw::Number)
-    }
 
     fn inverse(self) -> Option<Self> {
         let over = self.value.inverse()?;
@@ -75,6 +66,18 @@ impl Coefficient for Dual {
     /// What is 0 and has a slope is no pivot, and is not 0.
     fn weight(self) -> f64 {
         if self.value.is_zero() { 0.5 * self.slope.weight() } else { 1.0 }
+    }
+}
+
+impl Coefficient for Dual {
+    const FOLLOWED: bool = true;
+
+    fn of(x: Exact) -> Result<Self, Flaw> {
+        Ok(Dual { value: Modular::of(x)?, slope: Modular::ZERO })
+    }
+
+    fn of_float(_: f64) -> Result<Self, Flaw> {
+        Err(Flaw::Number)
     }
 
     fn convolution(a: &[Self], b: &[Self]) -> Self {

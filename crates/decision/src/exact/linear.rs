@@ -1,17 +1,17 @@
-//! Small linear systems over any coefficients, and rows modulo a prime.
+//! Small linear systems over any entries, and rows modulo a prime.
 
-use super::{Coefficient, Modular};
+use super::{Entry, Modular};
 
 /// The inverse of a square matrix, and its determinant; `None` where it is singular.
-pub fn inverse<C: Coefficient>(matrix: &[C], size: usize, one: C) -> Option<(Vec<C>, C)> {
-    let mut right = vec![C::ZERO; size * size];
+pub fn inverse<E: Entry>(matrix: &[E], size: usize, one: E) -> Option<(Vec<E>, E)> {
+    let mut right = vec![E::ZERO; size * size];
     right.iter_mut().step_by(size + 1).for_each(|x| *x = one);
     let determinant = solve(&mut matrix.to_vec(), &mut right, size, size, one)?;
     Some((right, determinant))
 }
 
 /// Makes `right` (size×width) `matrix⁻¹ · right`, and says the determinant; `None` where that is zero.
-pub(crate) fn solve<C: Coefficient>(matrix: &mut [C], right: &mut [C], size: usize, width: usize, one: C) -> Option<C> {
+pub(crate) fn solve<E: Entry>(matrix: &mut [E], right: &mut [E], size: usize, width: usize, one: E) -> Option<E> {
     let mut determinant = one;
     let mut over_pivots = Vec::with_capacity(size);
     for column in 0..size {
@@ -42,7 +42,7 @@ pub(crate) fn solve<C: Coefficient>(matrix: &mut [C], right: &mut [C], size: usi
 }
 
 /// Subtracts `factor` times `row` from the row `from`, in the columns from `begin` on.
-fn subtract_row<C: Coefficient>(matrix: &mut [C], width: usize, begin: usize, from: usize, row: usize, factor: C) {
+fn subtract_row<E: Entry>(matrix: &mut [E], width: usize, begin: usize, from: usize, row: usize, factor: E) {
     let (low, high) = (from.min(row), from.max(row));
     let (above, below) = matrix.split_at_mut(high * width);
     let (above, below) = (&mut above[low * width + begin..(low + 1) * width], &mut below[begin..width]);
@@ -51,13 +51,7 @@ fn subtract_row<C: Coefficient>(matrix: &mut [C], width: usize, begin: usize, fr
 }
 
 /// `matrix · columns`, of sizes rows×inner and inner×width, added to `into` with a sign.
-pub(crate) fn subtract_product<C: Coefficient>(
-    into: &mut [C],
-    matrix: &[C],
-    columns: &[C],
-    inner: usize,
-    width: usize,
-) {
+pub(crate) fn subtract_product<E: Entry>(into: &mut [E], matrix: &[E], columns: &[E], inner: usize, width: usize) {
     for (row, into) in into.chunks_exact_mut(width).enumerate() {
         for j in 0..inner {
             let factor = matrix[row * inner + j];

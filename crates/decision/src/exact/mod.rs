@@ -1,4 +1,5 @@
-//! Truncated power series over a finite field, or `f64`, and the expressions of the graph evaluated on them.
+//! Truncated power series over a finite field, or over doubles that know their round-off, and the expressions of
+//! the graph evaluated on them.
 
 mod dual;
 mod field;
@@ -53,8 +54,8 @@ pub enum Flaw {
     Zero,
 }
 
-/// Coefficients of a power series.
-pub trait Coefficient:
+/// Entries of a linear system.
+pub trait Entry:
     Copy
     + std::fmt::Debug
     + std::ops::Add<Output = Self>
@@ -64,16 +65,20 @@ pub trait Coefficient:
 {
     /// 0.
     const ZERO: Self;
+    /// `None` for 0.
+    fn inverse(self) -> Option<Self>;
+    /// What a pivot is chosen by; 0 for 0.
+    fn weight(self) -> f64;
+}
+
+/// Coefficients of a power series.
+pub trait Coefficient: Entry {
     /// Whether functions of constants need these exactly.
     const FOLLOWED: bool;
     /// The image of an exact number.
     fn of(x: Exact) -> Result<Self, Flaw>;
     /// A double as it is.
     fn of_float(x: f64) -> Result<Self, Flaw>;
-    /// `None` for 0.
-    fn inverse(self) -> Option<Self>;
-    /// What a pivot is chosen by; 0 for 0.
-    fn weight(self) -> f64;
     /// `Σ a_i b_{m−1−i}`.
     fn convolution(a: &[Self], b: &[Self]) -> Self;
     /// `(sin x, cos x)`.
@@ -92,8 +97,47 @@ pub trait Coefficient:
     fn power(self, exact: Option<Exact>, exponent: Self) -> Result<Self, Flaw>;
 }
 
-impl Coefficient for Modular {
+impl Entry for f64 {
+    const ZERO: Self = 0.0;
+
+    fn inverse(self) -> Option<Self> {
+        (self != 0.0).then(|| 1.0 / self)
+    }
+
+    fn weight(self) -> f64 {
+        self.abs()
+    }
+}
+
+impl Entry for Modular {
     const ZERO: Self = Modular::ZERO;
+
+    fn inverse(self) -> Option<Self> {
+        Modular::inverse(self)
+    }
+
+    fn weight(self) -> f64 {
+        if self.is_zero() { 0.0 } else { 1.0 }
+    }
+}
+
+/// The weight of round-off among pivots.
+const ROUND_OFF: f64 = 1e-60;
+
+impl Entry for Bounded {
+    const ZERO: Self = Bounded { value: 0.0, magnitude: 0.0 };
+
+    fn inverse(self) -> Option<Self> {
+        (self.value != 0.0).then(|| Bounded::from_f64(1.0) / self)
+    }
+
+    fn weight(self) -> f64 {
+        // what may be round-off is a pivot only where nothing else is
+        if self.may_be_zero() { self.value.abs() * ROUND_OFF } else { self.value.abs() }
+    }
+}
+
+impl Coefficient for Modular {
     const FOLLOWED: bool = true;
 
     fn of(x: Exact) -> Result<Self, Flaw> {
@@ -103,14 +147,6 @@ impl Coefficient for Modular {
 
     fn of_float(_: f64) -> Result<Self, Flaw> {
         Err(Flaw::Number)
-    }
-
-    fn inverse(self) -> Option<Self> {
-        Modular::inverse(self)
-    }
-
-    fn weight(self) -> f64 {
-        if self.is_zero() { 0.0 } else { 1.0 }
     }
 
     fn convolution(a: &[Self], b: &[Self]) -> Self {
@@ -152,57 +188,8 @@ impl Coefficient for Modular {
     }
 }
 
-impl Coefficient for f64 {
-    const ZERO: Self = 0.0;
-    const FOLLOWED: bool = false;
-
-    fn of(x: Exact) -> Result<Self, Flaw> {
-        Ok(x.to_f64())
-    }
-
-    fn of_float(x: f64) -> Result<Self, Flaw> {
-        Ok(x)
-    }
-
-    fn inverse(self) -> Option<Self> {
-        (self != 0.0).then(|| 1.0 / self)
-    }
-
-    fn weight(self) -> f64 {
-        self.abs()
-    }
-
-    fn convolution(a: &[Self], b: &[Self]) -> Self {
-        a.iter().zip(b.iter().rev()).map(|(a, b)| a * b).sum()
-    }
-
-    fn sine_and_cosine(self, _: Option<Exact>) -> Result<(Self, Self), Flaw> {
-        Ok(self.sin_cos())
-    }
-
-    fn exponential(self, _: Option<Exact>) -> Result<Self, Flaw> {
-        Ok(self.exp())
-    }
-
-    fn root(self, _: Option<Exact>) -> Result<(Self, Option<Exact>), Flaw> {
-        Ok((self.sqrt(), None))
-    }
-
-    fn inverse_function(self, function: symbolic::Function, _: Option<Exact>) -> Result<(Self, Option<Exact>), Flaw> {
-        Ok((function.apply(self), None))
-    }
-
-    fn power(self, _: Option<Exact>, exponent: Self) -> Result<Self, Flaw> {
-        Ok(self.powf(exponent))
-    }
-}
-
-/// The weight of round-off among pivots.
-const ROUND_OFF: f64 = 1e-60;
-
 /// Numbers that know what of them may be round-off.
 impl Coefficient for Bounded {
-    const ZERO: Self = Bounded { value: 0.0, magnitude: 0.0 };
     const FOLLOWED: bool = false;
 
     fn of(x: Exact) -> Result<Self, Flaw> {
@@ -211,15 +198,6 @@ impl Coefficient for Bounded {
 
     fn of_float(x: f64) -> Result<Self, Flaw> {
         Ok(Bounded::from_f64(x))
-    }
-
-    fn inverse(self) -> Option<Self> {
-        (self.value != 0.0).then(|| Bounded::from_f64(1.0) / self)
-    }
-
-    fn weight(self) -> f64 {
-        // what may be round-off is a pivot only where nothing else is
-        if self.may_be_zero() { self.value.abs() * ROUND_OFF } else { self.value.abs() }
     }
 
     fn convolution(a: &[Self], b: &[Self]) -> Self {
