@@ -21,5 +21,4 @@ mod scaling;
 mod support;
 mod widths;
 
-/// The program.
 const PROGRAM: &str = env!("CARGO_BIN_EXE_evidence");

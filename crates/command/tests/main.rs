@@ -22,5 +22,4 @@ mod singularities;
 mod support;
 mod sweep;
 
-/// The program.
 const PROGRAM: &str = env!("CARGO_BIN_EXE_deltaq");

@@ -23,28 +23,21 @@ pub(crate) const NODES: [f64; STAGES] = [
     1.0, 0.1, 0.2, 0.7777777777777778,
 ];
 
-/// Stage 1.
 pub(crate) const STAGE_1: Row<1> = Row { from: [0], weight: [0.05260015195876773] };
 
-/// Stage 2.
 pub(crate) const STAGE_2: Row<2> = Row { from: [0, 1], weight: [0.0197250569845379, 0.0591751709536137] };
 
-/// Stage 3.
 pub(crate) const STAGE_3: Row<2> = Row { from: [0, 2], weight: [0.02958758547680685, 0.08876275643042054] };
 
-/// Stage 4.
 pub(crate) const STAGE_4: Row<3> =
     Row { from: [0, 2, 3], weight: [0.2413651341592667, -0.8845494793282861, 0.924834003261792] };
 
-/// Stage 5.
 pub(crate) const STAGE_5: Row<3> =
     Row { from: [0, 3, 4], weight: [0.037037037037037035, 0.17082860872947386, 0.12546768756682242] };
 
-/// Stage 6.
 pub(crate) const STAGE_6: Row<4> =
     Row { from: [0, 3, 4, 5], weight: [0.037109375, 0.17025221101954405, 0.06021653898045596, -0.017578125] };
 
-/// Stage 7.
 pub(crate) const STAGE_7: Row<5> = Row {
     from: [0, 3, 4, 5, 6],
     weight: [
@@ -56,7 +49,6 @@ pub(crate) const STAGE_7: Row<5> = Row {
     ],
 };
 
-/// Stage 8.
 pub(crate) const STAGE_8: Row<6> = Row {
     from: [0, 3, 4, 5, 6, 7],
     weight: [
@@ -69,7 +61,6 @@ pub(crate) const STAGE_8: Row<6> = Row {
     ],
 };
 
-/// Stage 9.
 pub(crate) const STAGE_9: Row<7> = Row {
     from: [0, 3, 4, 5, 6, 7, 8],
     weight: [
@@ -83,7 +74,6 @@ pub(crate) const STAGE_9: Row<7> = Row {
     ],
 };
 
-/// Stage 10.
 pub(crate) const STAGE_10: Row<8> = Row {
     from: [0, 3, 4, 5, 6, 7, 8, 9],
     weight: [
@@ -98,7 +88,6 @@ pub(crate) const STAGE_10: Row<8> = Row {
     ],
 };
 
-/// Stage 11.
 pub(crate) const STAGE_11: Row<9> = Row {
     from: [0, 3, 4, 5, 6, 7, 8, 9, 10],
     weight: [

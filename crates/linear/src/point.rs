@@ -31,7 +31,6 @@ const CANCELLED: f64 = 1e4;
 const ROUND_OFF: f64 = 64.0 * f64::EPSILON;
 
 impl Point {
-    /// The start.
     pub(crate) fn start(setting: Setting, choice: &Choice) -> Result<Point, LinearError> {
         // an implicit method: the Jacobian is compiled, and no Taylor series
         let settings = Settings { method: Some(Method::Radau5), plain: true, ..Settings::default() };

@@ -71,7 +71,6 @@ impl Interval {
     }
 }
 
-/// The measure of a value.
 pub(super) fn measure(scale: Scale, value: f64) -> Result<f64, LeftOut> {
     if !value.is_finite() || value.abs() > LARGEST {
         return Err(LeftOut::NotFinite);

@@ -9,7 +9,6 @@ use mechanics::ConstantsRule;
 use super::context::Context;
 use random::equations;
 
-/// Instants.
 const INSTANTS: usize = 20;
 
 /// Half the distance of the velocities whose difference is an acceleration.

@@ -68,7 +68,6 @@ impl Context {
         self.found.get_mut().remove(&format!("{name}'"));
     }
 
-    /// Adds a constant.
     pub(super) fn add_constant(&mut self, name: &str) {
         self.constants.insert(name.into());
     }

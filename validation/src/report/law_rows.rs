@@ -71,7 +71,6 @@ fn exponents(before: Option<&Row>, row: &Row) -> [String; 3] {
     [0, 1, 2].map(|i| if row.distances[i].is_finite() { format!("{:.2}", rate(i)) } else { String::new() })
 }
 
-/// The table.
 pub(super) fn table(rows: &[Row]) -> Table {
     let columns = ["scene", ">$\\kappa$", ">Chetaev – family", ">as", ">law – family", ">as", ">Chetaev – slip", ">as"];
     let mut table = Table::new(columns);

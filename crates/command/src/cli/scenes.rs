@@ -19,7 +19,6 @@ pub struct SceneArguments {
 }
 
 impl SceneArguments {
-    /// The scene.
     pub(crate) fn find(&self) -> Result<Scene, NotFound> {
         catalogue::find(&self.scene, &self.set.overrides)
     }
