@@ -2,13 +2,12 @@
 //! one another, and against the sum `∫ (δL + Q·δq) dt` itself.
 
 use deltaq::{
-    Answer, CHETAEV, KAPPA, REDUCED_VAKONOMIC, REMOVED_CONSTRAINT, VAKONOMIC, VAKONOMIC_COSTATE, costates_of,
-    membership,
+    Answer, CHETAEV, REDUCED_VAKONOMIC, REMOVED_CONSTRAINT, VAKONOMIC, VAKONOMIC_COSTATE, costates_of, membership,
 };
-use equations::{Compiled, Derivation, Equations, Role};
-use mechanics::{Parameter, Removal, System};
+use equations::{Compiled, Derivation, Role};
+use mechanics::Removal;
 use scene::Scene;
-use symbolic::{Evaluator, SplitMix, Symbol};
+use symbolic::{Evaluator, Symbol};
 use validation::casadi_job::forced;
 
 use super::support::{
@@ -67,44 +66,6 @@ fn disc_with_a_motor() {
     let worst =
         (0..=20).map(|i| f64::from(i) / 2.0).map(|t| largest_difference(&at(&mut motion, t).coordinates[2..], &far(t)));
     must("disc with a motor, removed constraint", worst.fold(0.0, f64::max), 1e-9);
-}
-
-/// Rates of the states that both have, at random states.
-fn rates_apart(scene: &Scene, one: &Equations, two: &Equations) -> f64 {
-    let mut random = SplitMix::new(7);
-    let (mut first, mut second) = (Compiled::new(one).expect("compiles"), Compiled::new(two).expect("compiles"));
-    let names = |e: &Equations| e.states.iter().map(|y| e.graph.name(y.symbol)).collect::<Vec<_>>();
-    assert_eq!(names(one), names(two), "{}", scene.name);
-    let base = [&scene.start.q[..], &scene.start.v, &some_multipliers(scene)].concat();
-    let (mut a, mut b, mut worst, mut count) = (vec![0.0; base.len()], vec![0.0; base.len()], 0.0_f64, 0);
-    for _ in 0..50 {
-        let y: Vec<f64> = base.iter().map(|x| x + 0.2 * (2.0 * random.unit() - 1.0)).collect();
-        let t = scene.start.t + random.unit();
-        if first.rates(t, &y, &mut a).is_ok() && second.rates(t, &y, &mut b).is_ok() && a.iter().all(|x| x.is_finite())
-        {
-            let size = a.iter().fold(1.0_f64, |m, x| m.max(x.abs()));
-            worst = worst.max(largest_difference(&a, &b) / size);
-            count += 1;
-        }
-    }
-    assert!(count > 25, "{}: {count} states", scene.name);
-    worst
-}
-
-fn with_parameter(system: &System, name: &str, value: f64) -> System {
-    let mut with = system.clone();
-    with.parameters.push(Parameter { symbol: with.graph.symbol(name), value });
-    with
-}
-
-#[test]
-fn the_family_between_begins_with_the_vakonomic_equations() {
-    for scene in scenes().iter().filter(|s| !s.system.constraints.is_empty()) {
-        let kappa = (KAPPA.derive)(&with_parameter(&scene.system, "kappa", 0.0), &Derivation::default());
-        let plain = (VAKONOMIC.derive)(&scene.system, &Derivation::default()).expect("equations");
-        let apart = rates_apart(scene, &plain, &kappa.unwrap_or_else(|e| panic!("{}: {e}", scene.name)));
-        must(&format!("{}: kappa = 0 and vakonomic", scene.name), apart, 1e-12);
-    }
 }
 
 #[test]

@@ -1,12 +1,12 @@
 //! Reactions of one's own: `E = Q + Wᵀλ`, `f = 0`, against motions by hand.
 
-use deltaq::{CHETAEV, PRESCRIBED, SolveError};
+use deltaq::{PRESCRIBED, SolveError};
 use mechanics::StartError;
 use scene::Scene;
 
 use super::support::{
-    at, chetaev, choice, complete, constrained_scenes, equations, error, index, largest_difference, motion_of, must,
-    must_exceed, parameter, scene, tight,
+    at, chetaev, choice, complete, equations, error, index, largest_difference, motion_of, must, must_exceed,
+    parameter, scene, tight,
 };
 
 fn prescribed(scene: &Scene) -> deltaq::Motion {
@@ -93,26 +93,6 @@ fn skate_kept_on_course_from_its_stern() {
     must("rudder skate", course, 1e-10);
     must("rudder skate: reaction", reaction, 1e-8);
     assert!(motion.equations.invariants.is_empty(), "the reaction does work: {:?}", motion.equations.invariants);
-}
-
-#[test]
-fn rows_of_the_constraints_are_chetaev_to_the_last_bit() {
-    for scene in constrained_scenes() {
-        let mut system = scene.system.clone();
-        system.virtual_conditions = system.constraints.clone();
-        let own = Scene { system, ..scene.clone() };
-        let mut first = motion_of(&own, equations(&own.system, PRESCRIBED, None), &[], &tight());
-        let mut second = motion_of(&scene, equations(&scene.system, CHETAEV, None), &[], &tight());
-        assert_eq!(first.end().to_bits(), second.end().to_bits(), "{}", scene.name);
-        for t in super::support::common_times(&[&first, &second]) {
-            let (one, two) = (at(&mut first, t), at(&mut second, t));
-            let bits = |x: &equations::Outputs| {
-                let all = [&x.coordinates[..], &x.velocities, &x.multipliers].concat();
-                all.into_iter().map(f64::to_bits).collect::<Vec<_>>()
-            };
-            assert_eq!(bits(&one), bits(&two), "{} at {t}", scene.name);
-        }
-    }
 }
 
 #[test]
