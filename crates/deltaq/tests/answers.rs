@@ -3,16 +3,12 @@
 use decision::{AffineSet, Finding, NoConstants, Verdict};
 use deltaq::words::{Headline, decisions, sentence};
 use deltaq::{
-    Answer, CHETAEV, Comparison, Fit, FittedMotion, Gap, Membership, Section, Settings, Sweep, VAKONOMIC, choices,
+    Answer, CHETAEV, Comparison, Fit, FittedMotion, Gap, Membership, Section, Settings, Sweep, VAKONOMIC,
     choices_among, compare_unfitted,
 };
 use scene::Scene;
 
-fn compared(name: &str, text: &str) -> Comparison {
-    let scene = Scene::parse(name, text).expect("a scene");
-    let choices = choices(&scene);
-    compare_unfitted(scene, choices, Vec::new(), &Settings::default()).expect("a comparison")
-}
+use crate::support::compared;
 
 fn membership(comparison: &mut Comparison) -> &mut Membership {
     let asked = (comparison.run(VAKONOMIC), comparison.run(CHETAEV));

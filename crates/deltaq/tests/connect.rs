@@ -1,31 +1,20 @@
 //! Two-point problems against closed forms, and against collocation of equations by hand.
 
 use crate::collocation::{Rates, flow, two_points};
-use deltaq::{
-    Aim, CHETAEV, Choice, Connections, REMOVED_CONSTRAINT, Settings, SolveError, VAKONOMIC, choices, connect,
-};
+use crate::support::{built_in, choice};
+use deltaq::{Aim, CHETAEV, Choice, Connections, REMOVED_CONSTRAINT, Settings, SolveError, VAKONOMIC, connect};
 use equations::Formulation;
 use integrate::Interrupt;
 use mechanics::ConstantsRule;
 use nalgebra::DMatrix;
 use scene::Scene;
 
-fn scene(name: &str) -> Scene {
-    let path = format!("{}/../catalogue/scenes/{name}.toml", env!("CARGO_MANIFEST_DIR"));
-    let text = std::fs::read_to_string(path).expect("a scene");
-    Scene::parse(name, &text).unwrap_or_else(|error| panic!("{name}: {error}"))
-}
-
-fn choice(scene: &Scene, formulation: &Formulation) -> Choice {
-    choices(scene).into_iter().find(|c| c.formulation == formulation).expect("it is there")
-}
-
 fn aim(to: &[(&str, f64)], t: f64, starts: usize) -> Aim {
     Aim { t, to: to.iter().map(|(name, q)| (name.to_string(), *q)).collect(), starts, threads: 1 }
 }
 
 fn found(name: &str, formulation: &Formulation, aim: &Aim) -> Connections {
-    let scene = scene(name);
+    let scene = built_in(name);
     let found = connect(&scene, &choice(&scene, formulation), aim, &Settings::default()).expect("a search");
     let led = found.found.iter().map(|motion| motion.starts).sum::<usize>();
     assert_eq!(led + found.failures.iter().map(|failure| failure.1).sum::<usize>(), aim.starts);
@@ -230,7 +219,7 @@ fn an_oscillator_has_a_conjugate_time_of_multiplicity_two() {
 fn a_removal_by_coordinates_has_the_vakonomic_motions() {
     let goal = aim(&[("x", 0.2), ("y", 0.5), ("z", 0.3)], 8.0, 30);
     let vakonomic = found("heisenberg", VAKONOMIC, &goal);
-    let scene = scene("heisenberg");
+    let scene = built_in("heisenberg");
     let removal = Choice { constants: ConstantsRule::Given(vec![-0.5]), ..choice(&scene, REMOVED_CONSTRAINT) };
     let removed = connect(&scene, &removal, &goal, &Settings::default()).expect("a search");
     assert_eq!(removed.unknowns, ["x'", "y'", "P0_z"]);
@@ -244,7 +233,7 @@ fn a_removal_by_coordinates_has_the_vakonomic_motions() {
 
 #[test]
 fn what_makes_no_sense_is_refused() {
-    let scene = scene("heisenberg");
+    let scene = built_in("heisenberg");
     let refused = |aim: &Aim, settings: &Settings| match connect(&scene, &choice(&scene, VAKONOMIC), aim, settings) {
         Err(error) => error,
         Ok(_) => panic!("{aim:?} should be refused"),

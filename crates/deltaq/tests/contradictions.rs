@@ -2,18 +2,12 @@
 
 use decision::{Finding, NoConstants};
 use deltaq::words::Headline;
-use deltaq::{
-    CHETAEV, Comparison, REMOVED_CONSTRAINT, Settings, VAKONOMIC, Verdict, choices, compare, compare_unfitted,
-};
+use deltaq::{CHETAEV, Comparison, REMOVED_CONSTRAINT, Settings, VAKONOMIC, Verdict, choices, compare};
 use equations::Formulation;
 use mechanics::Integrability;
 use scene::Scene;
 
-fn compared(name: &str, text: &str) -> Comparison {
-    let scene = Scene::parse(name, text).expect("a scene");
-    let choices = choices(&scene);
-    compare_unfitted(scene, choices, Vec::new(), &Settings::default()).expect("a comparison")
-}
+use crate::support::compared;
 
 /// Nonintegrable; no multipliers give Chetaev's motion.
 fn sledge() -> Comparison {

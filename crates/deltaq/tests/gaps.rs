@@ -7,14 +7,14 @@ use deltaq::{
 use equations::Formulation;
 use scene::Scene;
 
+use crate::support;
+
 fn scene(text: &str) -> Scene {
-    Scene::parse("gaps", text).unwrap_or_else(|e| panic!("{e}"))
+    support::read("gaps", text)
 }
 
 fn compared(text: &str) -> Comparison {
-    let scene = scene(text);
-    let choices = choices(&scene);
-    compare_unfitted(scene, choices, Vec::new(), &Settings::default()).expect("compared")
+    support::compared("gaps", text)
 }
 
 /// A scene with these coordinates and starts, its system and the velocities that are given.

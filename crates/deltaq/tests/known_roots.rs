@@ -1,7 +1,9 @@
 //! Members whose equations of the instant have several roots: `p = v³ − v`, from v = 1.05 to about 3.
 
-use deltaq::{Choice, Ensemble, EnsembleOptions, MemberMotion, Settings, VAKONOMIC_COSTATE, choices, solve_choice};
+use deltaq::{Settings, VAKONOMIC_COSTATE, solve_choice};
 use scene::Scene;
+
+use crate::support::{choice, member, read};
 
 /// `p' = 12`, where `2 half` is added up to it.
 fn scene(half: f64) -> Scene {
@@ -11,24 +13,15 @@ fn scene(half: f64) -> Scene {
          forces = {{ x = \"12 + {half:?} - {half:?}*cos(1e-14*x)\" }}\n[start.velocities]\n\"x'\" = 1.05\n\
          [run]\nduration = 2\n"
     );
-    Scene::parse("roots", &text).unwrap_or_else(|e| panic!("{text}: {e}"))
-}
-
-fn choice(scene: &Scene) -> Choice {
-    choices(scene).into_iter().find(|c| c.formulation == VAKONOMIC_COSTATE).expect("a choice")
-}
-
-fn member(scene: &Scene, times: &[f64]) -> MemberMotion {
-    let mut ensemble = Ensemble::new(scene, &choice(scene), &[], &Settings::default()).expect("an ensemble");
-    let members = vec![ensemble.member(&[]).expect("a member")];
-    let options = EnsembleOptions { threads: 1, estimate: true };
-    ensemble.motions(&members, times, &options).remove(0).expect("a motion")
+    read("roots", &text)
 }
 
 #[test]
 fn members_are_read_off_on_the_root_of_their_motion() {
     let times = [0.5, 1.0, 1.5, 2.0];
-    for (t, outputs) in times.into_iter().zip(member(&scene(0.0), &times).outputs) {
+    let scene = scene(0.0);
+    let member = member(&scene, &choice(&scene, VAKONOMIC_COSTATE), &times);
+    for (t, outputs) in times.into_iter().zip(member.outputs) {
         let (v, p) = (outputs.velocities[0], 1.05_f64.powi(3) - 1.05 + 12.0 * t);
         assert!(v > 1.0 && (v.powi(3) - v - p).abs() < 1e-9 * p, "{t}: {v}");
     }
@@ -41,11 +34,12 @@ fn members_are_read_off_on_the_root_of_their_motion() {
 fn round_off_is_told_on_the_root_of_the_motion() {
     let scene = scene(1e5);
     let known = 4e5 * f64::EPSILON;
-    let member = member(&scene, &[0.5, 1.0, 1.5, 2.0]);
+    let choice = choice(&scene, VAKONOMIC_COSTATE);
+    let member = member(&scene, &choice, &[0.5, 1.0, 1.5, 2.0]);
     let apart = member.run.differences.last().expect("the end");
     let largest = apart.iter().fold(0.0_f64, |a, d| a.max(d.abs()));
     assert!((0.6 * known..1.1 * known).contains(&largest), "{apart:?}, {known:e}");
-    let mut motion = solve_choice(&scene, &choice(&scene), &Settings::default()).expect("a motion");
+    let mut motion = solve_choice(&scene, &choice, &Settings::default()).expect("a motion");
     let (kept, looser) = motion.at_in_both_runs(2.0).expect("the end");
     let v = kept.velocities[0];
     let found = (v - looser.velocities[0]).abs() * (3.0 * v * v - 1.0);

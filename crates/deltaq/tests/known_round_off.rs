@@ -10,6 +10,8 @@ use deltaq::{
 };
 use scene::Scene;
 
+use crate::support;
+
 const EPS: f64 = f64::EPSILON;
 
 /// A particle at this speed under this force, from x = 0 up to this time.
@@ -18,7 +20,7 @@ fn particle(force: &str, speed: f64, duration: f64) -> Scene {
         "title = \"free\"\n[coordinates]\nx = {{ start = 0 }}\n[system]\nlagrangian = \"x'^2/2\"\n\
          forces = {{ x = \"{force}\" }}\n[start.velocities]\n\"x'\" = {speed:?}\n[run]\nduration = {duration:?}\n"
     );
-    Scene::parse("free", &text).unwrap_or_else(|e| panic!("{text}: {e}"))
+    support::read("free", &text)
 }
 
 fn motion(scene: &Scene) -> Motion {
@@ -27,11 +29,8 @@ fn motion(scene: &Scene) -> Motion {
 
 /// The motion as a member of an ensemble, looked at at these parts of the run.
 fn member(scene: &Scene, parts: &[f64]) -> MemberMotion {
-    let mut ensemble = Ensemble::new(scene, &choices(scene)[0], &[], &Settings::default()).expect("an ensemble");
-    let members = vec![ensemble.member(&[]).expect("a member")];
     let times: Vec<f64> = parts.iter().map(|part| scene.start.t + part * scene.duration).collect();
-    let mut motions = ensemble.motions(&members, &times, &EnsembleOptions { threads: 1, estimate: true });
-    motions.remove(0).expect("a motion")
+    support::member(scene, &choices(scene)[0], &times)
 }
 
 /// What the runs are apart by in the velocity at the end, kept minus looser, single and as a member.

@@ -1,36 +1,29 @@
 //! Round-off of known size in motions that stop, begin late, or have constants; single and as members.
 
-use deltaq::{Choice, Ensemble, EnsembleOptions, MemberMotion, Motion, Settings, VAKONOMIC, choices, solve_choice};
+use deltaq::{Choice, Motion, Settings, VAKONOMIC, choices, solve_choice};
 use scene::Scene;
+
+use crate::support::{member, read};
 
 const EPS: f64 = f64::EPSILON;
 
-fn parsed(text: &str) -> Scene {
-    Scene::parse("known", text).unwrap_or_else(|e| panic!("{text}: {e}"))
-}
-
 fn motion(scene: &Scene, choice: &Choice) -> Motion {
     solve_choice(scene, choice, &Settings::default()).expect("a motion")
-}
-
-/// The motion as a member of an ensemble, looked at at these times.
-fn member(scene: &Scene, choice: &Choice, times: &[f64]) -> MemberMotion {
-    let mut ensemble = Ensemble::new(scene, choice, &[], &Settings::default()).expect("an ensemble");
-    let members = vec![ensemble.member(&[]).expect("a member")];
-    let options = EnsembleOptions { threads: 1, estimate: true };
-    ensemble.motions(&members, times, &options).remove(0).expect("a motion")
 }
 
 /// `x' = 1/(1 − t)` stops at 1; `6·10⁷ (t/b)²⁰⁰` is added up to the rate of `z'`, which is 0 and rises at b.
 #[test]
 fn round_off_of_the_last_tenth_before_a_stop_does_not_count() {
     for (rise, doubted) in [(0.8, true), (0.95, false)] {
-        let scene = parsed(&format!(
-            "title = \"stops\"\n[coordinates]\nx = {{ start = 0 }}\nz = {{ start = 0 }}\n[system]\n\
+        let scene = read(
+            "known",
+            &format!(
+                "title = \"stops\"\n[coordinates]\nx = {{ start = 0 }}\nz = {{ start = 0 }}\n[system]\n\
              lagrangian = \"(x'^2 + z'^2)/2\"\n\
              forces = {{ x = \"x'^2\", z = \"6e7*(1 - cos(1e-14*z))*(t/{rise})^200\" }}\n[start.velocities]\n\
              \"x'\" = 1\n\"z'\" = 1\n[run]\nduration = 2\n"
-        ));
+            ),
+        );
         let choice = &choices(&scene)[0];
         let single = motion(&scene, choice);
         assert!(!single.is_complete() && (single.end() - 1.0).abs() < 1e-3, "{:?}", single.ending);
@@ -44,7 +37,8 @@ fn round_off_of_the_last_tenth_before_a_stop_does_not_count() {
 /// Heisenberg's vakonomic motion, and beside it `s' = 1`, to whose rate 1500 is added up.
 #[test]
 fn a_run_with_round_off_in_its_rates_has_the_start_and_the_constants_of_the_other() {
-    let scene = parsed(
+    let scene = read(
+        "known",
         "title = \"turns\"\n[coordinates]\nx = { start = 0.5 }\ny = { start = 0 }\nz = { start = 0 }\ns = { start = 1 }\n\
          [system]\nlagrangian = \"(x'^2 + y'^2 + s'^2)/2\"\nconstraints = [\"z' - (x*y' - y*x')/2\"]\n\
          forces = { s = \"750 - 750*cos(1e-14*s)\" }\n[start.velocities]\n\"x'\" = 1\n\"y'\" = 0\n\"s'\" = 1\n\
@@ -64,11 +58,14 @@ fn a_run_with_round_off_in_its_rates_has_the_start_and_the_constants_of_the_othe
 #[test]
 fn a_state_of_a_member_is_as_large_as_it_becomes_within_the_run() {
     for time in [0.0, 1000.0] {
-        let scene = parsed(&format!(
-            "title = \"late\"\n[coordinates]\nx = {{ start = 0 }}\n[system]\nlagrangian = \"x'^2/2\"\n\
+        let scene = read(
+            "known",
+            &format!(
+                "title = \"late\"\n[coordinates]\nx = {{ start = 0 }}\n[system]\nlagrangian = \"x'^2/2\"\n\
              forces = {{ x = \"1e10 + 1 - 1e10*cos(1e-14*x)\" }}\n[start]\ntime = {time:?}\n[start.velocities]\n\
              \"x'\" = 0\n[run]\nduration = 1e-3\n"
-        ));
+            ),
+        );
         let member = member(&scene, &choices(&scene)[0], &[time + 0.5e-3, time + 1e-3]);
         assert!(member.doubt.is_some(), "{time}");
     }
@@ -77,7 +74,8 @@ fn a_state_of_a_member_is_as_large_as_it_becomes_within_the_run() {
 /// `λ = 1 − x'`, which is 0, of an `x'` to which 200 was added up within the run: too little to be put in.
 #[test]
 fn round_off_of_a_multiplier_is_that_of_its_instant() {
-    let scene = parsed(
+    let scene = read(
+        "known",
         "title = \"held\"\n[coordinates]\nx = { start = 0 }\ny = { start = 0 }\n[system]\n\
          lagrangian = \"(x'^2 + y'^2)/2\"\nconstraints = [\"y'\"]\n\
          forces = { x = \"50 - 50*cos(1e-14*x)\", y = \"x' - 1\" }\n[start.velocities]\n\"x'\" = 1\n\

@@ -26,5 +26,6 @@ mod sensitivities;
 mod sentences;
 mod silent;
 mod steep;
+mod support;
 mod switches;
 mod walls;

@@ -1,19 +1,10 @@
 //! A motion as a function of numbers: against a closed form and differences, and what is no motion.
 
-use deltaq::{CHETAEV, Choice, Model, Settings, SolveError, VAKONOMIC, choices};
-use equations::Formulation;
+use deltaq::{CHETAEV, Choice, Model, Settings, SolveError, VAKONOMIC};
 use integrate::Method;
 use mechanics::ConstantsRule;
-use scene::Scene;
 
-fn sledge() -> Scene {
-    let path = format!("{}/../catalogue/scenes/sledge.toml", env!("CARGO_MANIFEST_DIR"));
-    Scene::parse("sledge", &std::fs::read_to_string(path).expect("a scene")).unwrap_or_else(|error| panic!("{error}"))
-}
-
-fn choice(scene: &Scene, formulation: &Formulation) -> Choice {
-    choices(scene).into_iter().find(|c| c.formulation == formulation).expect("it is there")
-}
+use crate::support::{built_in, choice};
 
 /// x of Chetaev's sledge, which turns at the rate ω and runs at u = u₀ + (a/ω)(sin φ − sin φ₀): with
 /// c = (sin φ − sin φ₀)/ω it is u₀ c + a c²/2, a = g sin α.
@@ -25,7 +16,7 @@ fn x(g: f64, omega: f64, t: f64) -> f64 {
 
 #[test]
 fn chetaevs_sledge_has_its_closed_form_at_any_numbers() {
-    let scene = sledge();
+    let scene = built_in("sledge");
     let times = [0.0, 1.0, 2.5];
     for method in [None, Some(Method::Dop853)] {
         let settings = Settings { method, ..Settings::default() };
@@ -51,7 +42,7 @@ fn chetaevs_sledge_has_its_closed_form_at_any_numbers() {
 
 #[test]
 fn no_numbers_are_an_error() {
-    let scene = sledge();
+    let scene = built_in("sledge");
     let given = Choice { constants: ConstantsRule::Given(vec![0.2]), ..choice(&scene, VAKONOMIC) };
     let settings = Settings { max_steps: 40, ..Settings::default() };
     let mut model = Model::new(&scene, &given, &["g", "mu0_1"], &[0.1, 1.0], &settings).expect("a model");
@@ -69,7 +60,7 @@ fn no_numbers_are_an_error() {
 
 #[test]
 fn what_makes_no_sense_is_refused() {
-    let scene = sledge();
+    let scene = built_in("sledge");
     let natural = Choice { constants: ConstantsRule::Natural { horizon: 10.0 }, ..choice(&scene, VAKONOMIC) };
     let refused = |choice: &Choice, times: &[f64], method: Option<Method>| {
         let settings = Settings { method, ..Settings::default() };

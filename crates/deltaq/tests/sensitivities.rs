@@ -9,11 +9,7 @@ use integrate::Method;
 use mechanics::ConstantsRule;
 use scene::Scene;
 
-fn built_in(name: &str) -> String {
-    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../catalogue/");
-    let read = |kind: &str| std::fs::read_to_string(format!("{folder}{kind}/{name}.toml"));
-    read("scenes").or_else(|_| read("classics")).unwrap_or_else(|error| panic!("{name}: {error}"))
-}
+use crate::support::{built_in, text_of};
 
 fn scene(name: &str, text: &str, overrides: &[(String, f64)]) -> Scene {
     Scene::parse_with(name, text, overrides).unwrap_or_else(|error| panic!("{name}: {error}"))
@@ -72,7 +68,7 @@ fn sledge([g, alpha, phi0, speed, omega]: [f64; 5], t: f64) -> Vec<f64> {
 
 #[test]
 fn the_sledge_has_the_derivatives_of_its_closed_form() {
-    let scene = scene("sledge", &built_in("sledge"), &[]);
+    let scene = built_in("sledge");
     let parameter = |name: &str| {
         let symbol = scene.system.graph.find_symbol(name);
         scene.system.parameters.iter().find(|p| Some(p.symbol) == symbol).unwrap().value
@@ -120,7 +116,7 @@ fn difference(h: f64, mut f: impl FnMut(f64) -> Vec<f64>) -> Vec<f64> {
 
 #[test]
 fn more_than_eight_numbers_and_what_is_refused() {
-    let scene = scene("sledge", &built_in("sledge"), &[]);
+    let scene = built_in("sledge");
     let choice = &choices(&scene)[0];
     let names = ["g", "alpha", "x", "y", "phi", "x'", "phi'", "k"];
     let known: Vec<&str> = names.into_iter().filter(|name| scene.starts(&[name]).is_ok()).collect();
@@ -145,7 +141,7 @@ fn more_than_eight_numbers_and_what_is_refused() {
 
 #[test]
 fn natural_constants_move_with_the_numbers() {
-    let scene = scene("sledge", &built_in("sledge"), &[]);
+    let scene = built_in("sledge");
     let mut choice = choices(&scene).into_iter().find(|c| c.removal.is_some()).unwrap();
     let horizon = 2.0;
     choice.constants = ConstantsRule::Natural { horizon };
@@ -153,7 +149,7 @@ fn natural_constants_move_with_the_numbers() {
     for (k, name) in ["g", "phi'"].into_iter().enumerate() {
         let value = if name == "g" { 9.81 } else { scene.start.v[2] };
         let expected = difference(0.01, |step| {
-            let other = Scene::parse_with("sledge", &built_in("sledge"), &[(name.to_string(), value + step)]).unwrap();
+            let other = Scene::parse_with("sledge", &text_of("sledge"), &[(name.to_string(), value + step)]).unwrap();
             let removal = choices(&other).into_iter().find(|c| c.label == choice.label).unwrap();
             let removal = Choice { constants: ConstantsRule::Natural { horizon }, ..removal };
             let settings = Settings { tolerance: 1e-13, ..Settings::default() };

@@ -1,8 +1,9 @@
 //! High powers, saws and quotients in forces and constraints: never wrong in silence, alone or in lanes.
 
-use deltaq::{CHETAEV, Choice, Ensemble, EnsembleOptions, Settings, choices, error_estimate, setting, solve_choice};
+use deltaq::{CHETAEV, Settings, choices, error_estimate, setting, solve_choice};
 use integrate::Method;
-use scene::Scene;
+
+use crate::support::{choice, ends, read};
 
 /// Panels of the quadrature: the jumps of all saws are at their edges.
 const PANELS: usize = 5040;
@@ -75,48 +76,13 @@ fn cases() -> Vec<(String, f64)> {
     cases
 }
 
-/// What became of a motion: x at 1 with its estimate, or why that is not to be trusted.
-type Found = Result<(f64, f64), String>;
-
-fn alone(scene: &Scene, choice: &Choice, method: Option<Method>) -> Found {
-    let settings = Settings { method, ..Settings::default() };
-    let mut motion = solve_choice(scene, choice, &settings).map_err(|e| e.to_string())?;
-    let estimate = error_estimate(&mut motion, setting(scene)).expect("in range");
-    match estimate.status(&motion) {
-        ("completed", _) => Ok((motion.at(1.0).expect("in range").coordinates[0], estimate.coordinates[0])),
-        (_, cause) => Err(cause.unwrap_or_default()),
-    }
-}
-
-/// Two members, which are to be the same.
-fn in_lanes(scene: &Scene, choice: &Choice) -> Found {
-    let mut ensemble = Ensemble::new(scene, choice, &[], &Settings::default()).map_err(|e| e.to_string())?;
-    let members = vec![ensemble.member(&[])?; 2];
-    let found = ensemble.motions(&members, &[0.5, 1.0], &EnsembleOptions::default()).into_iter().map(|motion| {
-        let motion = motion.map_err(|e| e.to_string())?;
-        match motion.status() {
-            ("completed", _) => {
-                let estimate = motion.estimate.as_ref().expect("an estimate").coordinates[0];
-                Ok((motion.outputs[1].coordinates[0], estimate))
-            }
-            (_, cause) => Err(cause.unwrap_or_default()),
-        }
-    });
-    let found: Vec<Found> = found.collect();
-    assert_eq!(found[0], found[1]);
-    found[0].clone()
-}
-
 #[test]
 fn powers_saws_and_quotients_are_never_wrong_in_silence() {
     let (mut right, mut told, mut wrong) = (0, 0, Vec::new());
     for (text, truth) in cases() {
-        let scene = Scene::parse("steep", &text).unwrap_or_else(|e| panic!("{text}: {e}"));
-        let chetaev = choices(&scene).into_iter().find(|c| c.formulation == CHETAEV).expect("it is there");
-        let methods = [None, Some(Method::Taylor), Some(Method::Dop853), Some(Method::Radau5)];
-        let by = |method: Option<Method>| (method.map_or("default", Method::name), alone(&scene, &chetaev, method));
-        for (by, found) in methods.into_iter().map(by).chain([("in lanes", in_lanes(&scene, &chetaev))]) {
-            match found {
+        let scene = read("steep", &text);
+        for (by, found) in ends(&scene, &choice(&scene, CHETAEV)) {
+            match found.map(|(q, errors)| (q[0], errors[0])) {
                 Err(_) => told += 1,
                 Ok((x, estimate)) if (x - truth).abs() <= 10.0 * estimate + 1e-12 => right += 1,
                 Ok((x, estimate)) => {
@@ -140,7 +106,7 @@ fn hills_of_high_powers_are_not_passed() {
              lagrangian = \"(x'^2 + y'^2)/2 - {speed:?}^2*y^2/2\"\nforces = {{ x = \"{hill}\" }}\n[start]\n\
              velocities = {{ \"x'\" = 1, \"y'\" = 0 }}\n[run]\nduration = 8\n"
         );
-        let scene = Scene::parse("hill", &text).unwrap_or_else(|e| panic!("{e}"));
+        let scene = read("hill", &text);
         let settings = Settings { method, ..Settings::default() };
         let mut motion = solve_choice(&scene, &choices(&scene)[0], &settings).expect("a motion");
         let estimate = error_estimate(&mut motion, setting(&scene)).expect("in range");

@@ -1,8 +1,9 @@
 //! Walls that are in no term of a series until they are near: divisors that vanish.
 
-use deltaq::{Ensemble, EnsembleOptions, Settings, choices, error_estimate, setting, solve_choice};
-use integrate::Method;
+use deltaq::choices;
 use scene::Scene;
+
+use crate::support;
 
 fn scene(lagrangian: &str, forces: &str) -> Scene {
     let text = format!(
@@ -10,43 +11,15 @@ fn scene(lagrangian: &str, forces: &str) -> Scene {
          lagrangian = \"(x'^2 + y'^2)/2 {lagrangian}\"\nforces = {{ x = \"{forces}\" }}\n[start]\n\
          velocities = {{ \"x'\" = -1, \"y'\" = 0 }}\n[run]\nduration = 3\n"
     );
-    Scene::parse("wall", &text).unwrap_or_else(|e| panic!("{text}: {e}"))
+    support::read("wall", &text)
 }
 
-/// Where a motion ends and its estimate, or why it stops; with the road that it was made by.
-type End = (String, Result<(f64, f64), String>);
+/// x at the end with its estimate, or why it is not trusted.
+type End = Result<(f64, f64), String>;
 
-/// x at the end with its estimate by each method and in an ensemble of two members, or why it is not trusted.
-fn ends(scene: &Scene) -> Vec<End> {
-    let chetaev = &choices(scene)[0];
-    let methods = [None, Some(Method::Taylor), Some(Method::Dop853), Some(Method::Radau5)];
-    let mut ends: Vec<_> = methods
-        .into_iter()
-        .map(|method| {
-            let settings = Settings { method, ..Settings::default() };
-            let mut motion = solve_choice(scene, chetaev, &settings).expect("a motion");
-            let estimate = error_estimate(&mut motion, setting(scene)).expect("in range");
-            let found = match estimate.status(&motion) {
-                ("completed", _) => Ok((motion.at(3.0).expect("the end").coordinates[0], estimate.coordinates[0])),
-                (_, cause) => Err(cause.unwrap_or_default()),
-            };
-            (method.map_or("default", Method::name).to_string(), found)
-        })
-        .collect();
-    let mut ensemble = Ensemble::new(scene, chetaev, &[], &Settings::default()).expect("an ensemble");
-    let members = vec![ensemble.member(&[]).expect("a member"); 2];
-    for motion in ensemble.motions(&members, &[3.0], &EnsembleOptions::default()) {
-        let motion = motion.expect("a motion");
-        let found = match motion.status() {
-            ("completed", _) => {
-                let estimate = motion.estimate.as_ref().expect("an estimate").coordinates[0];
-                Ok((motion.outputs[0].coordinates[0], estimate))
-            }
-            (_, cause) => Err(cause.unwrap_or_default()),
-        };
-        ends.push(("in an ensemble".into(), found));
-    }
-    ends
+fn ends(scene: &Scene) -> Vec<(&'static str, End)> {
+    let found = support::ends(scene, &choices(scene)[0]).into_iter();
+    found.map(|(by, end)| (by, end.map(|(q, errors)| (q[0], errors[0])))).collect()
 }
 
 /// A particle that comes to a wall is turned back: it is at +2, less what the wall is thick, and never at −2,
