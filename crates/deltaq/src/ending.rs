@@ -12,9 +12,10 @@ use symbolic::Expr;
 const HELP: &str = "where something is switched, its times as `breakpoints` help, else a larger --max-steps";
 
 /// How a motion ended.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub enum Ending {
     /// At the time asked for.
+    #[default]
     Completed,
     /// Earlier, with the time and the cause in words.
     Stopped {

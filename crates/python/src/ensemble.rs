@@ -79,6 +79,7 @@ pub(crate) struct Integrated {
 }
 
 /// What became of the members so far.
+#[derive(Default)]
 struct Columns {
     coordinates: Cube,
     velocities: Cube,
@@ -94,6 +95,7 @@ struct Columns {
 }
 
 /// Numbers of members, times and columns; NaN where there is none.
+#[derive(Default)]
 struct Cube {
     times: usize,
     width: usize,
@@ -149,13 +151,7 @@ impl Task {
             velocities: cube(n),
             multipliers: named(&equations.multipliers),
             invariants: named(&equations.invariants),
-            error_estimate: Vec::new(),
-            relative_error_estimate: Vec::new(),
-            status: Vec::new(),
-            cause: Vec::new(),
-            reached: Vec::new(),
-            alone: Vec::new(),
-            seconds: 0.0,
+            ..Columns::default()
         };
         for first in (0..varied.count).step_by(CHUNK) {
             let rows: Vec<Vec<f64>> = (first..varied.count.min(first + CHUNK)).map(|i| varied.row(i)).collect();

@@ -33,7 +33,7 @@ impl Default for EnsembleOptions {
 }
 
 /// What became of a member.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct MemberRun {
     /// The states at the times asked for, as far as the motion came.
     pub states: Vec<Vec<f64>>,
@@ -63,12 +63,14 @@ impl Ensemble {
     /// The results are in the order of the members. Each is the same to the last bit whatever the other
     /// members, their order and the number of threads. An `Err` is a member that could not be started.
     pub fn run(&self, members: &[EnsembleMember], times: &[f64], options: &EnsembleOptions) -> Vec<Outcome> {
+        let by = (&self.by_name.varying().prepared().compiled, self.lanes.as_ref());
+        let run = |tolerance, origin| self.run_by(by, members, times, tolerance, origin, options.threads);
         let tolerance = self.settings.tolerance;
         if !options.estimate {
-            return self.run_once(members, times, tolerance, Origin::Start, options.threads);
+            return run(tolerance, Origin::Start);
         }
-        let looser = self.run_once(members, times, tolerance, Origin::LastDigit, options.threads);
-        let kept = self.run_once(members, times, tolerance * TIGHTER, Origin::Start, options.threads);
+        let looser = run(tolerance, Origin::LastDigit);
+        let kept = run(tolerance * TIGHTER, Origin::Start);
         let runs = kept.into_iter().zip(looser).zip(members);
         runs.map(|((kept, looser), member)| Ok(confirmed(kept?, looser?, member))).collect()
     }
@@ -100,24 +102,6 @@ impl Ensemble {
         Ok(self.run_by(by, &members, times, self.settings.tolerance, Origin::LastDigit, threads))
     }
 
-    fn run_once(
-        &self,
-        members: &[EnsembleMember],
-        times: &[f64],
-        tolerance: f64,
-        origin: Origin,
-        threads: usize,
-    ) -> Vec<Outcome> {
-        self.run_by(
-            (&self.by_name.varying().prepared().compiled, self.lanes.as_ref()),
-            members,
-            times,
-            tolerance,
-            origin,
-            threads,
-        )
-    }
-
     /// By these equations, in company if they come in lanes, or else why not.
     fn run_by(
         &self,
@@ -146,7 +130,7 @@ impl Ensemble {
         let results = shared(threads, members.len(), group, |take| task.work(take));
         let interrupted = |member: &EnsembleMember| {
             let cause = options.interrupt.as_ref().and_then(Interrupt::cause).unwrap_or(StopCause::Interrupted);
-            Ok(MemberRun { ending: Ending::Stopped { t: member.t, cause: cause.to_string() }, ..MemberRun::empty() })
+            Ok(MemberRun { ending: Ending::Stopped { t: member.t, cause: cause.to_string() }, ..MemberRun::default() })
         };
         results.into_iter().zip(members).map(|(outcome, m)| outcome.unwrap_or_else(|| interrupted(m))).collect()
     }
@@ -164,19 +148,6 @@ fn confirmed(mut kept: MemberRun, looser: MemberRun, member: &EnsembleMember) ->
 }
 
 impl MemberRun {
-    pub(super) fn empty() -> Self {
-        MemberRun {
-            states: Vec::new(),
-            differences: Vec::new(),
-            ending: Ending::Completed,
-            work: Work::default(),
-            projection: ProjectionReport::default(),
-            alone: None,
-            unknowns: Vec::new(),
-            left_chart: false,
-        }
-    }
-
     /// Where it stopped, if it did.
     pub(super) fn stopped(&self) -> Option<f64> {
         match self.ending {
@@ -246,11 +217,11 @@ impl Task<'_> {
                 Ok(run) => {
                     let states = run.states.chunks_exact(n).map(<[f64]>::to_vec).collect();
                     let (work, projection) = (run.work, run.projection);
-                    done.push((index, Ok(MemberRun { states, work, projection, ..MemberRun::empty() })));
+                    done.push((index, Ok(MemberRun { states, work, projection, ..MemberRun::default() })));
                 }
                 Err(why @ (Left::TooManySteps | Left::StepTooSmall)) if self.only_complete => {
                     let (t, cause) = (self.members[index].t, why.to_string());
-                    done.push((index, Ok(MemberRun { ending: Ending::Stopped { t, cause }, ..MemberRun::empty() })));
+                    done.push((index, Ok(MemberRun { ending: Ending::Stopped { t, cause }, ..MemberRun::default() })));
                 }
                 Err(why) => {
                     self.left.lock().unwrap_or_else(PoisonError::into_inner).push((index, why.to_string()));
@@ -328,7 +299,7 @@ impl Task<'_> {
             projection: solution.projection,
             alone: Some(why),
             left_chart: stopped && compiled.has_chart(),
-            ..MemberRun::empty()
+            ..MemberRun::default()
         })
     }
 }

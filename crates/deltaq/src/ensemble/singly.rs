@@ -58,7 +58,7 @@ impl Ensemble {
             work: motion.work,
             projection: motion.projection,
             alone: Some("the pivots of the others vanish here: a motion of its own".into()),
-            ..MemberRun::empty()
+            ..MemberRun::default()
         };
         let (estimate, doubt) = match options.estimate {
             true => (Some(estimate), motion.doubt),

@@ -53,13 +53,10 @@ impl QuasiVelocities {
         let mut elimination = Elimination::new(system, frame, start)?;
         let homogeneous = elimination.is_homogeneous();
         while elimination.step()? {}
-        let steps = std::mem::take(&mut elimination.steps);
+        let Elimination { velocities, steps, coefficients, guards, quotients, eliminated, .. } = elimination;
         let dependent: Vec<DependentVelocity> = steps.into_iter().rev().flatten().collect();
-        let coefficients = std::mem::take(&mut elimination.coefficients);
-        let guards = std::mem::take(&mut elimination.guards);
-        let quotients = std::mem::take(&mut elimination.quotients);
-        let eliminated = std::mem::take(&mut elimination.eliminated);
-        let free = elimination.free(&dependent.iter().map(|d| d.symbol).collect::<HashSet<Symbol>>());
+        let pivots: HashSet<Symbol> = dependent.iter().map(|d| d.symbol).collect();
+        let free = velocities.into_iter().filter(|w| !pivots.contains(&w.symbol)).collect();
         Ok(QuasiVelocities { free, dependent, eliminated, coefficients, guards, quotients, homogeneous })
     }
 }
@@ -130,11 +127,6 @@ impl<'a> Elimination<'a> {
 
     fn is_homogeneous(&self) -> bool {
         self.rows.iter().all(|row| self.g.is_zero(row.offset))
-    }
-
-    /// The velocities that were no pivots.
-    fn free(self, dependent: &HashSet<Symbol>) -> Vec<QuasiVelocity> {
-        self.velocities.into_iter().filter(|w| !dependent.contains(&w.symbol)).collect()
     }
 
     /// Eliminates one constraint; `false` where none is left.
