@@ -30,36 +30,25 @@ mod trajectory;
 #[pyo3::pymodule]
 mod _native {
     #[pymodule_export]
-    use crate::again::_again;
-    #[pymodule_export]
-    use crate::comparison::{Comparison, Decided, Fit, Growth, LeadingTerm, Pair, Run};
-    #[pymodule_export]
-    use crate::connect::{Connection, Connections};
-    #[pymodule_export]
-    use crate::ensemble::Ensemble;
-    #[pymodule_export]
-    use crate::equations::Equations;
-    #[pymodule_export]
-    use crate::errors::{
-        BoundaryError, CallError, CompileError, DeltaqError, DerivationError, EvaluationError, RemovalError,
-        SceneError, SolveError, StartError,
+    use crate::{
+        again::_again,
+        comparison::{Comparison, Decided, Fit, Growth, LeadingTerm, Pair, Run},
+        connect::{Connection, Connections},
+        ensemble::Ensemble,
+        equations::Equations,
+        errors::{
+            BoundaryError, CallError, CompileError, DeltaqError, DerivationError, EvaluationError, RemovalError,
+            SceneError, SolveError, StartError,
+        },
+        films::_Fitted,
+        linearization::{Linearization, LinearizationSweep, StabilityChange},
+        motion::Motion,
+        outputs::Outputs,
+        reading::{_read_again, built_in, load, parse},
+        residuals::Residuals,
+        system::{State, System},
+        trajectory::Trajectory,
     };
-    #[pymodule_export]
-    use crate::films::_Fitted;
-    #[pymodule_export]
-    use crate::linearization::{Linearization, LinearizationSweep, StabilityChange};
-    #[pymodule_export]
-    use crate::motion::Motion;
-    #[pymodule_export]
-    use crate::outputs::Outputs;
-    #[pymodule_export]
-    use crate::reading::{_read_again, built_in, load, parse};
-    #[pymodule_export]
-    use crate::residuals::Residuals;
-    #[pymodule_export]
-    use crate::system::{State, System};
-    #[pymodule_export]
-    use crate::trajectory::Trajectory;
 
     use integrate::Method;
     use pyo3::prelude::*;
