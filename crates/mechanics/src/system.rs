@@ -182,8 +182,8 @@ impl System {
         [&[self.lagrangian], &self.constraints[..], &self.forces, &self.virtual_conditions].concat()
     }
 
-    /// `d/dt p − Σ F`, n expressions, for `momenta` p and lists F of `forces`, one entry per coordinate; `flow`
-    /// has the rates, as [`System::flow`].
+    /// `d/dt p − Σ F`, n expressions, for `momenta` p and lists F of `forces`, one entry per coordinate;
+    /// `flow` has the rates, as [`System::flow`].
     pub fn balances(&self, momenta: &[Expr], forces: &[&[Expr]], flow: &[(Symbol, Expr)]) -> Vec<Expr> {
         let g = &self.graph;
         let on = |i: usize| g.sum(&forces.iter().map(|list| list[i]).collect::<Vec<Expr>>());

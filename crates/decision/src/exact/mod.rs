@@ -1,5 +1,5 @@
-//! Truncated power series over a finite field, or over doubles that know their round-off, and the expressions of
-//! the graph evaluated on them.
+//! Truncated power series over a finite field, or over doubles that know their round-off, and the expressions
+//! of the graph evaluated on them.
 
 mod dual;
 mod field;
