@@ -9,8 +9,10 @@ use equations::Equations;
 use integrate::BoundaryError;
 use mechanics::ConstantsRule;
 use nalgebra::{DMatrix, DVector};
+use symbolic::Expr;
 
 use crate::metric::larger;
+use crate::single_run::{SingleRun, outputs};
 use crate::{Metric, Motion, Prepared, Setting, Settings, SolveError, TIGHTER, solve};
 
 /// Instants at which the sum of squares is taken.
@@ -65,6 +67,9 @@ pub fn best_fit(
     Ok(Some(solve(Setting { end, ..setting }, equations.clone(), &rule, settings)?))
 }
 
+/// Constants, end, tolerance and largest number of steps of a run.
+type Asked = (Vec<f64>, f64, f64, usize);
+
 /// Differences to a motion at equidistant instants, as functions of the free constants of another.
 pub(crate) struct Differences {
     prepared: Prepared,
@@ -73,8 +78,12 @@ pub(crate) struct Differences {
     /// Time, coordinates and a factor of the metric, at each instant.
     goal: Vec<(f64, DVector<f64>, DMatrix<f64>)>,
     origin: DVector<f64>,
+    /// The states that the coordinates are, where they are just that: then nothing is solved to read them.
+    places: Option<Vec<usize>>,
     start: f64,
     end: f64,
+    /// The last run with what it was of: a step of a descent begins where the one before has looked.
+    last: Option<(Asked, SingleRun)>,
     /// Steps and readings so far, times the operations of an evaluation.
     pub(crate) work: usize,
 }
@@ -100,7 +109,11 @@ impl Differences {
         let prepared = Prepared::new(setting, equations.clone(), settings)?;
         let method = Some(prepared.method.method);
         let coarse = Settings { max_steps: SEARCH_STEPS.min(settings.max_steps), method, ..settings.clone() };
-        Ok(Differences { prepared, coarse, tolerance: SEARCH_TOLERANCE, goal, origin, start, end, work: 0 })
+        let states = &equations.states;
+        let place = |&q: &Expr| states.iter().position(|y| equations.graph.as_symbol(q) == Some(y.symbol));
+        let places = equations.coordinates.iter().map(place).collect();
+        let (tolerance, last, work) = (SEARCH_TOLERANCE, None, 0);
+        Ok(Differences { prepared, coarse, tolerance, goal, origin, places, start, end, last, work })
     }
 
     /// Motions may take no more than this many times the steps of those with these constants.
@@ -174,19 +187,29 @@ impl Differences {
     ) -> Result<DVector<f64>, BoundaryError> {
         let broken = |reason: String| BoundaryError::Residual { reason };
         let (n, count) = (self.dimension(), self.instants(part, stride));
-        let Differences { prepared, goal, .. } = self;
+        let Differences { prepared, goal, places, last, .. } = self;
         prepared.set_constants(constants);
         let end = self.start + (self.end - self.start) * part;
         let options = Settings { method: Some(prepared.method.method), ..limits.clone() }.options(tolerance);
-        let run = prepared.integrate(end, &options).map_err(|e| broken(e.to_string()))?;
+        let asked = (constants.to_vec(), end, tolerance, options.max_steps);
+        let run = match last.take() {
+            Some((same, run)) if same == asked => run,
+            _ => prepared.integrate(end, &options).map_err(|e| broken(e.to_string()))?,
+        };
+        let (_, run) = last.insert((asked, run));
         let done = run.solution.work;
         self.work += (done.steps + done.rejected + count / READINGS) * prepared.compiled.cost()[1].operations();
         run.solution.completed()?;
         let mut differences = DVector::zeros(count * n);
+        let mut states = vec![0.0; prepared.compiled.dimension()];
         for k in 1..=count {
             let (t, q, factor) = &goal[k * stride - 1];
-            let outputs = run.at(&mut prepared.compiled, *t).map_err(|e| broken(e.to_string()))?;
-            let difference = factor * (DVector::from_vec(outputs.coordinates) - q);
+            run.states_at(&mut prepared.compiled, *t, &mut states).map_err(|e| broken(e.to_string()))?;
+            let now = match places {
+                Some(places) => places.iter().map(|&i| states[i]).collect(),
+                None => outputs(&mut prepared.compiled, *t, &states).map_err(|e| broken(e.to_string()))?.coordinates,
+            };
+            let difference = factor * (DVector::from_vec(now) - q);
             differences.rows_mut((k - 1) * n, n).copy_from(&difference);
         }
         Ok(differences)
