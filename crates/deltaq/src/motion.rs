@@ -354,6 +354,7 @@ impl Motion {
         seconds: Seconds,
     ) -> Self {
         let wanted = kept.thinned_to().or(looser.thinned_to()).cloned();
+        prepared.compiled.give_back();
         Motion {
             end: readable_end(&mut prepared.compiled, &mut kept, &mut looser, wanted.as_deref()),
             wanted,

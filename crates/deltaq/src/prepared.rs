@@ -122,7 +122,7 @@ impl Prepared {
             self.compiled = self.compiled.clone().with_jacobian(&self.equations)?;
         }
         if method == Method::Taylor && !self.compiled.has_series() {
-            self.compiled = self.compiled.clone().with_series(&self.equations, &self.form)?;
+            self.compiled.add_series(&self.equations, &self.form)?;
         }
         Ok(())
     }

@@ -139,11 +139,25 @@ impl Compiled {
     /// # Errors
     /// As [`Compiled::new`].
     pub fn with_series(mut self, equations: &Equations, plan: &Plan) -> Result<Self, CompileError> {
+        self.add_series(equations, plan)?;
+        Ok(self)
+    }
+
+    /// [`Compiled::with_series`] in place.
+    ///
+    /// # Errors
+    /// As [`Compiled::new`].
+    pub fn add_series(&mut self, equations: &Equations, plan: &Plan) -> Result<(), CompileError> {
         self.series = Some(Series::new(equations, plan)?);
         if plan.condition.is_some() {
             self.plain_series = Some(Series::new(equations, &Plan::plain(equations))?);
         }
-        Ok(self)
+        Ok(())
+    }
+
+    /// Gives back the room that expansions work in, half a megabyte each: the next one takes some anew.
+    pub fn give_back(&mut self) {
+        self.series.iter_mut().chain(&mut self.plain_series).for_each(Series::give_back);
     }
 
     /// Whether [`Compiled::with_jacobian`] was called.

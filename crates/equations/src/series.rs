@@ -7,7 +7,7 @@ use crate::equations::Equations;
 use crate::plan::Plan;
 
 /// `y(t + τ) = Σ_k c_k (τ/unit)^k` from the equations of motion in some plan and the blocks left in it.
-pub(crate) struct Series<T = f64> {
+pub(crate) struct Series<T: SeriesScalar = f64> {
     tape: SeriesTape,
     /// From the first expansion on; nothing is kept in it from one to the next, and its room is large.
     workspace: Option<SeriesWorkspace<T>>,
@@ -84,6 +84,10 @@ impl<T: SeriesScalar> Series<T> {
             }
             solve(&mut blocks[left[block]], residual);
         });
+    }
+
+    pub(crate) fn give_back(&mut self) {
+        self.workspace = None;
     }
 
     /// The coefficients of a state from the last expansion; none of one that is constant in time.

@@ -14,7 +14,7 @@ const SHORTEST: f64 = 1e-12;
 
 pub(crate) const NAME: &str = "Taylor series";
 
-pub(crate) struct Taylor<T> {
+pub(crate) struct Taylor<T: Wide> {
     tape: SeriesTape,
     workspace: SeriesWorkspace<T>,
     tolerance: f64,

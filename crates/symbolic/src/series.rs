@@ -125,7 +125,7 @@ pub struct SeriesTape {
 
 /// The series of one thread that works with one [`SeriesTape`].
 #[derive(Debug)]
-pub struct SeriesWorkspace<T> {
+pub struct SeriesWorkspace<T: SeriesScalar> {
     /// Coefficients, series after series.
     rows: Vec<T>,
     /// So many of them are of series.
@@ -164,10 +164,35 @@ struct Placed<T> {
 /// Most of the room is never touched; nor is it by a copy.
 impl<T: SeriesScalar> Clone for SeriesWorkspace<T> {
     fn clone(&self) -> Self {
-        let mut rows = vec![T::from_f64(0.0); self.rows.len()];
+        let mut rows = zeros::<T>(self.rows.len());
         rows[..self.used].copy_from_slice(&self.rows[..self.used]);
         SeriesWorkspace { rows, used: self.used, plan: self.plan.clone() }
     }
+}
+
+/// Room that is given back is zero again.
+impl<T: SeriesScalar> Drop for SeriesWorkspace<T> {
+    fn drop(&mut self) {
+        let Some(spare) = T::spare() else { return };
+        let mut rows = std::mem::take(&mut self.rows);
+        rows[..self.used].fill(T::from_f64(0.0));
+        // not where the thread is at its end
+        let _ = spare.try_with(|spare| {
+            let mut spare = spare.borrow_mut();
+            if spare.len() < SPARE {
+                spare.push(rows);
+            }
+        });
+    }
+}
+
+/// So many rooms a thread keeps: a motion takes one, or two where its plan may fail.
+const SPARE: usize = 4;
+
+/// Room for so many coefficients or more, all zero.
+fn zeros<T: SeriesScalar>(count: usize) -> Vec<T> {
+    let kept = T::spare().and_then(|spare| spare.try_with(|spare| spare.borrow_mut().pop()).ok().flatten());
+    kept.filter(|rows| rows.len() >= count).unwrap_or_else(|| vec![T::from_f64(0.0); count])
 }
 
 impl<T: SeriesScalar> SeriesWorkspace<T> {
@@ -203,7 +228,7 @@ impl SeriesTape {
     /// Room for states up to `order ≥ 1` (other values: one less).
     pub fn workspace<T: SeriesScalar>(&self, order: usize) -> SeriesWorkspace<T> {
         let plan = self.plan(order);
-        let rows = vec![T::from_f64(0.0); T::room(self.rows, plan.stride)];
+        let rows = zeros(T::room(self.rows, plan.stride));
         SeriesWorkspace { rows, used: self.rows * plan.stride, plan }
     }
 
