@@ -3,7 +3,7 @@
 use crate::Function;
 use crate::cancel;
 use crate::number::{Number, Rational};
-use rustc_hash::{FxHashMap, FxHashSet};
+use rustc_hash::FxHashMap;
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
@@ -185,19 +185,29 @@ impl Arena {
 
     /// The nodes reachable from `roots` through nodes that satisfy `enter`, children first.
     pub(crate) fn reachable(&self, roots: &[Expr], enter: impl Fn(Expr) -> bool) -> Vec<Expr> {
-        let mut seen = FxHashSet::default();
-        let mut stack: Vec<Expr> = roots.iter().copied().filter(|e| enter(*e)).collect();
-        while let Some(e) = stack.pop() {
-            if seen.insert(e) {
-                self.node(e).each_child(|c| {
-                    if enter(c) && !seen.contains(&c) {
-                        stack.push(c);
-                    }
-                });
+        // a bit for each node; children have smaller ids, so one way down finds all of them
+        let place = |e: Expr| (e.0 as usize / 64, 1_u64 << (e.0 % 64));
+        let highest = roots.iter().max().map_or(0, |&e| place(e).0 + 1);
+        let mut marked = vec![0_u64; highest];
+        let mark = |marked: &mut [u64], e: Expr| {
+            let (word, bit) = place(e);
+            if marked[word] & bit == 0 && enter(e) {
+                marked[word] |= bit;
+            }
+        };
+        roots.iter().for_each(|&e| mark(&mut marked, e));
+        let mut order = Vec::new();
+        for word in (0..highest).rev() {
+            let mut done = 0;
+            while marked[word] != done {
+                let bit = 63 - (marked[word] & !done).leading_zeros();
+                done |= 1 << bit;
+                let e = Expr(word as u32 * 64 + bit);
+                order.push(e);
+                self.node(e).each_child(|c| mark(&mut marked, c));
             }
         }
-        let mut order: Vec<Expr> = seen.into_iter().collect();
-        order.sort_unstable();
+        order.reverse();
         order
     }
 

@@ -148,8 +148,9 @@ impl Graph {
     /// [`Graph::substitute_all`], never spoiled.
     pub(crate) fn substituted(&self, es: &[Expr], map: &HashMap<Symbol, Expr>) -> Vec<Expr> {
         let mut arena = self.arena.borrow_mut();
-        let mut image: FxHashMap<Expr, Expr> = FxHashMap::default();
         let touched = arena.reachable(es, |e| arena.dependencies(e).iter().any(|s| map.contains_key(s)));
+        let mut image: FxHashMap<Expr, Expr> = FxHashMap::default();
+        image.reserve(touched.len());
         for e in touched {
             let new = match arena.node(e) {
                 Node::Symbol(s) => map[s],
@@ -164,21 +165,26 @@ impl Graph {
 /// A list of symbols and where each stands in it.
 struct Places<'a> {
     list: &'a [Symbol],
-    of: FxHashMap<Symbol, Vec<usize>>,
+    /// Sorted.
+    of: Vec<(Symbol, usize)>,
 }
 
 impl<'a> Places<'a> {
     fn new(list: &'a [Symbol]) -> Self {
-        let mut of: FxHashMap<Symbol, Vec<usize>> = FxHashMap::default();
-        for (place, symbol) in list.iter().enumerate() {
-            of.entry(*symbol).or_default().push(place);
-        }
+        let mut of: Vec<(Symbol, usize)> = list.iter().enumerate().map(|(place, symbol)| (*symbol, place)).collect();
+        of.sort_unstable();
         Places { list, of }
+    }
+
+    /// Where a symbol stands, everywhere.
+    fn of(&self, symbol: Symbol) -> impl Iterator<Item = usize> {
+        let first = self.of.partition_point(|(other, _)| *other < symbol);
+        self.of[first..].iter().take_while(move |(other, _)| *other == symbol).map(|(_, place)| *place)
     }
 
     /// The places of those symbols that are in `occurring`, in rising order.
     fn within(&self, occurring: &[Symbol]) -> Vec<usize> {
-        let mut found: Vec<usize> = occurring.iter().filter_map(|s| self.of.get(s)).flatten().copied().collect();
+        let mut found: Vec<usize> = occurring.iter().flat_map(|s| self.of(*s)).collect();
         found.sort_unstable();
         found
     }
@@ -200,7 +206,7 @@ impl Arena {
     fn differentiate_sum(&mut self, e: Expr, terms: &[(Expr, Number)], wanted: &[usize], places: &Places) {
         let mut containing: FxHashMap<Symbol, Vec<(Expr, Number)>> = FxHashMap::default();
         for (t, c) in terms {
-            for s in self.dependencies(*t).iter().filter(|s| places.of.contains_key(s)) {
+            for s in self.dependencies(*t).iter().filter(|s| places.of(**s).next().is_some()) {
                 containing.entry(*s).or_default().push((*t, *c));
             }
         }

@@ -58,7 +58,10 @@ pub(super) struct Lowering<'a> {
 
 impl Lowering<'_> {
     fn nodes(&mut self, roots: &[Expr]) {
-        for e in self.arena.reachable(roots, |e| !self.values.contains_key(&e)) {
+        let open = self.arena.reachable(roots, |e| !self.values.contains_key(&e));
+        self.values.reserve(open.len());
+        self.program.reserve(open.len());
+        for e in open {
             let parts = self.node(e);
             self.values.insert(e, parts);
         }

@@ -78,6 +78,13 @@ impl Program {
         self.values.len()
     }
 
+    /// Makes room for so many more values.
+    pub(crate) fn reserve(&mut self, count: usize) {
+        self.values.reserve(count);
+        self.constant.reserve(count);
+        self.ids.reserve(count);
+    }
+
     pub(crate) fn is_constant(&self, id: Id) -> bool {
         self.constant[id as usize]
     }

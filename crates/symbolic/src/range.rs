@@ -112,7 +112,9 @@ impl Graph {
         ranges: &mut FxHashMap<Expr, Range>,
     ) -> Range {
         let arena = self.arena.borrow();
-        for n in arena.reachable(&[e], |n| !ranges.contains_key(&n)) {
+        let open = arena.reachable(&[e], |n| !ranges.contains_key(&n));
+        ranges.reserve(open.len());
+        for n in open {
             let range = arena.range(n, ranges, known);
             ranges.insert(n, range);
         }

@@ -103,8 +103,11 @@ impl Group {
 impl Arena {
     /// The groups among these factors.
     pub(crate) fn saturating_groups(&self, factors: &[(Expr, Rational)]) -> Vec<Group> {
-        let mut taken = vec![false; factors.len()];
         let mut groups = Vec::new();
+        if !factors.iter().any(|(_, r)| r.is_negative()) {
+            return groups;
+        }
+        let mut taken = vec![false; factors.len()];
         while let Some(group) = self.saturating(factors, &taken) {
             group.factors.iter().for_each(|factor| taken[factor.place] = true);
             groups.push(group);
