@@ -8,7 +8,12 @@
 //! y'(x) = Σ_j w_j (y(x + jh) − y(x − jh))/h + O(h⁸) ,    w = 4/5, −1/5, 4/105, −1/280,
 //! ```
 //!
-//! with the distance from that of order 6, and round-off, for its error.
+//! with the distance from that of order 6, and round-off, for its error. A kink at x itself, where the slope
+//! jumps by 2k, is even and has no part in these; it is
+//!
+//! ```text
+//! k = Σ_j v_j (y(x + jh) + y(x − jh) − 2 y(x))/(2h) + O(h⁷) ,    v = 14/5, −7/5, 2/5, −1/20.
+//! ```
 
 use mechanics::ConstantsRule;
 use mechanics::linear::Factors;
@@ -21,6 +26,8 @@ use crate::{ByName, Choice, Prepared, SolveError, Varying};
 /// Weights of the differences of order 8 and of order 6.
 pub(crate) const ORDER_8: [f64; 4] = [4.0 / 5.0, -1.0 / 5.0, 4.0 / 105.0, -1.0 / 280.0];
 const ORDER_6: [f64; 4] = [3.0 / 4.0, -3.0 / 20.0, 1.0 / 60.0, 0.0];
+/// Weights of a kink.
+const KINK: [f64; 4] = [14.0 / 5.0, -7.0 / 5.0, 2.0 / 5.0, -1.0 / 20.0];
 /// Distances over the size of the number.
 const DISTANCES: [f64; 5] = [0.0625, 0.015625, 0.00390625, 0.0009765625, 0.000244140625];
 /// Error of a derivative over the largest one that is accepted.
@@ -160,7 +167,7 @@ pub(crate) fn derivative(
     let (mut best, mut failure): (Option<(f64, Vec<f64>)>, _) = (None, None);
     for distance in DISTANCES {
         let h = size * distance;
-        let mut sums = [vec![0.0; here.len()], vec![0.0; here.len()]];
+        let mut sums = [(); 3].map(|()| vec![0.0; here.len()]);
         let mut add = || -> Result<(), SolveError> {
             for j in 0..4 {
                 let step = h * (j + 1) as f64;
@@ -171,6 +178,7 @@ pub(crate) fn derivative(
                 for (i, (a, b)) in pair.enumerate() {
                     sums[0][i] += ORDER_8[j] * (a - b) / width;
                     sums[1][i] += ORDER_6[j] * (a - b) / width;
+                    sums[2][i] += KINK[j] * (a + b - 2.0 * here[i]) / (2.0 * width);
                 }
             }
             Ok(())
@@ -181,7 +189,9 @@ pub(crate) fn derivative(
                 let largest = |x: &[f64]| x.iter().fold(0.0_f64, |a, x| a.max(x.abs()));
                 let differences: Vec<f64> = sums[0].iter().zip(&sums[1]).map(|(a, b)| a - b).collect();
                 let error = largest(&differences) + f64::EPSILON * largest(&here) / h;
-                let relative = error / (largest(&sums[0]) + largest(&here) / size).max(f64::MIN_POSITIVE);
+                let scale = (largest(&sums[0]) + largest(&here) / size + largest(&sums[2])).max(f64::MIN_POSITIVE);
+                let (relative, kink) = (error / scale, largest(&sums[2]) / scale);
+                let relative = if kink > LIMIT { relative.max(kink) } else { relative };
                 if best.as_ref().is_none_or(|(least, _)| relative < *least) {
                     best = Some((relative, std::mem::take(&mut sums[0])));
                 }

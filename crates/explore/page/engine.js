@@ -73,4 +73,11 @@ export class Engine {
     resolve(null);
     this.next();
   }
+
+  // Ends that, and what waits for it.
+  forget() {
+    for (const { resolve } of this.waiting.values()) resolve(null);
+    this.waiting.clear();
+    this.stop();
+  }
 }

@@ -32,6 +32,24 @@ export async function integrals({ open, leave, link, must, after, slide, deltaq 
   await leave(page);
 }
 
+// A question that was stopped is asked again when its panel is opened again, and one that waited behind it goes on.
+export async function halted({ open, leave, link, must }) {
+  const page = await open(link({ scene: "snakeboard", tab: "integrals" }));
+  const waits = () => page.$eval("#deciding", ({ hidden }) => !hidden);
+  await shown(page, "integrals");
+  await page.click("#integrals button");
+  await page.click("[data-tab=derivatives]");
+  must(await waits(), "two questions are asked, and nothing says so");
+  await page.click("#undecided");
+  await page.waitForFunction(() => document.getElementById("integrals").textContent === "That was stopped.", { timeout: 5000 });
+  must(await waits(), "one of two questions is stopped, and nothing says that the other goes on");
+  await shown(page, "derivatives");
+  must(!(await waits()), "nothing is asked, and the page says that it decides");
+  await page.click("[data-tab=integrals]");
+  await shown(page, "integrals");
+  await leave(page);
+}
+
 export async function derivatives({ open, leave, link, must }) {
   const page = await open(link({ scene: "sledge", tab: "derivatives" }));
   await shown(page, "derivatives");

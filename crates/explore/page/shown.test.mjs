@@ -97,7 +97,8 @@ export async function cleared({ open, leave, link, must, slide, choose }) {
   must((await seen(page)).busy[2] === "true", "a decision does not say that it runs");
   await page.click("#undecided");
   await page.waitForFunction(() => document.getElementById("verdict").textContent === "The decision was stopped.", { timeout: 5000 });
-  must(await page.$eval("#deciding", (element) => element.hidden), "a stopped decision runs on");
+  const over = page.waitForSelector("#deciding", { hidden: true, timeout: 20000 });
+  must(await over.then(() => true, () => false), "a stopped decision runs on");
   await leave(page);
 }
 

@@ -117,7 +117,8 @@ export function derivatives({ motions, refused }, coordinates) {
   if (refused) return `<p>${escape(refused)}</p>`;
   const named = (name, unit) => `<i>${readable(escape(name))}</i>${unit ? `, ${escape(unit)}` : ""}`;
   const cell = (by, error) => `<td>${figure(by)}${error > SEEN * Math.abs(by) && error > 0 ? ` ± ${figure(error)}` : ""}</td>`;
-  const row = ({ name, unit, by, error }) => `<tr><th scope="row">${named(name, unit)}</th>${by.map((x, i) => cell(x, error[i])).join("")}</tr>`;
+  const cells = ({ by, error, refused }) => (refused ? `<td colspan="${coordinates.length}">refused: ${escape(refused)}</td>` : by.map((x, i) => cell(x, error[i])).join(""));
+  const row = (number) => `<tr><th scope="row">${named(number.name, number.unit)}</th>${cells(number)}</tr>`;
   const table = ({ label, rows }) => `<div class="wide" tabindex="0" role="region" aria-label="derivatives, ${escape(label)}"><table><thead><tr><th scope="col">by</th>
     ${coordinates.map(({ name, unit }) => `<th scope="col">${named(name, unit)}</th>`).join("")}</tr></thead><tbody>${rows.map(row).join("")}</tbody></table></div>`;
   const section = (motion, i) => `<details${i ? "" : " open"}><summary>${escape(motion.label)}${motion.refused ? "" : `, at ${figure(motion.end)} s`}</summary>

@@ -23,26 +23,49 @@ pub(crate) fn integrals(subject: &Subject, question: &Question) -> Result<Value,
 /// The derivatives of the coordinates at the end of every motion by each number that it depends on.
 pub(crate) fn derivatives(subject: &Subject, question: &Question) -> Value {
     let controls = controls::of(subject);
-    let motions = subject.choices.iter().map(|choice| match of_motion(subject, choice, &controls, question) {
-        Ok(found) => found,
-        Err(error) => json!({ "label": choice.label, "refused": error.to_string() }),
-    });
+    let motions = subject.choices.iter().map(|choice| of_motion(subject, choice, &controls, question));
     json!({ "motions": motions.collect::<Vec<_>>() })
 }
 
-fn of_motion(subject: &Subject, choice: &Choice, controls: &[Value], question: &Question) -> Result<Value, SolveError> {
-    let scene = &subject.scene;
+/// By all numbers at once; if that is refused, by each alone: then the others have theirs, and it is said why
+/// one has not.
+fn of_motion(subject: &Subject, choice: &Choice, controls: &[Value], question: &Question) -> Value {
     let numbers: Vec<(&str, &str)> = controls.iter().filter_map(|control| number(control, choice)).collect();
-    let names: Vec<&str> = numbers.iter().map(|(name, _)| *name).collect();
-    let end = setting(scene).end;
-    let found = sensitivities(scene, choice, &names, &[end], &settings(question))?;
-    let Some((derivatives, errors)) = found.derivatives.first().zip(found.errors.first()) else {
-        return Ok(json!({ "label": choice.label, "refused": format!("it does not come to t = {end:?} s") }));
+    let end = setting(&subject.scene).end;
+    let derived = |numbers: &[(&str, &str)]| rows(subject, choice, numbers, end, question);
+    let found = derived(&numbers).or_else(|error| {
+        let alone: Vec<_> = numbers.iter().map(|number| derived(&[*number])).collect();
+        if alone.iter().all(Result::is_err) {
+            return Err(error);
+        }
+        let rows = numbers.iter().zip(alone).map(|((name, unit), found)| {
+            found.unwrap_or_else(|e| vec![json!({ "name": name, "unit": unit, "refused": e.to_string() })])
+        });
+        Ok(rows.flatten().collect())
+    });
+    let refused = match found {
+        Ok(rows) if !rows.is_empty() => return json!({ "label": choice.label, "end": end, "rows": rows }),
+        Ok(_) => format!("the motion does not come to t = {end:?} s"),
+        Err(error) => error.to_string(),
     };
-    let rows = numbers.iter().zip(derivatives.iter().zip(errors)).map(|((name, unit), (by, error))| {
+    json!({ "label": choice.label, "refused": refused })
+}
+
+/// A row per number; none if the motion does not come to `end`.
+fn rows(
+    subject: &Subject,
+    choice: &Choice,
+    numbers: &[(&str, &str)],
+    end: f64,
+    question: &Question,
+) -> Result<Vec<Value>, SolveError> {
+    let names: Vec<&str> = numbers.iter().map(|(name, _)| *name).collect();
+    let found = sensitivities(&subject.scene, choice, &names, &[end], &settings(question))?;
+    let at_end = found.derivatives.into_iter().flatten().zip(found.errors.into_iter().flatten());
+    let rows = numbers.iter().zip(at_end).map(|((name, unit), (by, error))| {
         json!({ "name": name, "unit": unit, "by": by.coordinates, "error": error.coordinates })
     });
-    Ok(json!({ "label": choice.label, "end": end, "rows": rows.collect::<Vec<_>>() }))
+    Ok(rows.collect())
 }
 
 /// The name and unit of a number that a motion depends on, apart from the duration and from what a search

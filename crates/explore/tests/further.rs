@@ -58,3 +58,27 @@ fn value_of(name: &str) -> f64 {
     let control = scene["controls"].as_array().unwrap().iter().find(of).unwrap();
     control["value"].as_f64().unwrap_or(0.0)
 }
+
+#[test]
+fn a_number_that_cannot_be_varied_is_named_and_the_others_have_their_derivatives() {
+    let text = r#"
+        title = "Thrown"
+        parameters = { p = 0, g = 10 }
+        [coordinates]
+        x = { start = "sqrt(p^2)" }
+        [system]
+        lagrangian = "x'^2/2 - g*x"
+        constraints = []
+        [start]
+        velocities = { "x'" = 1 }
+        [run]
+        duration = 2
+    "#;
+    let (found, _) = ask(json!({ "ask": "derivatives", "name": "own", "text": text }));
+    let rows = found["motions"][0]["rows"].as_array().unwrap_or_else(|| panic!("{found}"));
+    let of = |name: &str| rows.iter().find(|row| row["name"] == name).unwrap();
+    assert!(of("p")["refused"].as_str().unwrap().contains("does not move smoothly with p"), "{found}");
+    for (name, by) in [("x", 1.0), ("x'", 2.0), ("g", -2.0)] {
+        assert!((of(name)["by"][0].as_f64().unwrap() - by).abs() < 1e-9, "{name}: {found}");
+    }
+}
