@@ -61,8 +61,8 @@ pub(crate) fn write() -> Result<Outcome> {
 /// Rounds, each of every slider up and down: some five minutes.
 const ROUNDS: u32 = 100;
 
-/// Moves the sliders of a fresh page in the number of rounds given, or [`ROUNDS`], then watches its frames for
-/// five minutes; an error if it grows or becomes slower.
+/// Moves the sliders of a fresh page in the number of rounds given, or [`ROUNDS`], then times frames for five
+/// minutes; an error if the page grows or becomes slower.
 pub(crate) fn growth(words: &[&str]) -> Result<Outcome> {
     let rounds = match words.first() {
         Some(rounds) => rounds.parse().context("growth takes a number of rounds")?,
