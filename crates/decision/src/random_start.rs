@@ -11,10 +11,16 @@ const BITS: [u32; 3] = [20, 8, 3];
 const PART: i128 = 1 << 30;
 /// Draws until the constraints have roots: where they are squares, each has one for every second draw.
 const DRAWS: usize = 256;
+/// A square that has a root at so many draws is that of a function: one in 2^64 others has.
+const ROOTED: usize = 64;
+
+/// A number, or a constraint as a polynomial in one velocity up to the order that shows that it is quadratic:
+/// draws are many, and short series cheap.
+type Short = Jet<Modular, 5>;
 
 /// The number with this place, where it is not zero; else the least of the others, or 1.
-fn size(numbers: &[Jet<Modular>], place: usize) -> Jet<Modular> {
-    let known = |x: &Jet<Modular>| x.exact().filter(|x| !x.is_zero()).map(|exact| exact.to_f64().abs());
+fn size(numbers: &[Short], place: usize) -> Short {
+    let known = |x: &Short| x.exact().filter(|x| !x.is_zero()).map(|exact| exact.to_f64().abs());
     let own = numbers.get(place).filter(|x| known(x).is_some());
     let least = || {
         numbers
@@ -36,10 +42,15 @@ pub fn at_random<T>(
 ) -> Result<T, String> {
     let mut fault = None;
     for bits in BITS {
-        let found = start.random(seed, bits).map_err(|fault| fault.to_string()).and_then(&mut compute);
-        match found {
+        let found = start.random(seed, bits);
+        let is_product = matches!(found, Err(NoExactStart::Product));
+        match found.map_err(|fault| fault.to_string()).and_then(&mut compute) {
             Ok(found) => return Ok(found),
             Err(reason) => fault = fault.or(Some(reason)),
+        }
+        // it is one at numbers of any size
+        if is_product {
+            break;
         }
     }
     Err(fault.unwrap_or_default())
@@ -51,8 +62,12 @@ impl ExactStart {
     /// constant ratio keep the ratio that they have there. Any other square must once have no root. The
     /// square of a function always has one; without such the surface is in one piece.
     pub(crate) fn random(&self, seed: u64, bits: u32) -> Result<SeriesStart<Modular>, NoExactStart> {
-        let (parameters, _) = self.given();
+        let short = |numbers: &[Jet<Modular>]| numbers.iter().map(Jet::resized).collect::<Vec<Short>>();
+        let long = |numbers: &[Short]| numbers.iter().map(Short::resized).collect::<Vec<Jet<Modular>>>();
+        let (given, time) = self.given();
+        let parameters = short(&given);
         let near = if self.has_branches { Some(self.series()?.0) } else { None };
+        let (near_q, near_v) = near.as_ref().map(|near| (short(&near.positions), short(&near.velocities))).unzip();
         let mut state = seed;
         let mut draw = || {
             // SplitMix64
@@ -67,17 +82,17 @@ impl ExactStart {
             Modular::of(exact).map(|value| Jet::constant(value, Some(exact)))
         };
         let n = self.system.dimension();
-        let mut draws = |centre: Option<&[Jet<Modular>]>| -> Result<Vec<Jet<Modular>>, Flaw> {
+        let mut draws = |centre: Option<&[Short]>| -> Result<Vec<Short>, Flaw> {
             (0..n).map(|i| draw().map(|x| centre.map_or(x, |centre| centre[i] + x * size(centre, i)))).collect()
         };
-        let times = vec![self.given().1; n];
+        let times = vec![time.resized(); n];
         let choices = [&self.supplied, &self.spare];
         let usual = choices.into_iter().find(|choice| choice.len() == self.system.constraints.len());
-        let mut rootless = vec![false; self.system.constraints.len()];
+        let (mut rootless, mut rooted) = (vec![false; self.system.constraints.len()], 0);
         let mut found = None;
         for _ in 0..DRAWS {
-            let q = draws(near.as_ref().map(|near| &near.positions[..]))?;
-            let v = draws(near.as_ref().map(|near| &near.velocities[..]))?;
+            let q = draws(near_q.as_deref())?;
+            let v = draws(near_v.as_deref())?;
             let time = draws(near.as_ref().map(|_| &times[..]))?[0];
             let velocities = match self.solved(&parameters, time, &q, &v, usual.unwrap_or(&self.spare)) {
                 Err(NoExactStart::Nonlinear) => self.with_roots(&parameters, time, &q, &v)?,
@@ -86,32 +101,28 @@ impl ExactStart {
             match velocities {
                 Solved::Rootless(constraint) => rootless[constraint] = true,
                 Solved::At { velocities, free } => {
-                    let start = SeriesStart { parameters: parameters.clone(), time, positions: q, velocities };
-                    found.get_or_insert((start, free));
+                    rooted += 1;
+                    found.get_or_insert((time, q, velocities, free));
                 }
             }
-            if found.as_ref().is_some_and(|(_, free)| free.iter().all(|&i| rootless[i])) {
+            if rooted == ROOTED || found.as_ref().is_some_and(|(.., free)| free.iter().all(|&i| rootless[i])) {
                 break;
             }
         }
         match found {
-            Some((start, free)) if free.iter().all(|&i| rootless[i]) => Ok(start),
+            Some((time, q, v, free)) if free.iter().all(|&i| rootless[i]) => {
+                Ok(SeriesStart { parameters: given, time: time.resized(), positions: long(&q), velocities: long(&v) })
+            }
             Some(_) => Err(NoExactStart::Product),
             None => Err(NoExactStart::Nonlinear),
         }
     }
 
     /// `v` on quadratic constraints, each for a velocity that the fewest contain.
-    fn with_roots(
-        &self,
-        parameters: &[Jet<Modular>],
-        time: Jet<Modular>,
-        q: &[Jet<Modular>],
-        v: &[Jet<Modular>],
-    ) -> Result<Solved, NoExactStart> {
+    fn with_roots(&self, parameters: &[Short], time: Short, q: &[Short], v: &[Short]) -> Result<Solved, NoExactStart> {
         let (h, n) = (self.system.constraints.len(), v.len());
-        let mut program = self.constraints.evaluator::<Jet<Modular>>();
-        let inputs = |v: &[Jet<Modular>]| [parameters, &[time], q, v].concat();
+        let mut program = self.constraints.evaluator::<Short>();
+        let inputs = |v: &[Short]| [parameters, &[time], q, v].concat();
         let values = program.run(&inputs(v)).to_vec();
         let contains = |i: usize, j: usize| !values[h + i * n + j].coefficient(0).is_zero();
         let mut v = v.to_vec();
@@ -127,7 +138,7 @@ impl ExactStart {
             let before = v[j].coefficient(0);
             // v_j + s: coefficients are those of the constraint as a polynomial in s
             let (zero, one) = (Modular::ZERO, Modular::one());
-            v[j] = Jet::series(&[before, one, zero, zero, zero], None);
+            v[j] = Short::series(&[before, one, zero, zero, zero], None);
             let f = program.run(&inputs(&v))[i];
             let [c, b, a, third, fourth] = std::array::from_fn(|k| f.coefficient(k));
             if f.flaw().is_some() || !third.is_zero() || !fourth.is_zero() {
@@ -150,7 +161,7 @@ impl ExactStart {
                     None => return Err(NoExactStart::Nonlinear),
                 },
             };
-            v[j] = Jet::constant(before + change, None);
+            v[j] = Short::constant(before + change, None);
         }
         let velocities = self.solved(parameters, time, q, &v, &[])?;
         Ok(Solved::At { velocities, free })
@@ -160,7 +171,7 @@ impl ExactStart {
 /// What became of a draw.
 enum Solved {
     /// Velocities on the constraints; places of the constraints whose root was free in its sign.
-    At { velocities: Vec<Jet<Modular>>, free: Vec<usize> },
+    At { velocities: Vec<Short>, free: Vec<usize> },
     /// This constraint has no root there.
     Rootless(usize),
 }

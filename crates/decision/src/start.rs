@@ -248,20 +248,20 @@ impl ExactStart {
     }
 
     /// `v` with the entries `open` replaced by what solves `f(q, v, t) = 0`, where that is linear in them.
-    pub(crate) fn solved<C: Coefficient>(
+    pub(crate) fn solved<C: Coefficient, const N: usize>(
         &self,
-        parameters: &[Jet<C>],
-        time: Jet<C>,
-        q: &[Jet<C>],
-        v: &[Jet<C>],
+        parameters: &[Jet<C, N>],
+        time: Jet<C, N>,
+        q: &[Jet<C, N>],
+        v: &[Jet<C, N>],
         open: &[usize],
-    ) -> Result<Vec<Jet<C>>, NoExactStart>
+    ) -> Result<Vec<Jet<C, N>>, NoExactStart>
     where
-        Jet<C>: Scalar,
+        Jet<C, N>: Scalar,
     {
         let (h, n) = (self.system.constraints.len(), v.len());
-        let mut program = self.constraints.evaluator::<Jet<C>>();
-        let mut run = |v: &[Jet<C>]| -> Result<Vec<C>, NoExactStart> {
+        let mut program = self.constraints.evaluator::<Jet<C, N>>();
+        let mut run = |v: &[Jet<C, N>]| -> Result<Vec<C>, NoExactStart> {
             let inputs = [parameters, &[time], q, v].concat();
             let values = program.run(&inputs);
             match values.iter().find_map(Jet::flaw) {

@@ -7,27 +7,27 @@ use symbolic::{Fraction, Function, Scalar};
 use super::rational::{Exact, PARTS};
 use super::{Coefficient, Flaw};
 
-/// Coefficients a series can have.
+/// Coefficients a series can have, unless it is said otherwise.
 pub const ORDERS: usize = 48;
 
 /// `Σ c_k s^k`, known up to `s^{known − 1}`, with no coefficient but zero from `terms` on.
 ///
 /// A constant is known to all orders; its exact value, for functions of it, while rational and moderate.
 #[derive(Clone, Copy, Debug)]
-pub struct Jet<C> {
-    coefficients: [C; ORDERS],
+pub struct Jet<C, const N: usize = ORDERS> {
+    coefficients: [C; N],
     known: usize,
     terms: usize,
     exact: Option<Exact>,
     flaw: Option<Flaw>,
 }
 
-impl<C: Coefficient> Jet<C> {
+impl<C: Coefficient, const N: usize> Jet<C, N> {
     /// The constant `value`.
     pub fn constant(value: C, exact: Option<Exact>) -> Self {
-        let mut coefficients = [C::ZERO; ORDERS];
+        let mut coefficients = [C::ZERO; N];
         coefficients[0] = value;
-        Jet { coefficients, known: ORDERS, terms: 1, exact: exact.filter(|_| C::FOLLOWED), flaw: None }
+        Jet { coefficients, known: N, terms: 1, exact: exact.filter(|_| C::FOLLOWED), flaw: None }
     }
 
     fn number(x: Result<C, Flaw>, exact: Option<Exact>) -> Self {
@@ -54,10 +54,17 @@ impl<C: Coefficient> Jet<C> {
 
     /// The series with these coefficients, all known ones; the first is exactly `exact`, if that is known.
     pub fn series(coefficients: &[C], exact: Option<Exact>) -> Self {
-        let known = coefficients.len().min(ORDERS);
-        let mut all = [C::ZERO; ORDERS];
+        let known = coefficients.len().min(N);
+        let mut all = [C::ZERO; N];
         all[..known].copy_from_slice(&coefficients[..known]);
         Jet { coefficients: all, known, terms: known, exact: exact.filter(|_| C::FOLLOWED), flaw: None }
+    }
+
+    /// The same with room for `M` coefficients, as far as they are known.
+    pub(crate) fn resized<const M: usize>(&self) -> Jet<C, M> {
+        let known = if self.terms == 1 && self.known == N { M } else { self.known.min(M) };
+        let coefficients = std::array::from_fn(|k| if k < N { self.coefficients[k] } else { C::ZERO });
+        Jet { coefficients, known, terms: self.terms.min(M), exact: self.exact, flaw: self.flaw }
     }
 
     /// Of `s^k`.
@@ -88,26 +95,22 @@ impl<C: Coefficient> Jet<C> {
     fn combined(&self, other: &Self, terms: usize, exact: Option<Exact>) -> Self {
         let (known, has_pi) = (self.known.min(other.known), self.has_pi() || other.has_pi());
         let flaw = self.flaw.or(other.flaw).or((exact.is_none() && has_pi).then_some(Flaw::Pi));
-        Jet { coefficients: [C::ZERO; ORDERS], known, terms: terms.min(known).max(1), exact, flaw }
+        Jet { coefficients: [C::ZERO; N], known, terms: terms.min(known).max(1), exact, flaw }
     }
 
     /// `y` with `y' = u' w` or so: coefficients from 1 on, each from earlier ones; `next(k, y, y')` is
     /// `k y_k`, the rates shifted as [`Jet::slopes`] are.
-    fn integrated(
-        &self,
-        first: Result<(C, Option<Exact>), Flaw>,
-        next: impl Fn(usize, &[C; ORDERS], &[C; ORDERS]) -> C,
-    ) -> Self {
+    fn integrated(&self, first: Result<(C, Option<Exact>), Flaw>, next: impl Fn(usize, &[C; N], &[C; N]) -> C) -> Self {
         let (value, exact) = match first {
             Ok(first) => first,
             Err(flaw) => return Jet { flaw: self.flaw.or(Some(flaw)), ..self.combined(self, 1, self.exact) },
         };
-        let mut result = Jet { exact, ..self.combined(self, ORDERS, self.exact) };
+        let mut result = Jet { exact, ..self.combined(self, N, self.exact) };
         result.coefficients[0] = value;
         if self.terms == 1 {
             return Jet { terms: 1, ..result };
         }
-        let mut slopes = [C::ZERO; ORDERS];
+        let mut slopes = [C::ZERO; N];
         for k in 1..result.known {
             let Ok(over) = Exact::over(k).and_then(C::of) else {
                 return Jet { flaw: self.flaw.or(Some(Flaw::Zero)), ..result };
@@ -119,8 +122,8 @@ impl<C: Coefficient> Jet<C> {
     }
 
     /// Coefficients of `u'`, shifted: entry k is `k u_k`.
-    fn slopes(&self) -> [C; ORDERS] {
-        let mut slopes = [C::ZERO; ORDERS];
+    fn slopes(&self) -> [C; N] {
+        let mut slopes = [C::ZERO; N];
         for (k, slope) in slopes.iter_mut().enumerate().take(self.terms).skip(1) {
             if let Ok(times) = Exact::integer(k).and_then(C::of) {
                 *slope = self.coefficients[k] * times;
@@ -177,7 +180,7 @@ impl<C: Coefficient> Jet<C> {
     }
 }
 
-impl<C: Coefficient> Add for Jet<C> {
+impl<C: Coefficient, const N: usize> Add for Jet<C, N> {
     type Output = Self;
     fn add(self, other: Self) -> Self {
         let exact = self.exact.zip(other.exact).and_then(|(a, b)| a.add(b));
@@ -189,7 +192,7 @@ impl<C: Coefficient> Add for Jet<C> {
     }
 }
 
-impl<C: Coefficient> Neg for Jet<C> {
+impl<C: Coefficient, const N: usize> Neg for Jet<C, N> {
     type Output = Self;
     fn neg(self) -> Self {
         let mut negative = Jet { exact: self.exact.map(Exact::neg), ..self };
@@ -200,14 +203,14 @@ impl<C: Coefficient> Neg for Jet<C> {
     }
 }
 
-impl<C: Coefficient> Sub for Jet<C> {
+impl<C: Coefficient, const N: usize> Sub for Jet<C, N> {
     type Output = Self;
     fn sub(self, other: Self) -> Self {
         self + -other
     }
 }
 
-impl<C: Coefficient> Mul for Jet<C> {
+impl<C: Coefficient, const N: usize> Mul for Jet<C, N> {
     type Output = Self;
     fn mul(self, other: Self) -> Self {
         let exact = self.exact.zip(other.exact).and_then(|(a, b)| a.mul(b));
@@ -226,12 +229,12 @@ impl<C: Coefficient> Mul for Jet<C> {
     }
 }
 
-impl<C: Coefficient> Div for Jet<C> {
+impl<C: Coefficient, const N: usize> Div for Jet<C, N> {
     type Output = Self;
     fn div(self, other: Self) -> Self {
         let exact = self.exact.zip(other.exact).and_then(|(a, b)| a.mul(b.recip()?));
         let constant = other.terms == 1;
-        let mut quotient = self.combined(&other, if constant { self.terms } else { ORDERS }, exact);
+        let mut quotient = self.combined(&other, if constant { self.terms } else { N }, exact);
         let Some(over) = other.coefficients[0].inverse() else {
             quotient.flaw = quotient.flaw.or(Some(Flaw::Zero));
             return quotient;
@@ -250,7 +253,7 @@ impl<C: Coefficient> Div for Jet<C> {
     }
 }
 
-impl<C: Coefficient> Scalar for Jet<C> {
+impl<C: Coefficient, const N: usize> Scalar for Jet<C, N> {
     fn from_f64(x: f64) -> Self {
         if x == 1.0 { Self::constant_one() } else { Self::of(x) }
     }
