@@ -174,10 +174,6 @@ impl<C: Coefficient, const N: usize> Jet<C, N> {
         let first = self.coefficients[0].inverse_function(function, self.exact);
         self.with_slope(first, slope)
     }
-
-    fn exponential_pair(self) -> (Self, Self) {
-        (self.exp(), (-self).exp())
-    }
 }
 
 impl<C: Coefficient, const N: usize> Add for Jet<C, N> {
@@ -331,17 +327,17 @@ impl<C: Coefficient, const N: usize> Scalar for Jet<C, N> {
     }
 
     fn sinh(self) -> Self {
-        let (up, down) = self.exponential_pair();
+        let (up, down) = (self.exp(), (-self).exp());
         (up - down).half()
     }
 
     fn cosh(self) -> Self {
-        let (up, down) = self.exponential_pair();
+        let (up, down) = (self.exp(), (-self).exp());
         (up + down).half()
     }
 
     fn tanh(self) -> Self {
-        let (up, down) = self.exponential_pair();
+        let (up, down) = (self.exp(), (-self).exp());
         (up - down) / (up + down)
     }
 
