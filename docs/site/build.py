@@ -95,6 +95,22 @@ def dead(out):
     return found, count
 
 
+# What the theme leaves out and readers of the screen, or hands without a mouse, need: levels of headings, and a stop of the
+# tabulator at what scrolls.
+NEEDED = [
+    ('<p class="caption" role="heading">', '<p class="caption" role="heading" aria-level="2">'),
+    ("<pre>", '<pre tabindex="0">'),
+    ('<div class="table-wrapper', '<div tabindex="0" class="table-wrapper'),
+]
+
+
+def complete(page):
+    text = page.read_text("utf-8")
+    for before, after in NEEDED:
+        text = text.replace(before, after)
+    page.write_text(text, "utf-8")
+
+
 def main(out, rust):
     source = out.with_name(out.name + "-source")
     for folder in (source, out):
@@ -103,6 +119,8 @@ def main(out, rust):
     write(source / "python.md", python_reference.page(ROOT / MODULE))
     shutil.copy(HERE / "index.md", source)
     subprocess.run([sys.executable, "-m", "sphinx", "--quiet", "--jobs", "auto", "--conf-dir", HERE, source, out], check=True)
+    for page in out.rglob("*.html"):
+        complete(page)
     for file in files:
         write(out / file, (source / file).read_bytes())
     write(out / "explore/index.html", (source / EXPLORER).read_bytes())

@@ -16,6 +16,7 @@ suppress_warnings = ["myst.header", "myst.xref_missing"]
 html_theme = "furo"
 html_static_path = ["static"]
 html_css_files = ["site.css"]
+html_favicon = "static/icon.svg"
 html_copy_source = False
 html_show_sphinx = False
 html_show_copyright = False

@@ -77,6 +77,18 @@ pub(crate) fn growth(words: &[&str]) -> Result<Outcome> {
     }
 }
 
+/// Looks at the pages of a site in a browser, if there is one; what was seen.
+pub(crate) fn look_at(site: &Path) -> Result<Outcome> {
+    Ok(Outcome::Passed(match tools()? {
+        Err(lacking) => format!(", its pages were not looked at: {lacking}"),
+        Ok(browser) => {
+            let mut look = outside("node");
+            look.arg(workshop()?.join("site.test.mjs")).arg(browser).arg(site);
+            format!(", {}", said(look.arg(target()?.join("explore").join("site")))?)
+        }
+    }))
+}
+
 /// How the names end of what only tries a page and is no part of it.
 const TEST: &str = "test.mjs";
 

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use anyhow::Result;
 
-use crate::python;
+use crate::{explore, python};
 use crate::tools::{Outcome, cargo, outside, succeed, target};
 
 /// What builds the pages.
@@ -14,7 +14,8 @@ const SCRIPTS: &str = "docs/site";
 const EVIDENCE: [&str; 7] =
     ["deltaq-random", "deltaq-referees", "deltaq-validation", "engine", "python", "tests", "xtask"];
 
-/// Builds it into `target/site`: the reference of Rust by `cargo doc`, all else by Sphinx.
+/// Builds it into `target/site`: the reference of Rust by `cargo doc`, all else by Sphinx. Then its pages are
+/// looked at in a browser, if there is one.
 pub(crate) fn build() -> Result<Outcome> {
     let target = target()?;
     let left_out = EVIDENCE.iter().flat_map(|package| ["--exclude", package]);
@@ -22,5 +23,6 @@ pub(crate) fn build() -> Result<Outcome> {
     let python = python::make(&target, "site", &Path::new(SCRIPTS).join("requirements.txt"))?;
     let mut run = outside(&python);
     run.arg("-B").arg(Path::new(SCRIPTS).join("build.py")).arg(target.join("site"));
-    succeed(run.arg(target.join("doc")))
+    succeed(run.arg(target.join("doc")))?;
+    explore::look_at(&target.join("site"))
 }
