@@ -38,7 +38,7 @@ def formula(self, node):
 
 
 def block(self, node):
-    self.body.append(f'<div class="formula">{mathml(node.astext(), "block")}</div>')
+    self.body.append(f'<div class="formula" tabindex="0">{mathml(node.astext(), "block")}</div>')
     raise SkipNode
 
 
