@@ -4,8 +4,8 @@ use std::path::Path;
 
 use anyhow::Result;
 
-use crate::{explore, python};
 use crate::tools::{Outcome, cargo, outside, succeed, target};
+use crate::{explore, python};
 
 /// What builds the pages.
 const SCRIPTS: &str = "docs/site";
