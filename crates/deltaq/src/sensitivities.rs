@@ -7,7 +7,8 @@
 //!
 //! Nothing jumps at a time that moves: breakpoints are at times that are numbers, a motion ends where its
 //! equations are singular, `u/sqrt(u^2)` at 0 among them, and where they have a kink rates are continuous,
-//! so that derivatives are, too.
+//! so that derivatives are, too. Not noticed is a parameter that is itself at a kink of the rates, as p = 0 is
+//! for `sqrt(p^2) x`: along p the root has the derivative 0 there. A kink of the start is.
 
 use equations::Outputs;
 use integrate::{Dense, Options, Status, StopCause, Work};
