@@ -7,8 +7,10 @@
 //!
 //! Nothing jumps at a time that moves: breakpoints are at times that are numbers, a motion ends where its
 //! equations are singular, `u/sqrt(u^2)` at 0 among them, and where they have a kink rates are continuous,
-//! so that derivatives are, too. Not noticed is a parameter that is itself at a kink of the rates, as p = 0 is
-//! for `sqrt(p^2) x`: along p the root has the derivative 0 there. A kink of the start is.
+//! so that derivatives are, too.
+//!
+//! A parameter that is itself at a kink of the rates is not noticed, as p = 0 for `sqrt(p^2) x`: there the
+//! root has the derivative 0 along p. A kink of the start is refused.
 
 use equations::Outputs;
 use integrate::{Dense, Options, Status, StopCause, Work};
