@@ -10,7 +10,8 @@
 //! so that derivatives are, too.
 //!
 //! A parameter that is itself at a kink of the rates is not noticed, as p = 0 for `sqrt(p^2) x`: there the
-//! root has the derivative 0 along p. A kink of the start is refused.
+//! root has the derivative 0 along p. A kink of the start is refused from 1e-10 on of the largest part of the
+//! start over the size of the number: units count.
 
 use equations::Outputs;
 use integrate::{Dense, Options, Status, StopCause, Work};

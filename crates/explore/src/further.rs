@@ -45,13 +45,13 @@ fn of_motion(subject: &Subject, choice: &Choice, controls: &[Value], question: &
     });
     let refused = match found {
         Ok(rows) if !rows.is_empty() => return json!({ "label": choice.label, "end": end, "rows": rows }),
-        Ok(_) => format!("the motion does not come to t = {end:?} s"),
+        Ok(_) => format!("the run with derivatives does not come to t = {end:?} s"),
         Err(error) => error.to_string(),
     };
     json!({ "label": choice.label, "refused": refused })
 }
 
-/// A row per number; none if the motion does not come to `end`.
+/// A row per number; none if the run with derivatives does not come to `end`.
 fn rows(
     subject: &Subject,
     choice: &Choice,

@@ -25,13 +25,15 @@ const CHORES: [Chore; 6] = [
         "builds wheel (for glibc 2.28 and newer) and source distribution of the Python module, tests the wheel",
         |_| python::wheel(),
     ),
-    ("site", "builds the site of documents, reports and references, follows its links, into target/site", |_| {
-        site::build()
-    }),
+    (
+        "site",
+        "builds the site of documents, reports and references into target/site, follows its links, looks at it",
+        |_| site::build(),
+    ),
     ("explore", "builds the page to explore scenes, writes reports/explore.html", |_| explore::write()),
     (
         "growth",
-        "moves sliders of a fresh page for some five minutes, or in ROUNDS, and fails if it grows",
+        "moves sliders of a fresh page for five minutes, or in ROUNDS, then times frames; fails if it grows or slows",
         explore::growth,
     ),
     ("engine", "runs the physics engine, writes reports/engine.md", |_| checks::engine()),
