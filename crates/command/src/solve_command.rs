@@ -6,9 +6,8 @@ use std::time::Duration;
 
 use anyhow::{Context, Result, bail};
 use deltaq::{
-    Choice, Ending, ErrorEstimate, Form, Motion, STEP_LIMIT, Setting, Settings, Steps, default_constants,
-    error_estimates, formulation_in, removal, removal_names, removals, sensitivities, setting, solve_by_steps,
-    solve_choice,
+    Choice, ErrorEstimate, Form, Motion, STEP_LIMIT, Setting, Settings, Steps, default_constants, error_estimates,
+    formulation_in, removal, removal_names, removals, sensitivities, setting, solve_by_steps, solve_choice,
 };
 use discrete::Composition;
 use equations::{Formulation, Outputs};
@@ -77,9 +76,7 @@ pub(crate) fn run(arguments: &SolveArguments, quiet: bool) -> Result<Answer> {
     if let (true, Some(words)) = (motion.is_complete() && motion.doubt.is_none(), &mut complaint) {
         *words += if steps.is_some() { "; ask for a smaller --step" } else { "; ask for a smaller --tolerance" };
     }
-    if let Some(Ending::Stopped { t, cause }) = derived.as_ref().map(|derived| &derived.ending) {
-        complaint.get_or_insert(format!("derivatives are known up to t = {t:?}: {cause}"));
-    }
+    complaint = complaint.or_else(|| derived.as_ref()?.complaint());
     let rows = reached.iter().map(|&t| motion.at(t)).collect::<Result<Vec<_>, _>>()?;
     let columns = Columns::of(&scene, &motion.equations);
     let mut program = Observables::of(&scene.system)?;

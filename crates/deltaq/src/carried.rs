@@ -15,6 +15,13 @@ pub(crate) struct Carried<'a> {
     pub(crate) method: Method,
 }
 
+/// The states of a motion, and how they and its constants move along a direction, by their size at most.
+pub(crate) struct Moves {
+    pub(crate) state: Vec<f64>,
+    pub(crate) by: Vec<f64>,
+    pub(crate) constants: Vec<f64>,
+}
+
 /// A run with derivatives along eight directions or less takes as long as this many without (measured on the
 /// sledge, the bowl and three cylinders: 4.5 to 5.5). Fewer runs give differences in less time.
 pub(crate) const PLAIN_RUNS: usize = 5;
@@ -113,6 +120,24 @@ impl<'a> Carried<'a> {
     pub(crate) fn end_moves(&self) -> impl Iterator<Item = &[f64]> {
         let ends = self.runs.iter().map(|(_, run)| &run.solution.dense.end_state()[self.states..]);
         ends.flat_map(|end| end.chunks_exact(self.states))
+    }
+
+    /// The states at `t`, and how they move along each direction.
+    pub(crate) fn moves(&self, prepared: &mut Prepared, t: f64) -> Result<Vec<Moves>, SolveError> {
+        let (n, mut all) = (self.states, Vec::new());
+        for ((tangents, run), along) in self.runs.iter().zip(self.along.chunks(Tangents::DIRECTIONS)) {
+            let mut state = vec![0.0; n * (1 + tangents.directions())];
+            run.states_at(&mut prepared.compiled, t, &mut state)?;
+            let (state, moves) = state.split_at(n);
+            let moves = moves.chunks_exact(n).zip(along).map(|(by, direction)| {
+                let largest = by.iter().zip(&run.sizes).fold(1.0_f64, |a, (by, size)| a.max(by.abs() / size));
+                let by = by.iter().map(|x| x / largest).collect();
+                let constants = direction.constants.iter().map(|x| x / largest).collect();
+                Moves { state: state.to_vec(), by, constants }
+            });
+            all.extend(moves);
+        }
+        Ok(all)
     }
 
     /// What is read off at `t`, and its derivatives along each direction, over its scale.

@@ -2,6 +2,7 @@
 
 use equations::Equations;
 use integrate::Method;
+use symbolic::Expr;
 
 /// The method of a motion, and why.
 #[derive(Clone, Debug, PartialEq)]
@@ -12,12 +13,16 @@ pub struct Chosen {
     pub why: String,
 }
 
-/// What the equations alone tell: whether they have Taylor series wherever a motion may come.
-pub(crate) fn suited(equations: &Equations) -> Chosen {
-    let g = &equations.graph;
+/// What the rates are computed from.
+pub(crate) fn expressions(equations: &Equations) -> Vec<Expr> {
     let definitions = equations.definitions.iter().map(|(_, e)| *e);
     let residuals = equations.blocks.iter().flat_map(|block| block.residuals.iter().copied());
-    let all: Vec<_> = equations.states.iter().map(|y| y.rate).chain(definitions).chain(residuals).collect();
+    equations.states.iter().map(|y| y.rate).chain(definitions).chain(residuals).collect()
+}
+
+/// What the equations alone tell: whether they have Taylor series wherever a motion may come.
+pub(crate) fn suited(equations: &Equations) -> Chosen {
+    let (g, all) = (&equations.graph, expressions(equations));
     let mut kinks = g.kinks(&all);
     kinks.retain(|&e| !equations.is_constant(g, e));
     let (method, why) = match kinks.first() {

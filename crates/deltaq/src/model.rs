@@ -6,8 +6,8 @@ use mechanics::ConstantsRule;
 use scene::Scene;
 
 use crate::carried::{Carried, Which};
+use crate::differences::{derivative, size};
 use crate::direction::Direction;
-use crate::sensitivity_start::{derivative, size};
 use crate::wanted::wanted;
 use crate::{ByName, Choice, Settings, SolveError};
 

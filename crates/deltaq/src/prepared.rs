@@ -154,7 +154,7 @@ impl Prepared {
     }
 
     /// Sets the constants and the guess of the compiled equations.
-    fn set_compiled(&mut self) {
+    pub(crate) fn set_compiled(&mut self) {
         self.compiled.set_constants(&self.constants);
         if !self.guess.is_empty() {
             self.compiled.set_guess(&self.guess);

@@ -9,9 +9,8 @@
 //! equations are singular, `u/sqrt(u^2)` at 0 among them, and where they have a kink rates are continuous,
 //! so that derivatives are, too.
 //!
-//! A parameter that is itself at a kink of the rates is not noticed, as p = 0 for `sqrt(p^2) x`: there the
-//! root has the derivative 0 along p. A kink of the start is refused from 1e-10 on of the largest part of the
-//! start over the size of the number: units count.
+//! A number at which the equations have a kink all the time, as p = 0 for `sqrt(p^2) x`, is refused
+//! ([`crate::kinks`]); so is one at which the start has one.
 
 use equations::Outputs;
 use integrate::{Dense, Options, Status, StopCause, Work};
@@ -23,6 +22,7 @@ use crate::clock::Clock;
 use crate::constants::places;
 use crate::direction::Direction;
 use crate::ending::vanishing_guard;
+use crate::kinks::refuse_kinks;
 use crate::sensitivity_start::{Numbers, kept_natural};
 use crate::wanted::wanted;
 use crate::{ByName, Choice, Ending, Prepared, Settings, SolveError, TIGHTER, setting};
@@ -101,6 +101,7 @@ pub fn sensitivities(
     let clock = Clock::start();
     let options = Options { wanted: wanted.clone(), ..settings.options(settings.tolerance * TIGHTER) };
     let mut kept = kept_run(prepared, &along, end, settings, options)?;
+    refuse_kinks(prepared, &kept, names, [start, end])?;
     let options = Options { method: kept.method, wanted, ..settings.options(settings.tolerance) };
     let mut looser = Carried::by(prepared, &along, end, &options, Which::Looser)?;
     let seconds = clock.seconds();
@@ -133,6 +134,16 @@ pub fn sensitivities(
         found.errors.push(errors);
     }
     Ok(found)
+}
+
+impl Sensitivities {
+    /// Up to when they are known, and why no longer; `None` if to the end.
+    pub fn complaint(&self) -> Option<String> {
+        match &self.ending {
+            Ending::Completed => None,
+            Ending::Stopped { t, cause } => Some(format!("derivatives are known up to t = {t:?}: {cause}")),
+        }
+    }
 }
 
 /// The run that is kept, by a method that suits unless one is asked for.

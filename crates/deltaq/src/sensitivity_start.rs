@@ -2,38 +2,16 @@
 //!
 //! A number moves the start by way of formulas, of velocities that constraints supply, of a projection, of
 //! the variables of a removal and of momenta: a smooth map to `y(t₀)` that costs microseconds and is right to
-//! the last digits. Its derivative is a central difference of order 8 at the best of several distances,
-//!
-//! ```text
-//! y'(x) = Σ_j w_j (y(x + jh) − y(x − jh))/h + O(h⁸) ,    w = 4/5, −1/5, 4/105, −1/280,
-//! ```
-//!
-//! with the distance from that of order 6, and round-off, for its error. A kink at x itself, where the slope
-//! jumps by 2k, is even and has no part in these; it is
-//!
-//! ```text
-//! k = Σ_j v_j (y(x + jh) + y(x − jh) − 2 y(x))/(2h) + O(h⁷) ,    v = 14/5, −7/5, 2/5, −1/20.
-//! ```
+//! the last digits: its derivative is a difference ([`crate::differences`]).
 
 use mechanics::ConstantsRule;
 use mechanics::linear::Factors;
 use scene::{Scene, Starts};
 
 use crate::constants::constant_names;
+use crate::differences::{derivative, size};
 use crate::direction::Direction;
 use crate::{ByName, Choice, Prepared, SolveError, Varying};
-
-/// Weights of the differences of order 8 and of order 6.
-pub(crate) const ORDER_8: [f64; 4] = [4.0 / 5.0, -1.0 / 5.0, 4.0 / 105.0, -1.0 / 280.0];
-const ORDER_6: [f64; 4] = [3.0 / 4.0, -3.0 / 20.0, 1.0 / 60.0, 0.0];
-/// Weights of a kink.
-const KINK: [f64; 4] = [14.0 / 5.0, -7.0 / 5.0, 2.0 / 5.0, -1.0 / 20.0];
-/// Distances over the size of the number.
-const DISTANCES: [f64; 5] = [0.0625, 0.015625, 0.00390625, 0.0009765625, 0.000244140625];
-/// Error of a derivative over the largest one that is accepted.
-const LIMIT: f64 = 1e-10;
-/// With an error like this, of what is linear, no other distance is tried.
-const AT_ONCE: f64 = 1e-14;
 
 /// The numbers that a start depends on: those of names, then the free constants.
 pub(crate) struct Numbers<'a> {
@@ -154,69 +132,6 @@ impl<'a> Numbers<'a> {
         self.reset()?;
         found
     }
-}
-
-/// The derivative at `x` of what is smooth in the number of this name.
-pub(crate) fn derivative(
-    name: &str,
-    x: f64,
-    at: &mut dyn FnMut(f64) -> Result<Vec<f64>, SolveError>,
-) -> Result<Vec<f64>, SolveError> {
-    let size = size(x);
-    let here = at(x)?;
-    let (mut best, mut failure): (Option<(f64, Vec<f64>)>, _) = (None, None);
-    for distance in DISTANCES {
-        let h = size * distance;
-        let mut sums = [(); 3].map(|()| vec![0.0; here.len()]);
-        let mut add = || -> Result<(), SolveError> {
-            for j in 0..4 {
-                let step = h * (j + 1) as f64;
-                let (after, before) = (x + step, x - step);
-                let pair = at(after)?.into_iter().zip(at(before)?);
-                // what lies between two numbers, as they are
-                let width = (after - before) / (2.0 * step) * h;
-                for (i, (a, b)) in pair.enumerate() {
-                    sums[0][i] += ORDER_8[j] * (a - b) / width;
-                    sums[1][i] += ORDER_6[j] * (a - b) / width;
-                    sums[2][i] += KINK[j] * (a + b - 2.0 * here[i]) / (2.0 * width);
-                }
-            }
-            Ok(())
-        };
-        match add() {
-            Err(error) => failure = Some(error),
-            Ok(()) => {
-                let largest = |x: &[f64]| x.iter().fold(0.0_f64, |a, x| a.max(x.abs()));
-                let differences: Vec<f64> = sums[0].iter().zip(&sums[1]).map(|(a, b)| a - b).collect();
-                let error = largest(&differences) + f64::EPSILON * largest(&here) / h;
-                let scale = (largest(&sums[0]) + largest(&here) / size + largest(&sums[2])).max(f64::MIN_POSITIVE);
-                let (relative, kink) = (error / scale, largest(&sums[2]) / scale);
-                let relative = if kink > LIMIT { relative.max(kink) } else { relative };
-                if best.as_ref().is_none_or(|(least, _)| relative < *least) {
-                    best = Some((relative, std::mem::take(&mut sums[0])));
-                }
-                if relative <= AT_ONCE {
-                    break;
-                }
-            }
-        }
-    }
-    match (best, failure) {
-        (Some((relative, derivative)), _) if relative <= LIMIT => Ok(derivative),
-        (Some((found, _)), _) => {
-            let reason = format!(
-                "the start does not move smoothly with {name}: its derivative is known to {found:.1e} of itself, the limit is {LIMIT:.0e}"
-            );
-            Err(SolveError::Member { reason })
-        }
-        (None, Some(error)) => Err(error),
-        (None, None) => unreachable!("there are distances"),
-    }
-}
-
-/// The size of a number by which derivatives are taken.
-pub(crate) fn size(x: f64) -> f64 {
-    if x == 0.0 { 1.0 } else { x.abs() }
 }
 
 /// Directions along which quantities that are natural at a horizon stay zero: to each of `along`, directions

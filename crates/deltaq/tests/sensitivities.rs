@@ -187,3 +187,46 @@ fn a_ramp_that_moves_is_passed_and_a_jump_ends_the_motion() {
     assert_eq!(ours.times, [0.5]);
     assert!(matches!(ours.ending, Ending::Stopped { t, .. } if (t - 1.0).abs() < 1e-6), "{:?}", ours.ending);
 }
+
+/// A point on a line beside another number `y`, with these formulas.
+fn kinked(start: &str, lagrangian: &str, force: &str, y: &str) -> Scene {
+    let text = format!(
+        "title = \"Kink\"\n[parameters]\np = 0.0\nk = 2.0\n[coordinates]\nx = {{ start = \"{start}\" }}\n\
+         y = {{ start = {y} }}\n[system]\nlagrangian = \"(x'^2 + y'^2)/2 - k*x^2/2 + {lagrangian}\"\n\
+         forces = {{ x = \"{force}\" }}\n[start.velocities]\n\"x'\" = 0\n\"y'\" = 0\n[run]\nduration = 2\n"
+    );
+    scene("kink", &text, &[])
+}
+
+#[test]
+fn kinks_at_a_number_are_refused_whatever_the_units() {
+    let refusal = |scene: &Scene, name: &str| {
+        let result = sensitivities(scene, &choices(scene)[0], &[name], &[2.0], &Settings::default());
+        result.map(|found| found.derivatives[0][0].coordinates.clone()).map_err(|error| error.to_string())
+    };
+    let is_kink = |scene: &Scene, name: &str| {
+        let error = refusal(scene, name).unwrap_err();
+        assert!(error.contains(name) && error.contains("kink"), "{error}");
+    };
+    for part in ["sqrt(p^2)", "1e-9*sqrt(p^2)", "1e6*sqrt(p^2)", "(p^2)^(1/2)*cos(k)"] {
+        is_kink(&kinked("0.3", &format!("({part})*x"), "0", "1000"), "p");
+        is_kink(&kinked(part, "0", "0", "1000"), "p");
+    }
+    // the force on x is |y|, and y stays 0
+    let resting = kinked("0.3", "0", "sqrt(y^2)", "0");
+    is_kink(&resting, "y");
+    assert!((refusal(&resting, "x").unwrap()[0] - (2.0 * 2_f64.sqrt()).cos()).abs() < 1e-10);
+    // round, and steep beside a kink: no kink
+    for part in ["sqrt(1e-12 + p^2)", "p*sqrt(p^2)", "sqrt((p - 1e-6)^2) + p"] {
+        let by = refusal(&kinked("0.3", &format!("({part})*x"), "0", "1000"), "p").unwrap();
+        assert!(by[0].abs() < 1e-10, "{part}: {by:?}");
+    }
+}
+
+#[test]
+fn a_small_part_of_the_start_is_derived_as_well_as_a_large_one() {
+    let found = |scene: &Scene| found(scene, &choices(scene)[0], &["p"], &[0.0], &Settings::default());
+    let steep = kinked("1e-9*exp(50*p)", "0", "0", "1000");
+    let by = found(&steep).derivatives[0][0].coordinates[0];
+    assert!((by - 5e-8).abs() < 1e-10 * 5e-8, "{by}");
+}

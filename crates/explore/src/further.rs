@@ -1,6 +1,6 @@
 //! What is said of one motion beside it: its integrals, and its derivatives by the numbers that can be set.
 
-use deltaq::{Choice, SolveError, sensitivities, setting};
+use deltaq::{Choice, sensitivities, setting};
 use integrals::{Integrals, NEAR};
 use serde_json::{Value, json};
 
@@ -39,28 +39,30 @@ fn of_motion(subject: &Subject, choice: &Choice, controls: &[Value], question: &
             return Err(error);
         }
         let rows = numbers.iter().zip(alone).map(|((name, unit), found)| {
-            found.unwrap_or_else(|e| vec![json!({ "name": name, "unit": unit, "refused": e.to_string() })])
+            found.unwrap_or_else(|refused| vec![json!({ "name": name, "unit": unit, "refused": refused })])
         });
         Ok(rows.flatten().collect())
     });
-    let refused = match found {
-        Ok(rows) if !rows.is_empty() => return json!({ "label": choice.label, "end": end, "rows": rows }),
-        Ok(_) => format!("the run with derivatives does not come to t = {end:?} s"),
-        Err(error) => error.to_string(),
-    };
-    json!({ "label": choice.label, "refused": refused })
+    match found {
+        Ok(rows) => json!({ "label": choice.label, "end": end, "rows": rows }),
+        Err(refused) => json!({ "label": choice.label, "refused": refused }),
+    }
 }
 
-/// A row per number; none if the run with derivatives does not come to `end`.
+/// A row per number, or why there is none.
 fn rows(
     subject: &Subject,
     choice: &Choice,
     numbers: &[(&str, &str)],
     end: f64,
     question: &Question,
-) -> Result<Vec<Value>, SolveError> {
+) -> Result<Vec<Value>, String> {
     let names: Vec<&str> = numbers.iter().map(|(name, _)| *name).collect();
-    let found = sensitivities(&subject.scene, choice, &names, &[end], &settings(question))?;
+    let found = sensitivities(&subject.scene, choice, &names, &[end], &settings(question));
+    let found = found.map_err(|error| error.to_string())?;
+    if let Some(complaint) = found.complaint() {
+        return Err(complaint);
+    }
     let at_end = found.derivatives.into_iter().flatten().zip(found.errors.into_iter().flatten());
     let rows = numbers.iter().zip(at_end).map(|((name, unit), (by, error))| {
         json!({ "name": name, "unit": unit, "by": by.coordinates, "error": error.coordinates })

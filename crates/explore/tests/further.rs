@@ -82,3 +82,15 @@ fn a_number_that_cannot_be_varied_is_named_and_the_others_have_their_derivatives
         assert!((of(name)["by"][0].as_f64().unwrap() - by).abs() < 1e-9, "{name}: {found}");
     }
 }
+
+/// Derivatives are carried in one chart, and the motion changes it.
+#[test]
+fn where_derivatives_end_before_the_motion_it_is_said_why() {
+    let text = include_str!("../../catalogue/scenes/rudder-skate.toml");
+    let (found, _) = ask(json!({ "ask": "derivatives", "name": "rudder-skate", "text": text }));
+    let motions = found["motions"].as_array().unwrap();
+    let of = |label: &str| motions.iter().find(|m| m["label"] == label).unwrap_or_else(|| panic!("{label}: {found}"));
+    let refused = of("removed constraint (coordinates)")["refused"].as_str().unwrap();
+    assert!(refused.contains("cos(phi) vanishes, by which the equations divide"), "{refused}");
+    assert!(of("Chetaev")["rows"].is_array(), "{found}");
+}

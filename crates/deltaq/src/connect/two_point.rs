@@ -9,8 +9,8 @@ use scene::Scene;
 use crate::carried::{Carried, Which};
 use crate::connect::velocities::Velocities;
 use crate::connect::{Aim, own_constant_names};
+use crate::differences::ORDER_8;
 use crate::direction::Direction;
-use crate::sensitivity_start::ORDER_8;
 use crate::{Choice, Metric, Settings, SolveError, Varying};
 
 /// `r_i(x) = (q_i(t₁; x) − q₁_i)/size_i`, x in units of the problem.
