@@ -19,7 +19,9 @@ fn small_ball() -> Scene {
 
 fn small_ball_film(seed: u64) -> (Scene, Film) {
     let names = TABLE.iter().zip(TRUTH).map(|(name, x)| (name.to_string(), x.into()));
-    let numbers: Vec<_> = [("a".to_string(), 0.02.into())].into_iter().chain(names).collect();
+    // the motion is violent: nothing behind the film is integrated
+    let known = [("a".to_string(), 0.02.into()), ("duration".to_string(), 2.0.into())];
+    let numbers: Vec<_> = known.into_iter().chain(names).collect();
     let scene = catalogue::find("turntable", &numbers).unwrap_or_else(|error| panic!("{error}"));
     let vakonomic = choices(&scene).into_iter().find(|c| c.formulation == VAKONOMIC).unwrap();
     let constants = ConstantsRule::Given(TRUTH[6..].to_vec());
