@@ -1,10 +1,10 @@
 //! T1, T2, T3, T11, T14: where formulations give the same motion.
 
 use deltaq::{
-    REMOVED_CONSTRAINT, Setting, SolveError, VAKONOMIC, costates_of, growth, integrability, integrals_by_ranks,
-    multipliers_of,
+    Choice, REMOVED_CONSTRAINT, Setting, SolveError, VAKONOMIC, costates_of, derive, growth, integrability,
+    integrals_by_ranks, multipliers_of,
 };
-use mechanics::{Integrability, Removal, SingularValues, complete_removal_start};
+use mechanics::{ConstantsRule, Integrability, Removal, SingularValues, complete_removal_start};
 use nalgebra::{DMatrix, DVector};
 use scene::Scene;
 use symbolic::Symbol;
@@ -118,16 +118,22 @@ pub(super) fn bridge(case: &mut Case) -> Result<(), CheckError> {
 
 /// T3: `A_wᵀ μ₀ = −P₀ − L_ẇ`: bijection of removed (by coordinates, all costates) and vakonomic family.
 pub(super) fn bijection(case: &mut Case) -> Result<(), CheckError> {
-    let (system, start, given) = (&case.scene.system.clone(), case.scene.start.clone(), case.scene.multipliers.clone());
+    let (system, given) = (case.scene.system.clone(), case.scene.multipliers.clone());
     for i in (0..case.removed.len()).filter(|_| !given.is_empty()).collect::<Vec<_>>() {
         let (removal, costates) = (case.removed[i].removal.clone(), case.removed[i].costates.clone());
         let Some(mu) = multipliers_of(&case.scene, &removal, &costates)? else { continue };
-        let mut motion = case.solve(system, &start, case.end(), case.vakonomic.equations.clone(), &mu)?;
+        let mut motion = case.run(equations(&system, VAKONOMIC, None)?, &mu)?;
         case.same(3, "coordinate removal is the vakonomic motion with mu = -P - L_w'", Which::Removed(i), &mut motion);
         let Some(costates) = costates_of(&case.scene, &removal, &given)? else { continue };
-        let equations = case.removed[i].motion.equations.clone();
+        let choice = Choice {
+            label: removal.name.clone(),
+            formulation: REMOVED_CONSTRAINT,
+            removal: Some(removal),
+            constants: ConstantsRule::Given(costates.clone()),
+        };
+        let equations = derive(&system, &choice)?;
         let constants = free_constants(&equations, &costates);
-        let mut motion = case.solve(system, &start, case.end(), equations, &constants)?;
+        let mut motion = case.run(equations, &constants)?;
         case.same(3, "vakonomic is the coordinate removal with P = -mu - L_w'", Which::Vakonomic, &mut motion);
     }
     Ok(())
