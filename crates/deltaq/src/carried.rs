@@ -126,8 +126,7 @@ impl<'a> Carried<'a> {
     pub(crate) fn moves(&self, prepared: &mut Prepared, t: f64) -> Result<Vec<Moves>, SolveError> {
         let (n, mut all) = (self.states, Vec::new());
         for ((tangents, run), along) in self.runs.iter().zip(self.along.chunks(Tangents::DIRECTIONS)) {
-            let mut state = vec![0.0; n * (1 + tangents.directions())];
-            run.states_at(&mut prepared.compiled, t, &mut state)?;
+            let state = states(prepared, tangents, run, t)?;
             let (state, moves) = state.split_at(n);
             let moves = moves.chunks_exact(n).zip(along).map(|(by, direction)| {
                 let largest = by.iter().zip(&run.sizes).fold(1.0_f64, |a, (by, size)| a.max(by.abs() / size));
@@ -144,8 +143,7 @@ impl<'a> Carried<'a> {
     pub(crate) fn at(&mut self, prepared: &mut Prepared, t: f64) -> Result<(Outputs, Vec<Outputs>), SolveError> {
         let mut read: Option<(Outputs, Vec<Outputs>)> = None;
         for (tangents, run) in &mut self.runs {
-            let mut state = vec![0.0; self.states * (1 + tangents.directions())];
-            run.states_at(&mut prepared.compiled, t, &mut state)?;
+            let state = states(prepared, tangents, run, t)?;
             let found = tangents.outputs(&mut prepared.compiled, t, &state);
             let (outputs, derivatives) = found.map_err(|failure| SolveError::Reading { t, failure })?;
             read.get_or_insert((outputs, Vec::new())).1.extend(derivatives);
@@ -157,4 +155,11 @@ impl<'a> Carried<'a> {
         }
         Ok((outputs, derivatives))
     }
+}
+
+/// `(y, dy along direction 1, …)` at `t`.
+fn states(prepared: &mut Prepared, tangents: &Tangents, run: &SingleRun, t: f64) -> Result<Vec<f64>, SolveError> {
+    let mut state = vec![0.0; prepared.start.len() * (1 + tangents.directions())];
+    run.states_at(&mut prepared.compiled, t, &mut state)?;
+    Ok(state)
 }

@@ -69,8 +69,8 @@ pub struct Sensitivities {
 ///
 /// # Errors
 /// As [`ByName::new`] and [`crate::solve_choice`]; [`SolveError::Member`] without names, with a name of which
-/// the start is no smooth function, or for a method other than [`integrate::Method::Taylor`] and
-/// [`integrate::Method::Dop853`].
+/// the start or the equations are no smooth function, or for a method other than
+/// [`integrate::Method::Taylor`] and [`integrate::Method::Dop853`].
 pub fn sensitivities(
     scene: &Scene,
     choice: &Choice,
@@ -101,10 +101,10 @@ pub fn sensitivities(
     let clock = Clock::start();
     let options = Options { wanted: wanted.clone(), ..settings.options(settings.tolerance * TIGHTER) };
     let mut kept = kept_run(prepared, &along, end, settings, options)?;
-    refuse_kinks(prepared, &kept, names, [start, end])?;
     let options = Options { method: kept.method, wanted, ..settings.options(settings.tolerance) };
     let mut looser = Carried::by(prepared, &along, end, &options, Which::Looser)?;
     let seconds = clock.seconds();
+    refuse_kinks(prepared, &kept, names, [start, end])?;
     let direction = (end - start).signum();
     let mut found = Sensitivities {
         names: names.iter().map(|name| name.to_string()).collect(),
