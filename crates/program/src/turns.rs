@@ -99,10 +99,13 @@ impl Drop for Between {
 mod tests {
     use std::sync::atomic::{AtomicUsize, Ordering};
     use std::thread;
+    use std::time::{Duration, Instant};
 
     use super::*;
 
     const THREADS: usize = 3;
+    /// For pieces that never come to be as many.
+    const PATIENCE: Duration = Duration::from_secs(1);
 
     /// One test, as there is one desk: jobs with pieces, one of which panics.
     #[test]
@@ -113,7 +116,12 @@ mod tests {
             let _turn = take(rank, THREADS);
             most.fetch_max(now.fetch_add(1, Ordering::SeqCst) + 1, Ordering::SeqCst);
             order.lock().expect("no panic").push(rank);
-            thread::sleep(std::time::Duration::from_millis(2));
+            // the first ones wait for each other: on a busy machine they may come one by one
+            let begun = Instant::now();
+            while most.load(Ordering::SeqCst) < THREADS && begun.elapsed() < PATIENCE {
+                thread::yield_now();
+            }
+            thread::sleep(Duration::from_millis(2));
             now.fetch_sub(1, Ordering::SeqCst);
         };
         let work = |rank: usize| {
