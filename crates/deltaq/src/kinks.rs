@@ -2,7 +2,8 @@
 //!
 //! A motion and its constants move by `(dy, dc)` with a number. Where rates depend on `√(p²)` and p = 0,
 //! their slope along this direction jumps at the motion itself, and numbers with tangents have the mean of
-//! both sides. It is looked for at a few times, as derivatives are continuous where a motion crosses a kink.
+//! both sides. Where a motion only crosses a kink, derivatives are continuous. A kink that is there for less
+//! than a two-hundredth of the time, and at none of the times that are asked for, may be missed.
 
 use crate::carried::{Carried, Moves};
 use crate::differences::has_kink;
@@ -10,15 +11,14 @@ use crate::method::expressions;
 use crate::wanted::scattered;
 use crate::{Prepared, SolveError};
 
-/// Number of these times.
-const TIMES: usize = 8;
-
-/// Refuses the first of these numbers at which rates, multipliers or invariants have one between these ends.
+/// Refuses the first of these numbers at which rates, multipliers or invariants have one, at `times` or
+/// between these ends.
 pub(crate) fn refuse_kinks(
     prepared: &mut Prepared,
     carried: &Carried,
     names: &[&str],
     [start, end]: [f64; 2],
+    times: &[f64],
 ) -> Result<(), SolveError> {
     let equations = &prepared.equations;
     let read = equations.multipliers.iter().chain(&equations.invariants).map(|read| read.expression);
@@ -27,7 +27,7 @@ pub(crate) fn refuse_kinks(
         return Ok(());
     }
     let is_reached = |t: f64| carried.ends().all(|end| (t - start).abs() <= (end - start).abs());
-    for t in scattered([start, end]).filter(|&t| is_reached(t)).take(TIMES) {
+    for t in scattered([start, end]).chain(times.iter().copied()).filter(|&t| is_reached(t)) {
         let moves = carried.moves(prepared, t)?;
         let kinked = moves.iter().position(|moves| is_kinked(prepared, t, moves));
         prepared.set_compiled();

@@ -38,6 +38,8 @@ pub struct Sensitivities {
     pub invariants: Vec<String>,
     /// The times asked for, as far as both runs came.
     pub times: Vec<f64>,
+    /// The others of the times asked for.
+    pub missing: Vec<f64>,
     /// What is read off at these times.
     pub outputs: Vec<Outputs>,
     /// The derivatives at each time by each number.
@@ -104,13 +106,14 @@ pub fn sensitivities(
     let options = Options { method: kept.method, wanted, ..settings.options(settings.tolerance) };
     let mut looser = Carried::by(prepared, &along, end, &options, Which::Looser)?;
     let seconds = clock.seconds();
-    refuse_kinks(prepared, &kept, names, [start, end])?;
+    refuse_kinks(prepared, &kept, names, [start, end], times)?;
     let direction = (end - start).signum();
     let mut found = Sensitivities {
         names: names.iter().map(|name| name.to_string()).collect(),
         multipliers,
         invariants,
         times: Vec::new(),
+        missing: Vec::new(),
         outputs: Vec::new(),
         derivatives: Vec::new(),
         errors: Vec::new(),
@@ -119,7 +122,9 @@ pub fn sensitivities(
         seconds,
     };
     let ends: Vec<f64> = kept.ends().chain(looser.ends()).collect();
-    for &t in times.iter().take_while(|&&t| ends.iter().all(|end| direction * (t - end) <= 0.0)) {
+    let reached = times.partition_point(|t| ends.iter().all(|end| direction * (t - end) <= 0.0));
+    found.missing = times[reached..].to_vec();
+    for &t in &times[..reached] {
         let ((outputs, derivatives), (_, others)) = (kept.at(prepared, t)?, looser.at(prepared, t)?);
         let pairs = derivatives.iter().zip(&others).enumerate();
         let errors = pairs.map(|(k, (kept, looser))| {
@@ -137,11 +142,13 @@ pub fn sensitivities(
 }
 
 impl Sensitivities {
-    /// Up to when they are known, and why no longer; `None` if to the end.
+    /// Up to when they are known, and why no longer; `None` if to all times asked for.
     pub fn complaint(&self) -> Option<String> {
         match &self.ending {
-            Ending::Completed => None,
-            Ending::Stopped { t, cause } => Some(format!("derivatives are known up to t = {t:?}: {cause}")),
+            Ending::Stopped { t, cause } if !self.missing.is_empty() => {
+                Some(format!("derivatives are known up to t = {t:?}: {cause}"))
+            }
+            _ => None,
         }
     }
 }

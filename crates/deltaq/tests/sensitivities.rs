@@ -183,8 +183,11 @@ fn a_ramp_that_moves_is_passed_and_a_jump_ends_the_motion() {
     let [by_s, by_k] = [0, 1].map(|k| ours.derivatives[0][k].coordinates[0]);
     assert!((by_s + 1.0).abs() < 1e-10 && (by_k - 1.0 / 6.0).abs() < 1e-10, "{by_s} {by_k}");
     let jump = scene("k*(t - s)/sqrt((t - s)^2)");
+    let early = found(&jump, &choices(&jump)[0], &["s"], &[0.5], &Settings::default());
+    assert_eq!((early.times.len(), early.missing.len(), early.complaint()), (1, 0, None));
     let ours = found(&jump, &choices(&jump)[0], &["s"], &[0.5, 2.0], &Settings::default());
-    assert_eq!(ours.times, [0.5]);
+    assert_eq!((&ours.times[..], &ours.missing[..]), (&[0.5][..], &[2.0][..]));
+    assert!(ours.complaint().unwrap().contains("up to t = "), "{:?}", ours.complaint());
     assert!(matches!(ours.ending, Ending::Stopped { t, .. } if (t - 1.0).abs() < 1e-6), "{:?}", ours.ending);
 }
 
@@ -211,6 +214,10 @@ fn kinks_at_a_number_are_refused_whatever_the_units() {
     for part in ["sqrt(p^2)", "1e-9*sqrt(p^2)", "1e6*sqrt(p^2)", "(p^2)^(1/2)*cos(k)"] {
         is_kink(&kinked("0.3", &format!("({part})*x"), "0", "1000"), "p");
         is_kink(&kinked(part, "0", "0", "1000"), "p");
+    }
+    // it is switched on late, and after all but the time that is asked for
+    for late in ["1.95", "1.9999"] {
+        is_kink(&kinked("0.3", "0", &format!("sqrt(p^2)*(t - {late} + sqrt((t - {late})^2))"), "1000"), "p");
     }
     // the force on x is |y|, and y stays 0
     let resting = kinked("0.3", "0", "sqrt(y^2)", "0");

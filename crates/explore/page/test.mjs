@@ -260,16 +260,18 @@ const ELSEWHERE = ["eachBody", "costates", "cleared", "refusals", "overlaps", "w
   "runaway", "logarithms", "hand", "rolling", "halted"];
 // one that breaks off does not hide what the others find
 const single = { everyScene, eachBody, ...checks, ...access, ...drawn, ...looking, ...hands, ...takes, ...further, tour, tasks };
-const whole = (check) => () => check(tools).catch((error) => complaints.push(`${check.name}: ${error.stack}`));
-const named = (names) => names.map((name) => whole(single[name]));
+const whole = (name, check) => () => check(tools).catch((error) => complaints.push(`${name}: ${error.stack}`));
+const named = (names) => names.map((name) => whole(name, single[name]));
 
 try {
-  const grows = whole(() => growth(tools, Number(what) || ROUNDS));
+  const grows = whole("growth", () => growth(tools, Number(what) || ROUNDS));
   // how fast frames come is no question for a machine that does other things as well
-  const slows = whole(() => frames(tools, SECONDS));
+  const slows = whole("frames", () => frames(tools, SECONDS));
   const shown = named(Object.keys(single).filter((name) => name !== "eachBody"));
   const all = [opening, sliders, fingers, ownText, looks, ...shown, grows];
-  const parts = { all, numbers: [ownText], shown, elsewhere: [ownText, ...named(ELSEWHERE)] }[what] ?? (what in single ? named([what]) : [grows, slows]);
+  const several = { all, numbers: [ownText], shown, elsewhere: [ownText, ...named(ELSEWHERE)], speed: [opening, sliders] };
+  const parts = several[what] ?? (Number(what) ? [grows, slows] : what in single ? named([what]) : undefined);
+  if (!parts) throw new Error(`${what} is none of ${[...Object.keys(several), ...Object.keys(single)].join(", ")}, nor a number of rounds`);
   for (const part of parts) await part();
 } catch (error) {
   complaints.push(error.stack);

@@ -3,7 +3,7 @@
 
 use deltaq::{CHETAEV, Choice, FIRST_ORDER, Settings, choices, solve_choice};
 use fit::{Row, Verdict};
-use nalgebra::Complex;
+use num_complex::Complex;
 
 use crate::films::{SLEDGE, built_in, film, fitted, fitted_by, sledge, times};
 

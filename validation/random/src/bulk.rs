@@ -150,6 +150,12 @@ impl Batch {
         Ok((records, lines.go_on()?))
     }
 
+    /// Of each theorem that fails the first failure, shrunk; others mostly have the same cause.
+    pub fn counterexamples(&self, records: &[Record]) -> Vec<(u8, Scene)> {
+        let failures = first_failures(records).into_iter();
+        failures.filter_map(|(theorem, index)| Some((theorem, self.counterexample(index, theorem)?))).collect()
+    }
+
     /// The smallest system on which a claim of `theorem` still fails; `None` where the system itself passes.
     pub fn counterexample(&self, index: u64, theorem: u8) -> Option<Scene> {
         self.faulty_counterexample(index, theorem, &Fault::NONE, SHRINKING)
@@ -171,6 +177,12 @@ impl Batch {
         let notes = format!("T{theorem} fails: {claim}.{figures}{note} Shrunk from {from}.");
         Some(Scene { name: format!("{from}-T{theorem}"), notes, ..scene })
     }
+}
+
+/// The index of the first record with a failure of each theorem.
+fn first_failures(records: &[Record]) -> BTreeMap<u8, u64> {
+    let failures = records.iter().flat_map(|record| record.failures().into_iter().map(|t| (t, record.index)));
+    failures.rev().collect()
 }
 
 /// The scene of a recipe on which a claim of `theorem` fails, and the failure.
@@ -209,7 +221,22 @@ fn shrink_within<V: ValueTree, T>(steps: usize, tree: &mut V, test: &dyn Fn(&V::
 
 #[cfg(test)]
 mod tests {
+    use super::super::finding::Word;
+    use super::super::record::Open;
     use super::*;
+
+    #[test]
+    fn of_each_theorem_the_first_failure_is_shrunk() {
+        let batch = Batch { seed: 1, kinds: vec![Kind::Linear] };
+        let mut records = [4, 5, 6].map(|index| batch.record(index));
+        assert!(first_failures(&records).is_empty());
+        for (record, theorems) in records.iter_mut().zip([&[7][..], &[3, 7], &[3]]) {
+            let open =
+                |&theorem| Open { theorem, claim: String::new(), word: Word::Fails, figure: None, note: String::new() };
+            record.open = theorems.iter().map(open).collect();
+        }
+        assert_eq!(first_failures(&records), BTreeMap::from([(3, 5), (7, 4)]));
+    }
 
     /// Two kinds take turns, so both of the first pair are thorough, and then both of the eleventh.
     #[test]

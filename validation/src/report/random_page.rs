@@ -33,14 +33,10 @@ pub fn random_files(batch: &Batch, records: &[Record]) -> Result<Vec<File>> {
         File { path: "random-exponents.svg".into(), text: exponents(&summary)? },
     ];
     let mut counterexamples = Vec::new();
-    for record in records {
-        for theorem in record.failures() {
-            if let Some(scene) = batch.counterexample(record.index, theorem) {
-                let path = format!("counterexamples/{}.toml", scene.name);
-                files.push(File { path: path.clone().into(), text: scene.to_toml() });
-                counterexamples.push((theorem, path));
-            }
-        }
+    for (theorem, scene) in batch.counterexamples(records) {
+        let path = format!("counterexamples/{}.toml", scene.name);
+        files.push(File { path: path.clone().into(), text: scene.to_toml() });
+        counterexamples.push((theorem, path));
     }
     files.push(File { path: "random.md".into(), text: page(batch, &summary, records, &counterexamples) });
     Ok(files)
@@ -247,7 +243,7 @@ fn times(summary: &Summary) -> Result<String> {
         points.push((DURATION, part));
         Curve { label: names.passes.trim_start_matches("tau(1e-3), ").into(), style, points }
     });
-    let x = Axis { range: Some((0.0, DURATION)), ..Axis::linear("t") };
+    let x = Axis { range: Some((0.0, DURATION)), ..Axis::linear("t (s)") };
     let y = Axis { range: Some((0.0, 1.0)), ..Axis::linear("part of the systems") };
     let title = "Nonintegrable random systems: when the gap passes 1e-3";
     Ok(Picture::new(title, x, y, curves.collect()).to_svg()?)

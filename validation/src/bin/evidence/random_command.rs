@@ -12,9 +12,6 @@ use program::Answer;
 use program::File;
 use random::{Batch, Count, Kind, Record, Summary, milliseconds, theorem_title};
 
-/// Counterexamples that are shrunk and written; more failures than these have the same causes.
-const COUNTEREXAMPLES: usize = 5;
-
 /// Puts random systems to the test.
 pub(crate) fn run(arguments: &RandomArguments, quiet: bool) -> Result<Answer> {
     if !arguments.merge.is_empty() {
@@ -40,7 +37,8 @@ fn many(batch: &Batch, arguments: &RandomArguments, quiet: bool) -> Result<Answe
 fn told(batch: &Batch, records: &[Record], seconds: Option<f64>, arguments: &RandomArguments) -> Result<Answer> {
     let summary = Summary::of(records);
     let folder = arguments.output.out.as_deref();
-    let files = folder.map_or(Vec::new(), |_| counterexamples(batch, records));
+    let shrunk = folder.map_or(Vec::new(), |_| batch.counterexamples(records));
+    let files: Vec<File> = shrunk.iter().map(|(_, scene)| file(scene)).collect();
     let paths: Vec<String> =
         files.iter().filter_map(|file| Some(folder?.join(&file.path).display().to_string())).collect();
     let open: Vec<&Record> = records.iter().filter(|record| !record.open.is_empty()).collect();
@@ -49,10 +47,10 @@ fn told(batch: &Batch, records: &[Record], seconds: Option<f64>, arguments: &Ran
         for record in &open {
             text += &opened(&batch.name(record.index), record);
         }
-        let rate = |seconds: f64| format!(" in {seconds:.1} s, {:.0} a second", records.len() as f64 / seconds);
+        let rate = |seconds: f64| format!(" in {seconds:.1} s, {:.0} per second", records.len() as f64 / seconds);
         let _ = writeln!(text, "\n{} systems{}", records.len(), seconds.map_or(String::new(), rate));
         let features: Vec<String> = summary.features.iter().map(|(name, count)| format!("{count} {name}")).collect();
-        let _ = writeln!(text, "of which have {}", deltaq::words::enumerate(&features));
+        let _ = writeln!(text, "they have {}", deltaq::words::enumerate(&features));
         let (at_stake, all) = (summary.total_at_stake(), summary.total().total());
         let _ = writeln!(text, "{at_stake} of {all} verdicts are on systems on which formulations differ");
         text += &work(records);
@@ -71,7 +69,7 @@ fn work(records: &[Record]) -> String {
     let (motions, checks) = milliseconds(records);
     let checks: Vec<String> = checks.iter().map(|(theorem, ms)| format!("{} {ms:.1}", label(*theorem))).collect();
     format!(
-        "milliseconds of one processor a system: motions of all formulations {motions:.1}; checks {}\n",
+        "milliseconds of one processor per system: motions of all formulations {motions:.1}; checks {}\n",
         checks.join(", ")
     )
 }
@@ -125,13 +123,6 @@ fn opened(name: &str, record: &Record) -> String {
 
 fn file(scene: &Scene) -> File {
     File { path: format!("{}.toml", scene.name).into(), text: scene.to_toml() }
-}
-
-/// The first failures, shrunk.
-fn counterexamples(batch: &Batch, records: &[Record]) -> Vec<File> {
-    let failures = records.iter().flat_map(|record| record.failures().into_iter().map(|t| (record.index, t)));
-    let shrunk = failures.take(COUNTEREXAMPLES).filter_map(|(index, theorem)| batch.counterexample(index, theorem));
-    shrunk.map(|scene| file(&scene)).collect()
 }
 
 #[cfg(test)]
