@@ -22,7 +22,7 @@ const SMALLEST: f64 = 1e-3;
 /// Singular values under this part of the largest count as zero.
 const SINGULAR: f64 = 1e-13;
 
-/// What one instant says: the mismatch of accelerations `O c + y₀`, and how long it is.
+/// Mismatch of accelerations at one instant, `O c + y₀`, with the scales it is measured by.
 pub(crate) struct Mismatch {
     /// n×(constants + 1), whitened: its Euclidean length is the length in the metric `M` on `ker A`.
     pub(crate) rows: DMatrix<f64>,
@@ -35,7 +35,7 @@ pub(crate) struct Mismatch {
     whitened: DMatrix<f64>,
 }
 
-/// What was integrated; no dense output where there are no states.
+/// An integrated path; no dense output where there are no states.
 pub(crate) struct Path {
     pub(crate) dense: Option<DenseOutput>,
     pub(crate) end: f64,
@@ -266,8 +266,8 @@ impl<'a> Transport<'a> {
         terms
     }
 
-    /// Integrates to the end of the curve, or as far as it comes: no farther where more than so many steps
-    /// are ahead.
+    /// Integrates to the end of the curve or as far as it gets; it stops where the rest would need more than
+    /// `steps` steps.
     pub(crate) fn run(&mut self, tolerance: f64, steps: usize) -> Result<Path, DecisionError> {
         let start = self.start()?;
         let (_, end) = self.span();

@@ -17,12 +17,12 @@ const STRETCHES: usize = 4;
 const STRETCH: usize = 500;
 const MOST: f64 = 0.8;
 
-/// And where the rest would take as long at the pace of the last `LONG` attempts, which is under `SLOWER` of
-/// the average pace.
+/// Also stalled: at the pace of the last `LONG` attempts the rest needs as many, and that pace is below
+/// `SLOWER` of the average pace.
 const LONG: usize = 8_000;
 const SLOWER: f64 = 1e-2;
 
-/// Time and number of steps, or of attempts, at some point of a run.
+/// A point of a run: the time, and the number of steps or of attempts so far.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Mark {
     t: f64,
@@ -37,12 +37,13 @@ pub(crate) struct Pace {
     many: Mark,
     stretch: Mark,
     long: Mark,
-    /// Where the stretches began that get nowhere, how many there are, what the first and the last moved.
+    /// Start and number of the latest consecutive windows that are too slow; the time that the first of them
+    /// and the last window moved.
     slow: Mark,
     stretches: usize,
     first: f64,
     last: f64,
-    /// Attempts that are ahead at the pace of the last stretch; none are before the first.
+    /// Attempts that the rest needs at the pace of the last window; 0 before the first window.
     ahead: f64,
 }
 
@@ -58,13 +59,14 @@ impl Pace {
         Pace { end, ..self }
     }
 
-    /// Whether more attempts are ahead than this, and the time that the last stretch of them moved.
+    /// If the rest needs more than `patience` attempts: that number, and the time that the last window moved.
     pub(crate) fn is_over(&self, patience: f64) -> Option<(f64, f64)> {
         (self.ahead > patience).then_some((self.ahead, self.last))
     }
 
-    /// Whether a run creeps that has come to `t` by so many steps of so many attempts, of which it may make
-    /// `limit`: the number of the last steps, and by how much they moved the time.
+    /// Checks a run for a stall at time `t`, after `steps` accepted steps out of `attempts`, at most `limit`
+    /// of which are allowed. If it stalls: the number of the last steps (or attempts), and how far they moved
+    /// the time.
     pub(crate) fn look(&mut self, t: f64, steps: usize, attempts: usize, limit: usize) -> Option<(usize, f64)> {
         let since = |mark: Mark, count: usize| (count - mark.count, (t - mark.t).abs());
         let (many, moved) = since(self.many, steps);
@@ -109,7 +111,8 @@ impl Pace {
 mod tests {
     use super::*;
 
-    /// The steps after which a run of this pace creeps, of at most a million; `step` gives the step at n, t.
+    /// Number of steps after which a run is found to stall, within a million; `step(n, t)` is the length of
+    /// step n.
     fn creeps(end: f64, step: impl Fn(f64, f64) -> f64) -> Option<usize> {
         let (mut pace, mut t) = (Pace::new(0.0, end), 0.0);
         (1..1_000_000).find(|&n| {

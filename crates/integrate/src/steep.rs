@@ -10,15 +10,15 @@ use crate::events::Segment;
 use crate::problem::Gauge;
 use crate::system::{Failure, System};
 
-/// A gauge may grow by so much along a step.
+/// Maximum growth of a gauge along one step.
 pub const GAUGE_LIMIT: f64 = 4.0;
 /// Number of equidistant places, ends included, at which arguments are evaluated; every other one first.
 pub const GAUGE_NODES: usize = 9;
 /// Number of parts in which the polynomial through these is sampled.
 const PARTS: usize = 16;
-/// What differences of arguments lose, in parts of the largest.
+/// Round-off of differences of arguments, in parts of the largest argument.
 const ROUND_OFF: f64 = 64.0 * f64::EPSILON;
-/// Between places the polynomial is off by so many roundings of what was added up to arguments at these.
+/// Error of the polynomial between the nodes, in parts of the largest sum of terms behind an argument.
 const BLUR: f64 = 16.0 * f64::EPSILON;
 /// Arguments are clamped to ± this, so that differences stay finite.
 const HUGE: f64 = 1e100;

@@ -14,7 +14,8 @@ use crate::taylor_step::{DEFECT, ROUND_OFF};
 
 /// Maximum number of consecutive halvings of a step that cannot be evaluated.
 pub(crate) const HALVINGS: usize = 60;
-/// A move of a projection that as many halvings do not halve is none of a step.
+/// After this many consecutive steps refused for the move of their projection, a move that is over half the
+/// last one is allowed.
 const PERSISTENT: usize = 6;
 
 /// Integrates with `stepper`, or reports that it could not be set up.
@@ -150,10 +151,10 @@ impl Record<'_, '_> {
         Ok(())
     }
 
-    /// A step's error is of the size of the tolerance: a projection that moves much farther hides another
-    /// one. What shorter steps do not make smaller is no error of a step, but round-off of constraints that
-    /// are nearly dependent, and is allowed from then on. What several steps of a multistep method have
-    /// added up is no error of one.
+    /// A step's error is about the tolerance: a step whose projection moves the state much farther hides
+    /// another error, and is refused. A move that shorter steps do not reduce is round-off of nearly
+    /// dependent constraints, and is allowed from then on. With a multistep method every move is allowed:
+    /// several steps may have added it up.
     fn check_move(&mut self, candidate: &[f64]) -> Result<(), Failure> {
         let relative = self.options.relative_tolerance.max(ROUND_OFF);
         let (mut component, mut worst) = (0, 0.0);

@@ -49,7 +49,7 @@ fn eighths(range: std::ops::RangeInclusive<i32>) -> impl Strategy<Value = f64> {
     range.prop_map(|k| f64::from(k) / 8.0)
 }
 
-/// Tolerance against the closed form, relative to the way.
+/// Tolerance against the closed form, relative to the distance covered.
 const LIMIT: f64 = 1e-9;
 
 /// Instants.
@@ -115,7 +115,7 @@ fn motion(scene: &Scene, formulation: &'static Formulation, constants: &[f64]) -
     solve(setting(scene), equations, &ConstantsRule::Given(constants.to_vec()), &deltaq::Settings::default())
 }
 
-/// Largest distance from a closed form, relative to the way.
+/// Largest distance from a closed form, relative to the distance covered.
 fn error(motion: &mut Motion, exact: &dyn Fn(f64) -> Vec<f64>) -> Result<f64, SolveError> {
     if !motion.is_complete() {
         return Ok(f64::INFINITY);
