@@ -1,4 +1,4 @@
-//! What must hold between the crates: one program, one module a subject.
+//! What must hold between the crates: one program, one module per subject.
 
 mod acceptance;
 mod architecture;

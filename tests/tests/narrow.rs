@@ -1,4 +1,5 @@
-//! Pulses and walls of any width at any place are found or told, by every method: against integrals.
+//! Pulses and walls of any width at any place are resolved, or the run fails with a reason, by every method:
+//! compared with integrals.
 
 use deltaq::{CHETAEV, Ending, Settings, choices, error_estimate, setting, solve_choice};
 use integrate::Method;

@@ -10,7 +10,7 @@ use integrate::Method;
 use scene::Scene;
 use symbolic::SplitMix;
 
-/// So many pulses; `PULSES` asks for more.
+/// Number of pulses; `PULSES` asks for more.
 const PULSES: usize = 60;
 /// Largest part of runs that may be refused.
 const REFUSED: f64 = 0.05;

@@ -12,7 +12,7 @@ use mechanics::{ConstantsRule, Coordinate, Parameter, fresh_symbol};
 use scene::Scene;
 use symbolic::{Expr, SplitMix};
 
-/// So many switched scenes are drawn; `SWITCHED` asks for more, 0 for all of them.
+/// Number of switched scenes that are drawn; `SWITCHED` asks for more, 0 for all of them.
 const SWITCHED: usize = 40;
 /// Coordinates, velocities and constraints, one each.
 const PLACES: [&str; 3] = ["(1 + tanh(24*U))/2", "exp(-36*U^2)", "step(t, T0 + 0.2*T, T0 + 0.9*T, 0.005*T)"];

@@ -112,7 +112,7 @@ def check_case(name, scene, case):
         instant = formulations.derive(scene, case["formulation"], case["removal"])
         if case.get("samples"):
             rows.append(compare_rates(name, case, instant))
-    except Exception as error:  # whatever it is, it is told in the answer
+    except Exception as error:  # whatever it is, the answer contains it
         return [failure(name, "CasADi", f"{label}: equations", error)]
     for solver in case.get("solvers", []):
         try:

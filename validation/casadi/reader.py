@@ -190,7 +190,7 @@ class Scene:
             try:
                 names[name] = value(text, names, algebra)
             except ValueError:
-                pass  # holds what a removal has put away; whoever uses it after all is told that it is undefined
+                pass  # holds what a removal has put away; an expression that uses it after all gets the error that it is undefined
         return names
 
 

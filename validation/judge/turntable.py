@@ -1,6 +1,6 @@
 """What adapters share: numbers of the scene `turntable`, the command line, the CSV.
 
-An adapter calls `run(SETTINGS, motion, __doc__)`; its `motion(ball, dt, steps, every)` yields, at every so many steps,
+An adapter calls `run(SETTINGS, motion, __doc__)`; its `motion(ball, dt, steps, every)` yields, every `every` steps,
 `(t, centre, rotation, velocity, spin)`: s, m, ball to room as a matrix, m/s, rad/s, the last two seen from the room.
 """
 

@@ -1,4 +1,4 @@
-//! What the reports rest on: one program, one module a subject.
+//! What the reports rest on: one program, one module per subject.
 
 mod audit;
 mod batches;

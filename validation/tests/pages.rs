@@ -118,7 +118,7 @@ fn the_tables_of_a_scene_say_what_its_rows_are() {
             says(&told, Some(drift));
             judged += usize::from(drift > 0.0);
         }
-        // what is told is not that of the end
+        // the printed value is not that of the end
         judged += usize::from(residuals.last().is_some_and(|last| *last < 0.5 * largest));
     }
     assert!(judged >= 2, "{judged}");

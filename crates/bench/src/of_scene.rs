@@ -97,11 +97,11 @@ pub struct Measurements {
     pub shortened: bool,
     /// Error of the reference.
     pub reference_error: f64,
-    /// How the reference was had.
+    /// How the reference was computed.
     pub reference: String,
-    /// One a method.
+    /// One per method.
     pub series: Vec<Series>,
-    /// What is chosen where nothing is asked for but a tolerance, or why there is none.
+    /// The run with default options apart from the tolerance, or why there is none.
     pub usual: Result<Usual, String>,
 }
 

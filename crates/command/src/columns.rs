@@ -1,4 +1,4 @@
-//! What is printed of a motion at some times: one column a coordinate, a velocity and a multiplier.
+//! Columns of a motion's table: one per coordinate, per velocity and per multiplier.
 
 use deltaq::{ErrorEstimate, Sensitivities};
 use equations::{Equations, Outputs};
@@ -32,7 +32,7 @@ impl Columns {
         self.coordinates.iter().chain(&self.multipliers).map(|name| format!("error {name}")).collect()
     }
 
-    /// Adds the columns to an object: a list of numbers a name.
+    /// Adds the columns to an object: one list of numbers per name.
     pub fn write(&self, object: &mut Value, rows: &[Outputs]) {
         object["coordinates"] = named_columns(&self.coordinates, rows, |r| &r.coordinates);
         object["velocities"] = named_columns(&self.coordinates, rows, |r| &r.velocities);
@@ -77,7 +77,7 @@ pub fn derivative_row(derived: &Sensitivities, i: usize) -> String {
     pairs.map(|(derivatives, errors)| format!(",{},{}", print(&all(derivatives)), print(&all(errors)))).collect()
 }
 
-/// One list of numbers a name.
+/// One list of numbers per name.
 pub fn named_columns<R>(names: &[String], rows: &[R], row: fn(&R) -> &[f64]) -> Value {
     let column = |i: usize| rows.iter().map(|r| row(r)[i]).collect::<Vec<f64>>();
     names.iter().enumerate().map(|(i, name)| (name.clone(), json!(column(i)))).collect::<Map<_, _>>().into()

@@ -1,4 +1,4 @@
-//! The program as a person meets it, run as a process: one program, one module a subject.
+//! The program as a person meets it, run as a process: one program, one module per subject.
 
 mod bad_scenes;
 mod columns;

@@ -10,7 +10,7 @@ use crate::family::Family;
 use crate::sizes::{CERTAIN, Column, ROUND_OFF, Sizes, Sums};
 use crate::transport::{Path, Transport};
 
-/// Gauss nodes a panel, and the least number of panels.
+/// Gauss nodes per panel, and the least number of panels.
 pub(crate) const NODES: usize = 2;
 const PANELS: usize = 40;
 /// The question is judged up to these parts of the time.

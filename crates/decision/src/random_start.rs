@@ -4,14 +4,16 @@ use crate::exact::{Coefficient, Exact, Flaw, Jet, Modular};
 use crate::series::SeriesStart;
 use crate::start::{ExactStart, NoExactStart};
 
-/// Random times, positions and velocities are integers of either sign up to 2 to one of these powers: exact
-/// numbers have to fit, of which functions are taken.
+/// Random times, positions and velocities are integers of either sign up to 2 to one of these powers, tried
+/// in this order: exact functions of large integers may not fit.
 const BITS: [u32; 3] = [20, 8, 3];
-/// Where roots have branches they are so many of these parts of its own numbers away from the start.
+/// Where roots have branches, these integers count steps of 1/`PART` of each number of the start, away from
+/// it.
 const PART: i128 = 1 << 30;
-/// Draws until the constraints have roots: where they are squares, each has one for every second draw.
+/// Maximum number of draws until the constraints have roots: a square has one for every second draw.
 const DRAWS: usize = 256;
-/// A square that has a root at so many draws is that of a function: one in 2^64 others has.
+/// Number of draws with a root after which a square counts as that of a function: one other in 2^64 has as
+/// many.
 const ROOTED: usize = 64;
 
 /// A number, or a constraint as a polynomial in one velocity up to the order that shows that it is quadratic:

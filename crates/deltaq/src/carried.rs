@@ -139,7 +139,7 @@ impl<'a> Carried<'a> {
         Ok(all)
     }
 
-    /// What is read off at `t`, and its derivatives along each direction, over its scale.
+    /// Outputs at `t`, and their derivatives along each direction, divided by its scale.
     pub(crate) fn at(&mut self, prepared: &mut Prepared, t: f64) -> Result<(Outputs, Vec<Outputs>), SolveError> {
         let mut read: Option<(Outputs, Vec<Outputs>)> = None;
         for (tangents, run) in &mut self.runs {

@@ -12,8 +12,8 @@ use symbolic::{Code, Expr, Language, Matrix, Symbol};
 
 use crate::{EquationStyle, Prepared, SolveError, equations_text};
 
-/// The equations as a source file: `ẏ = F(t, y)`, what is read off at `(t, y)` (coordinates, velocities,
-/// multipliers, invariants), the start, and every parameter and free constant as a value to be changed.
+/// The equations as a source file: `ẏ = F(t, y)`, outputs at `(t, y)` (coordinates, velocities, multipliers,
+/// invariants), the start, and every parameter and free constant as a value to be changed.
 ///
 /// C99: functions without allocation, which solve the blocks as we do. NumPy: functions of one state or of
 /// any number, shape `(…, m)`. SymPy: matrices in symbols, with the unknowns `z` of the instant, `A z = b`.
@@ -57,7 +57,7 @@ struct Listing<'a> {
     constants: Vec<(String, String, f64)>,
     systems: Vec<LinearSystem<'a>>,
     rates: Vec<Expr>,
-    /// What is read off: names and expressions.
+    /// Outputs: names and expressions.
     outputs: Vec<(String, Expr)>,
 }
 

@@ -25,7 +25,7 @@ const MORE_STEPS: f64 = 1.0 / 3.0;
 /// Steps of a hundredth of the tolerance over what the method's order asks for; beyond, it is round-off.
 const TOO_MANY: f64 = 10.0;
 
-/// So many steps of the looser run are looked at together to find where the doubt begins.
+/// Number of steps of the looser run per stretch, in the search for where the doubt begins.
 const TOGETHER: usize = 20;
 
 impl Doubt {
@@ -81,7 +81,7 @@ fn too_few_words(method: Option<Method>) -> String {
 mod tests {
     use super::*;
 
-    /// So many equal steps from 0 to 1, and `more` times as many from 1 to 2.
+    /// Ends of `count` equal steps from 0 to 1, then of `more` times as many from 1 to 2.
     fn steps(count: usize, more: usize) -> Vec<f64> {
         let first = (0..count).map(|i| i as f64 / count as f64);
         let second = (0..=count * more).map(|i| 1.0 + i as f64 / (count * more) as f64);

@@ -39,7 +39,7 @@ pub enum SolveError {
     /// The equations cannot be evaluated at the start.
     #[error("at the start: {0}")]
     AtStart(EvaluationFailure),
-    /// The equations cannot be evaluated where a motion is read off.
+    /// The equations cannot be evaluated at a time at which outputs are wanted.
     #[error("at t = {t:?}: {failure}")]
     Reading { t: f64, failure: EvaluationFailure },
     /// The motion was not kept at this time.

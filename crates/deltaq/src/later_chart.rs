@@ -1,4 +1,4 @@
-//! A chart after the first of a motion, in which everything is read off as in the first.
+//! A chart after the first of a motion, whose outputs are those of the first.
 
 use std::collections::HashMap;
 
@@ -104,7 +104,7 @@ fn values(names: &[(Quantity, f64)], named: &HashMap<Quantity, f64>) -> Vec<f64>
     names.iter().map(|(quantity, sign)| sign * named.get(quantity).copied().unwrap_or(0.0)).collect()
 }
 
-/// A chart after the first, in which everything is read off as in the first.
+/// A chart after the first, whose outputs are those of the first.
 #[derive(Clone)]
 pub(crate) struct Later {
     compiled: Compiled,

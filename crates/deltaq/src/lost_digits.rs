@@ -11,10 +11,10 @@ use equations::{Compiled, Equations};
 use crate::doubt::Doubt;
 use crate::settings::CERTAINTY;
 
-/// Part of a state over which its round-off is told.
+/// Round-off above this fraction of a state raises a doubt.
 const TOLD: f64 = 1e-6;
-/// Part of a state up to which its round-off is that of the numbers; and so many times what the runs differ
-/// by is nearly that: there is less round-off than there may be.
+/// Round-off up to this fraction of a state is that of the numbers themselves. Round-off up to `NEARLY` times
+/// the difference of the runs counts as no more than that difference: it is an upper bound.
 pub(crate) const NUMBERS: f64 = 256.0 * f64::EPSILON;
 const NEARLY: f64 = 4.0;
 /// The error of a sum over what is added up to it: numbers are rounded to the nearest.
@@ -26,13 +26,13 @@ pub(crate) type Looked = (f64, Vec<f64>, Vec<f64>);
 /// Rates at a time, of states near those of the motion there: whether they have values.
 pub(crate) type Rates<'a> = dyn FnMut(f64, &[f64], &mut [f64]) -> bool + 'a;
 
-/// What round-off of the rates comes to.
+/// Round-off that the rates accumulate, beside the difference of the runs.
 pub(crate) enum RoundOff {
-    /// No more than the runs differ by, or numbers are rounded by.
+    /// No more than the difference of the runs, or than the rounding of numbers.
     Small,
     /// To be put into the rates: `d` and `η` of [`crate::disturbed::disturbed`].
     Counts(Vec<f64>),
-    /// So much that no estimate says what becomes of it.
+    /// Too large for any error estimate.
     Doubted(Doubt),
 }
 
@@ -44,7 +44,8 @@ pub(crate) fn largest(looked: &[Looked], mut sizes: Vec<f64>) -> Vec<f64> {
     sizes
 }
 
-/// What there is at an instant, if that can be told. An infinite slope tells nothing.
+/// States and the sums of terms behind their rates at an instant; `None` where these cannot be evaluated.
+/// Infinite sums, as at an infinite slope, become 0.
 pub(crate) fn look(compiled: &mut Compiled, t: f64, y: &[f64]) -> Option<Looked> {
     let mut terms = compiled.terms_of_rates(t, y).ok()?;
     terms.iter_mut().filter(|x| !x.is_finite()).for_each(|x| *x = 0.0);
@@ -92,7 +93,7 @@ impl Sums {
         }
     }
 
-    /// The states whose round-off is more than that of their numbers and than the runs nearly differ by.
+    /// States whose round-off exceeds that of their numbers and `NEARLY` times the difference of the runs.
     fn over<'a>(&'a self, sizes: &'a [f64]) -> impl Iterator<Item = usize> + 'a {
         let is_over = |i: &usize| self.sums[*i] > (NEARLY * self.differences[*i]).max(NUMBERS * sizes[*i]);
         (0..self.sums.len()).filter(is_over)
@@ -107,7 +108,7 @@ fn stretches<'a>(
     looked.windows(2).zip(looser.iter().skip(1)).map(|(pair, looser)| ([&pair[0], &pair[1]], looser))
 }
 
-/// Whether round-off is small if nothing decays, even were it so many times as much between instants.
+/// Whether round-off is small if nothing decays, even if it were `between` times as large between instants.
 pub(crate) fn is_small(looked: &[Looked], looser: &[Vec<f64>], sizes: &[f64], between: f64) -> bool {
     let mut sums = Sums::new(sizes.len());
     let sizes: Vec<f64> = sizes.iter().map(|size| size / between).collect();
@@ -117,9 +118,9 @@ pub(crate) fn is_small(looked: &[Looked], looser: &[Vec<f64>], sizes: &[f64], be
     })
 }
 
-/// What round-off comes to between instants of the kept run, by the states of the looser one there and by
-/// the names and sizes of states. A doubt begins where it is no small part of a state. What cannot be
-/// evaluated is another matter.
+/// Round-off that rates accumulate between instants of the kept run, from the states of the looser run there
+/// and the names and sizes of states. A doubt begins where it exceeds `TOLD` of a state and ten times the
+/// difference of the runs. Rates that cannot be evaluated end the search.
 pub(crate) fn round_off(
     rates: &mut Rates,
     names: &dyn Fn() -> Vec<String>,
@@ -222,7 +223,7 @@ mod tests {
         assert_eq!(largest(&looked, vec![1.0; 2]), [3.0, 1.0]);
     }
 
-    /// `x'' = √(x − 1)` at x = 1: to the velocity's rate nothing is added up that could be told.
+    /// `x'' = √(x − 1)` at x = 1: the sum of terms behind the velocity's rate is not finite.
     #[test]
     fn an_infinite_slope_tells_nothing() {
         let text = "title = \"free\"\n[coordinates]\nx = { start = 1 }\n[system]\nlagrangian = \"x'^2/2\"\n\
@@ -236,8 +237,8 @@ mod tests {
         assert_eq!((y, terms), (vec![1.0, 2.0], vec![2.0, 0.0]));
     }
 
-    /// A particle at speed 2 under this force, at these times, places and with so much added up to a rate;
-    /// the looser run is this much apart from the second instant on.
+    /// A particle at speed 2 under this force, at these times and places, with this sum of terms behind a
+    /// rate; the looser run differs by `apart` from the second instant on.
     fn of_a_motion(force: &str, looked: [[f64; 3]; 3], apart: f64) -> RoundOff {
         let text = format!(
             "title = \"free\"\n[coordinates]\nx = {{ start = 0 }}\n[system]\nlagrangian = \"x'^2/2\"\n\

@@ -1,4 +1,4 @@
-//! What is read off a motion as a function of numbers of its scene, for fits: no numbers are an error.
+//! Outputs of a motion as a function of numbers of its scene, for fits: a motion that fails is not an error.
 
 use equations::Outputs;
 use integrate::Status;
@@ -36,7 +36,7 @@ pub struct Model {
     start: f64,
 }
 
-/// What was read off.
+/// Outputs of a motion, and why it ended.
 #[derive(Clone, Debug, Default)]
 pub struct Reading {
     /// At the times that the motion reached.
@@ -122,12 +122,12 @@ impl Model {
         &self.times
     }
 
-    /// Names of the multipliers that are read off.
+    /// Names of the multipliers among the outputs.
     pub fn multipliers(&self) -> Vec<String> {
         self.by_name.varying().prepared().equations.multipliers.iter().map(|m| m.name.clone()).collect()
     }
 
-    /// What is read off with these numbers.
+    /// The outputs with these numbers.
     ///
     /// # Panics
     /// If there are not as many as names.
@@ -210,7 +210,7 @@ impl Model {
     }
 }
 
-/// Refuses times of which no motion from `start` can be read off.
+/// Refuses times at which a motion from `start` has no outputs.
 fn check(start: f64, times: &[f64]) -> Result<(), SolveError> {
     let refused = |reason: String| Err(SolveError::Member { reason });
     if let Some(pair) = times.windows(2).find(|pair| pair[0] > pair[1] || pair[1].is_nan()) {

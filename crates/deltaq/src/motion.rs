@@ -65,8 +65,7 @@ pub struct Motion {
     pub seconds: Seconds,
     /// In which form the equations were evaluated.
     pub form: FormReport,
-    /// Where pivots became small, so that it went on by others. All that is read off is as in the first
-    /// chart.
+    /// Where pivots became small and others took over. Outputs stay those of the first chart.
     pub charts: Vec<ChartChange>,
     end: f64,
     compiled: Compiled,
@@ -143,7 +142,7 @@ impl Motion {
         Ok((kept, self.looser.outputs(&mut self.compiled, t)?))
     }
 
-    /// The states at `t` and how much is added up to their rates, where that can be told.
+    /// The states at `t` and the sums of terms behind their rates; `None` where these cannot be evaluated.
     pub(crate) fn look(&mut self, t: f64) -> Option<Looked> {
         let y = self.states_at(t).ok()?;
         lost_digits::look(&mut self.compiled, t, &y)
@@ -165,7 +164,8 @@ impl Motion {
         self.looser.state(&mut self.compiled, t).ok()
     }
 
-    /// How much is added up to each multiplier at `t` since the time `begin`, where that can be told.
+    /// The sum of terms behind each multiplier at `t`, since the time `begin`; `None` where it cannot be
+    /// evaluated.
     pub(crate) fn terms_of_multipliers(&mut self, begin: f64, t: f64) -> Option<Vec<f64>> {
         let y = self.states_at(t).ok()?;
         self.compiled.terms_of_multipliers(begin, t, &y).ok()
@@ -346,7 +346,7 @@ impl Motion {
         (self.end, self.ending) = (t, Ending::Stopped { t, cause });
     }
 
-    /// Of the `kept` and the looser run, told apart by their order only; no work and no projections.
+    /// From the kept and the looser run, in this order; without work and projections.
     pub(crate) fn of(
         mut prepared: Prepared,
         ending: Ending,
@@ -379,7 +379,7 @@ impl Motion {
     }
 }
 
-/// How far before a singularity a motion is read off, as fractions of its length.
+/// Distances before a singularity at which outputs are tried, as fractions of the motion's length.
 const BEFORE_A_STOP: [f64; 5] = [0.0, 1e-12, 1e-9, 1e-6, 1e-3];
 
 fn readable_end(

@@ -8,12 +8,12 @@ use crate::lost_digits::{Looked, RoundOff, is_small, largest};
 use crate::trajectory::Trajectory;
 use crate::{Motion, Prepared, Setting, Settings, SolveError};
 
-/// Stretches of a motion at whose ends rates are looked at; and of a first look, which most motions pass:
-/// what is added up may be so many times as much between.
+/// Number of stretches of a motion at whose ends rates are evaluated; fewer in a first check, which most
+/// motions pass even if sums of terms are `BETWEEN` times as large between these instants.
 const STRETCHES: usize = 32;
 const FEW: usize = 4;
 const BETWEEN: f64 = 8.0;
-/// Part of a stopped motion that is looked at: just before a singularity all terms are large.
+/// Fraction of a stopped motion that is checked: just before a singularity all terms are large.
 pub(crate) const BEFORE_THE_END: f64 = 0.9;
 
 impl Motion {
@@ -87,8 +87,8 @@ impl Motion {
         }
     }
 
-    /// How much has been added up to each coordinate since the start at a few times: no difference under
-    /// round-off of that says that motions differ. Nothing where it cannot be told.
+    /// The sum of terms behind each coordinate since the start, at a few times: a difference below the
+    /// round-off of that sum is no difference of motions. The list ends where sums cannot be evaluated.
     pub(crate) fn terms_of_coordinates_along(&mut self) -> Vec<(f64, Vec<f64>)> {
         let looked = self.terms_along(FEW);
         let mut sums = vec![0.0; self.equations.states.len()];
@@ -105,7 +105,8 @@ impl Motion {
         found
     }
 
-    /// Time, states and what is added up to their rates at equidistant instants, as far as that can be told.
+    /// Time, states and the sums of terms behind their rates at equidistant instants, up to the first at
+    /// which they cannot be evaluated.
     fn terms_along(&mut self, stretches: usize) -> Vec<Looked> {
         let (start, part) = (self.start(), if self.is_complete() { 1.0 } else { BEFORE_THE_END });
         let times = self.grid(stretches).into_iter().map(|t| self.kept_before(start + part * (t - start)));

@@ -40,17 +40,18 @@ pub struct Sensitivities {
     pub times: Vec<f64>,
     /// The others of the times asked for.
     pub missing: Vec<f64>,
-    /// What is read off at these times.
+    /// Outputs at these times.
     pub outputs: Vec<Outputs>,
     /// The derivatives at each time by each number.
     pub derivatives: Vec<Vec<Outputs>>,
-    /// What the derivatives of the two runs differ by at most, up to each time.
+    /// Largest differences of the derivatives of the two runs up to each time.
     pub errors: Vec<Vec<Outputs>>,
     /// How the motion ended, for all numbers.
     pub ending: Ending,
     /// Work of the kept runs.
     pub work: Work,
-    /// Seconds of their integration, both runs; what was found before and reading off are not in them.
+    /// Seconds of their integration, both runs, without the search for constants before and the outputs
+    /// after.
     pub seconds: f64,
 }
 
@@ -70,8 +71,8 @@ pub struct Sensitivities {
 /// ```
 ///
 /// # Errors
-/// As [`ByName::new`] and [`crate::solve_choice`]; [`SolveError::Member`] without names, with a name of which
-/// the start or the equations are no smooth function, or for a method other than
+/// As [`ByName::new`] and [`crate::solve_choice`]; [`SolveError::Member`] without names, with a name on which
+/// the start or the equations do not depend smoothly, or for a method other than
 /// [`integrate::Method::Taylor`] and [`integrate::Method::Dop853`].
 pub fn sensitivities(
     scene: &Scene,
@@ -209,7 +210,7 @@ fn keep_natural(
     kept_natural(along, constants, of_numbers, of_constants).ok_or_else(dependent)
 }
 
-/// Numbers of what is read off, two and two.
+/// `f` of each pair of corresponding outputs.
 fn joined(a: &Outputs, b: &Outputs, f: impl Fn(f64, f64) -> f64) -> Outputs {
     let each = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(&a, &b)| f(a, b)).collect();
     Outputs {

@@ -108,7 +108,7 @@ pub(crate) fn chart_size(compiled: &mut Compiled, t: f64, y: &[f64]) -> f64 {
     values[compiled.guards()]
 }
 
-/// What is read off at a state.
+/// Outputs at a state.
 pub(crate) fn outputs(compiled: &mut Compiled, t: f64, states: &[f64]) -> Result<Outputs, SolveError> {
     compiled.outputs(t, states).map_err(|failure| SolveError::Reading { t, failure })
 }
@@ -119,7 +119,7 @@ struct Runner<'a> {
     /// Of what is carried with the motion.
     tangents: Option<&'a mut Tangents>,
     anchors: Vec<(f64, Vec<f64>)>,
-    /// So many anchors, or one less, are kept because they are beside something that is wanted.
+    /// Number of anchors that have been checked, the last one excepted: they lie beside a wanted time.
     judged: usize,
     /// [`Options::wanted`].
     wanted: Option<Arc<[f64]>>,
@@ -127,7 +127,7 @@ struct Runner<'a> {
     largest: Option<f64>,
 }
 
-/// Anchors that are kept before those are dropped that nothing wanted is beside.
+/// Number of new anchors after which those without a wanted time beside them are dropped.
 const ANCHORS: usize = 10_000;
 
 impl Runner<'_> {

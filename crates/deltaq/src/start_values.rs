@@ -75,7 +75,7 @@ impl StartValues {
         self.inputs[first..].copy_from_slice(constants);
     }
 
-    /// Which states cannot be told from zero: momenta are sums that may cancel.
+    /// States that are zero up to round-off: momenta are sums that may cancel.
     pub(crate) fn vanishing(&self) -> Vec<bool> {
         let inputs: Vec<Bounded> = self.inputs.iter().map(|&x| Bounded::from_f64(x)).collect();
         let mut program = Evaluator::new(self.program.tape().clone());

@@ -81,8 +81,8 @@ pub fn discrete_of(scene: &Scene, choice: &Choice, constants: &[f64]) -> Result<
 
 /// Steps a choice from the scene's start to its end, twice: as `steps` say, which is kept, and twice as long,
 /// within the limits of `settings`.
-/// Their difference estimates the error of the longer ones. What is read off at a time, multipliers too, are
-/// the derived outputs at the discrete motion's positions, velocities (and multipliers or costates).
+/// Their difference estimates the error of the longer ones. Outputs at a time, multipliers too, are those of
+/// the derived equations at the discrete motion's positions, velocities (and multipliers or costates).
 ///
 /// It stops before a step of either run within which a gauge ([`Compiled::gauges`](equations::Compiled))
 /// grows too much.

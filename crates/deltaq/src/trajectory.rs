@@ -81,7 +81,7 @@ impl Trajectory {
         Ok(state)
     }
 
-    /// What is read off at `t`.
+    /// Outputs at `t`.
     pub(crate) fn outputs(&mut self, compiled: &mut Compiled, t: f64) -> Result<Outputs, SolveError> {
         if let Trajectory::Charts(legs) = self {
             return outputs_in(legs, compiled, t);
@@ -91,7 +91,7 @@ impl Trajectory {
     }
 }
 
-/// What is read off at `t`, as in the first chart, which is `compiled`.
+/// Outputs at `t`, as of the first chart, which is `compiled`.
 pub(crate) fn outputs_in(legs: &mut Legs, compiled: &mut Compiled, t: f64) -> Result<Outputs, SolveError> {
     match leg(legs, t) {
         (run, None) => run.at(compiled, t),

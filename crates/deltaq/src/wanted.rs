@@ -1,12 +1,14 @@
-//! The times at which a motion is read off, where they are known before: of a long run nothing else is kept.
+//! The times at which outputs of a motion are wanted, known before the run: a long run is stored around these
+//! only.
 
 use std::sync::Arc;
 
 /// Stretches of the whole run at whose ends everything that looks along a motion may look.
 const STRETCHES: [usize; 3] = [200, 32, 4];
-/// Times at no equal distances, beside whole periods.
+/// Number of times at unequal distances, which no period fits.
 const SCATTERED: usize = 200;
-/// A run may end early: so many times in its second half, in the half before, and so on, so often.
+/// A run may end early: number of stretches in its second half, in the second half of the rest, and so on,
+/// `HALVES` times.
 const OF_A_HALF: usize = 64;
 const HALVES: i32 = 20;
 
@@ -21,7 +23,7 @@ pub(crate) fn scattered([start, end]: [f64; 2]) -> impl Iterator<Item = f64> {
     (1..=SCATTERED).map(move |i| start + (end - start) * (i as f64 * GOLDEN).fract())
 }
 
-/// What is wanted of a run between these ends that is read off at `times`, ascending.
+/// The wanted times of a run between these ends, outputs of which are asked for at `times`, ascending.
 pub(crate) fn wanted(ends: [f64; 2], times: &[f64]) -> Arc<[f64]> {
     let [start, end] = [ends[0], ends[0] + (ends[1] - ends[0])];
     let ends = [start, end];

@@ -172,7 +172,7 @@ fn what_is_said_of_a_mismatch_and_of_constants_has_its_numbers() {
                     up to t = 1.5000, after which round-off is too loud; there is no proof, since Taylor coefficients agree \
                     through order 7.";
     assert_eq!(said, expected);
-    // the gap that a search has come to is told with its constants
+    // the gap that a search has reached is printed with its constants
     let [run, target] = [VAKONOMIC, CHETAEV].map(|own| disc.run(own).expect("a run"));
     let gap = Gap { largest: 0.375, ..disc.pair(run, target).expect("a pair").gap.clone() };
     let constants = vec![("mu0_1".to_string(), 0.5), ("mu0_2".to_string(), -2.0)];

@@ -383,7 +383,7 @@ fn a_motion_with_a_large_estimate_is_untrusted_and_one_with_a_small_one_is_not()
         words.push((part, word));
         motion.doubt = Some(Doubt { from: 1.0, because: "doubted".into() });
         assert_eq!(estimate.status(&motion), ("untrusted", Some("doubted".into())));
-        // one that stops is stopped, and its doubt is told as well
+        // a motion that stops is "stopped", and its doubt is in the message as well
         motion.ending = Ending::Stopped { t: 2.5, cause: "a wall".into() };
         assert_eq!(estimate.status(&motion), ("stopped", Some("stopped at t = 2.5: a wall; doubted".into())));
         motion.doubt = None;

@@ -1,4 +1,4 @@
-//! The library as its user meets it: one program, one module a subject.
+//! The library as its user meets it: one program, one module per subject.
 
 mod answers;
 mod beginnings;

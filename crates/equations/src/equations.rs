@@ -169,7 +169,7 @@ pub struct Equations {
     /// Those of the guards at which a constraint says nothing: `∂f/∂v` of it vanishes.
     pub silent: Vec<Expr>,
     /// By which pivots they were derived, where these may become small along a motion and others be taken;
-    /// never where other coordinates are read off than those of the system.
+    /// never where the outputs are other coordinates than those of the system.
     pub chart: Option<Chart>,
     /// The derived equations, for the reader.
     pub statements: Vec<Statement>,

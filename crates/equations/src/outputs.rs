@@ -1,6 +1,6 @@
-//! What compiled equations cost, and what is read off them.
+//! Cost and outputs of compiled equations.
 
-/// What one evaluation of the rates takes.
+/// Operations of one evaluation of the rates.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Cost {
     /// Instructions of tapes.
@@ -16,7 +16,7 @@ impl Cost {
     }
 }
 
-/// What is read off a motion at one instant.
+/// Outputs of a motion at one instant.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Outputs {
     /// `q`.

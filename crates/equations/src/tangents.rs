@@ -98,7 +98,7 @@ impl Tangents {
         Ok(())
     }
 
-    /// What is read off at `(y, dy, …)`, then its derivatives along each direction.
+    /// Outputs at `(y, dy, …)`, then their derivatives along each direction.
     ///
     /// # Errors
     /// As [`Compiled::rates`].

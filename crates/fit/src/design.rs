@@ -69,7 +69,7 @@ pub struct Design {
     /// Labels of the formulations.
     labels: Vec<String>,
     truth: Side,
-    /// The formulation that is to be told apart.
+    /// The wrong formulation, which the films have to exclude.
     rival: Option<Side>,
     /// Place of the number that is to be estimated.
     unknown: usize,
@@ -172,9 +172,8 @@ impl Design {
     /// matter. Free are `question.unknowns`, and the constants that formulations start from.
     ///
     /// # Errors
-    /// [`FitError`]: of [`Problem::new`]; a formulation that the scene does not have, or one that is to be
-    /// told from itself; a number that is chosen and is none of the scene; an unknown to be estimated that is
-    /// not free.
+    /// [`FitError`]: of [`Problem::new`]; a formulation that the scene does not have, or the same formulation
+    /// twice; a number that is chosen and is none of the scene; an unknown to be estimated that is not free.
     pub fn new(
         scene: &Scene,
         films: &[Film],
@@ -239,7 +238,7 @@ impl Design {
         &self.aim
     }
 
-    /// Labels of the formulations: that which is right, then that from which it is told.
+    /// Labels of the formulations: the right one, then the one to be excluded.
     pub fn labels(&self) -> &[String] {
         &self.labels
     }

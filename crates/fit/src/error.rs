@@ -60,7 +60,7 @@ pub enum FitError {
     /// The scene lacks a formulation.
     #[error("the scene has no {0} motion")]
     NoMotionOf(&'static str),
-    /// A formulation is to be told from itself.
+    /// The two formulations to be told apart are the same.
     #[error("films are to tell two formulations apart, and both are {0}")]
     ToldFromItself(&'static str),
     /// All unknowns change nothing.

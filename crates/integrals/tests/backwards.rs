@@ -1,7 +1,7 @@
 //! Systems built backwards: what is known to have a measure and integrals has them in random coordinates,
 //! with random combinations of constraints; with a random term in its energy it has none.
 //!
-//! `INTEGRALS=200` tries so many of each.
+//! `INTEGRALS=200` tries 200 of each.
 
 use decision::ExactStart;
 use integrals::{Measure, Reversed, reversible};

@@ -31,13 +31,13 @@ fn volume(measure: &Measure) -> Option<Volume> {
 
 /// Measures: Kozlov 1988 (Suslov), Chaplygin 1903 and 1911, Fedorov, García-Naranjo & Marrero 2015.
 ///
-/// Integrals are counted near a point, with coefficients that may depend on every coordinate: angular
-/// momentum about the point of contact of a ball has three parts that stay in space, of which `K·γ` alone is
-/// left when attitude is forgotten; of a rubber ball the two across the vertical. Suslov's body about a
-/// principal axis turns uniformly: two parts of `ω` stay in the body, three in space. A homogeneous ball
-/// has three parts of `ω` in space, three in the ball, and the moment of its velocity. Where the energy is
-/// kinetic and the momenta obey linear equations over an angle (sleigh, roller racer) the solutions of
-/// these are integrals, without a period: two for two momenta.
+/// Integrals are counted near a point, with coefficients that may depend on every coordinate: the angular
+/// momentum of a ball about its point of contact has three components that are constant in space; only `K·γ`
+/// remains if attitude is ignored. A rubber ball has the two horizontal ones. Suslov's body about a principal
+/// axis turns uniformly: two parts of `ω` stay in the body, three in space. A homogeneous ball has three
+/// parts of `ω` in space, three in the ball, and the moment of its velocity. Where the energy is kinetic and
+/// the momenta obey linear equations over an angle (sleigh, roller racer) the solutions of these are
+/// integrals, without a period: two for two momenta.
 #[test]
 fn measures_and_linear_integrals() {
     for (name, overrides, measure, linear) in [

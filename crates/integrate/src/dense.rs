@@ -29,14 +29,14 @@ pub struct DenseOutput {
     times: Vec<f64>,
     start_state: Vec<f64>,
     end_state: Vec<f64>,
-    /// Of those that are stored, one begins at `begins[k]` and has the length `widths[k]`, of either sign.
+    /// The k-th stored step begins at `begins[k]` and has the length `widths[k]`, of either sign.
     begins: Vec<f64>,
     widths: Vec<f64>,
     /// Step after step, in the order of the basis. Empty: ends only.
     coefficients: Vec<f64>,
     /// [`crate::Options::wanted`].
     wanted: Option<Arc<[f64]>>,
-    /// So many of those stored have been looked at for it; none as long as all are kept.
+    /// How many of the stored steps have been checked against `wanted`; `None` as long as all are kept.
     thinned: Option<usize>,
 }
 
@@ -104,7 +104,7 @@ impl DenseOutput {
         self.end_state.copy_from_slice(y);
     }
 
-    /// Where what is stored has become too much, drops the steps within which nothing is wanted.
+    /// Drops the steps without a wanted time once the stored coefficients exceed `ROOM`.
     fn thin(&mut self) {
         let Some(wanted) = &self.wanted else { return };
         if self.thinned.is_none() && self.coefficients.len() <= ROOM {

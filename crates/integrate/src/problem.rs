@@ -81,7 +81,7 @@ pub trait Problem {
         Ok(0.0)
     }
 
-    /// Told of every accepted state, in order, without the start: later evaluations may go out from it.
+    /// Called with every accepted state, in order, except the start: later evaluations may start from it.
     ///
     /// # Errors
     /// [`EvaluationError`] where the state is not acceptable after all. The step is retried, shorter.
@@ -138,8 +138,8 @@ pub trait Problem {
         Ok(())
     }
 
-    /// How much was added up to each rate, of which round-off is a part: asked for where the rates are not as
-    /// they should be.
+    /// The sum of magnitudes behind each rate; round-off is proportional to it. Called only where rates
+    /// differ from the slope of a step's polynomial.
     ///
     /// # Errors
     /// [`EvaluationError`] where it is not defined. The step is retried, shorter.

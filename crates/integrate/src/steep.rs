@@ -1,10 +1,11 @@
 //! Steps over what is switched on and off within them.
 //!
 //! A method knows its rates at a few points of a step. A function that is constant at all of these may still
-//! change between them: a force for half a second within a step of ten. So arguments of such functions, which
-//! are smooth, are read off the step's polynomial at five points, or nine where these do not do, and a step
-//! is refused along which a function's gauge ([`crate::Problem::gauges`]) grows by more than [`GAUGE_LIMIT`]:
-//! the method has to look closer. So is one along which it would if arguments were off by their round-off.
+//! change between them: a force for half a second within a step of ten. So the arguments of such functions,
+//! which are smooth, are evaluated on the step's polynomial at five points, or at nine where five do not
+//! suffice, and a step is refused along which a function's gauge ([`crate::Problem::gauges`]) grows by more
+//! than [`GAUGE_LIMIT`]: the method has to look closer. So is one along which it would if arguments were off
+//! by their round-off.
 
 use crate::events::Segment;
 use crate::problem::Gauge;

@@ -165,7 +165,7 @@ fn an_unknown_that_only_errors_move_stays() {
     assert!((shot.unknowns[1] - 1.0).abs() > 1.0, "{shot:?}");
 }
 
-/// `r = (c₀² + c₁ − 3, c₀ − c₁²)` with its derivatives, the first of which is `part` of what it is.
+/// `r = (c₀² + c₁ − 3, c₀ − c₁²)` with its derivatives, the first of them multiplied by `part`.
 struct Curves {
     part: f64,
     calls: usize,

@@ -1,4 +1,4 @@
-//! Integration as a user of the crate meets it: one program, one module a subject.
+//! Integration as a user of the crate meets it: one program, one module per subject.
 
 mod boundary;
 mod dense;

@@ -19,8 +19,8 @@
 //!
 //! **Integrals.** Where the motion is steady, an integral `c(y)` has `∂c/∂y J = 0`. So it brings a zero, and
 //! the eigenvectors of all other eigenvalues lie along `c = const`: to first order they stay on position
-//! constraints that `f` keeps, on `f = 0` and on the energy, without being told. Such zeros are split off and
-//! counted ([`Spectrum`]).
+//! constraints that `f` keeps, on `f = 0` and on the energy, which nothing has to enforce. Such zeros are
+//! split off and counted ([`Spectrum`]).
 //!
 //! **Subsystems** ([`Linearization::part`]). `J` falls apart into blocks that are coupled in one direction
 //! only. The eigenvalues of some coordinates are those of their blocks, whatever the others do.

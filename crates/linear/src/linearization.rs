@@ -228,13 +228,14 @@ pub struct Part {
 /// How deviations grow, as far as the equations to first order and the errors decide it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Growth {
-    /// So many eigenvalues have a positive real part, beyond their errors.
+    /// This number of eigenvalues have a positive real part, beyond their errors.
     Exponential(usize),
-    /// So many at least: errors leave open what others do.
+    /// At least this number: errors leave the others open.
     AtLeast(usize),
     /// Like this power of time, or faster: an eigenvalue on the imaginary axis has too few eigenvectors.
     Power(usize),
-    /// Every eigenvalue is zero, or errors leave open what eigenvalues on the imaginary axis do.
+    /// Every eigenvalue is zero, or errors leave open how deviations of eigenvalues on the imaginary axis
+    /// grow.
     Undecided,
     /// No faster than `e^(error t)`: no disc is right of the axis, and what is on it has its eigenvectors.
     None,

@@ -25,9 +25,9 @@ const SAMPLES: usize = 3;
 const APART: [f64; 9] = [1e-1, 1e-3, 1e-5, 1e-7, 1e-9, 1e-11, 1e-13, 1e-15, 0.0];
 /// An entry has to exceed, by this factor, what the last digits of the states change it by.
 const DIGITS: f64 = 100.0;
-/// To entries so many times their size may be added up before the last digits of that are looked at.
+/// Where the sum of terms behind an entry exceeds this many times the entry, its round-off counts as noise.
 const CANCELLED: f64 = 1e4;
-/// Entries up to this part of what is added up to them are round-off.
+/// Entries up to this fraction of the sum of terms behind them are round-off.
 const ROUND_OFF: f64 = 64.0 * f64::EPSILON;
 
 impl Point {
@@ -65,8 +65,8 @@ impl Point {
         if values.iter().all(|x| x.is_finite()) { Ok(()) } else { Err(LinearError::NotFinite { t }) }
     }
 
-    /// How far entries of the Jacobian at `y` are off, by what they change where the last digits of `y` do,
-    /// and by the last digits of what is added up to them.
+    /// Errors of the entries of the Jacobian at `y`: their change with the last digits of `y`, and round-off
+    /// of the sums of terms behind them.
     pub(crate) fn noise(&mut self, y: &[f64], jacobian: &DMatrix<f64>) -> Result<DMatrix<f64>, LinearError> {
         let mut random = Weyl::default();
         let mut noise = DMatrix::zeros(y.len(), y.len());
@@ -83,7 +83,7 @@ impl Point {
         }))
     }
 
-    /// How much is added up to the entries of the Jacobian at `y`.
+    /// The sum of terms behind each entry of the Jacobian at `y`.
     fn terms_of_jacobian(&mut self, y: &[f64]) -> Result<DMatrix<f64>, LinearError> {
         let (n, t) = (y.len(), self.t);
         let terms = self.compiled.terms_of_jacobian(t, y).map_err(|failure| LinearError::Evaluation { t, failure })?;

@@ -144,7 +144,7 @@ impl Spectrum {
         Some(spectrum)
     }
 
-    /// Clusters on the imaginary axis that are not semisimple as far as errors let that be told.
+    /// Clusters on the imaginary axis that are not semisimple, as far as errors decide it.
     fn chains_on_the_axis(&self, discs: &Discs, wide: f64, equal: impl Fn(&Block, &Block) -> bool) -> Vec<Chain> {
         let mut left: Vec<(usize, Eigenvalue)> = Vec::new();
         for (i, block) in self.blocks.iter().enumerate() {

@@ -61,7 +61,7 @@ pub struct Removal {
     /// Start values of parameters, their rates and memory variables that are not coordinates, as expressions
     /// in `(q₀, v₀, t₀)`. What is left out is solved from `(q₀, v₀)`, nearest to zero.
     pub start: BTreeMap<Symbol, Expr>,
-    /// The constants that a run uses unless told otherwise.
+    /// The constants that a run uses by default.
     pub constants: ConstantsRule,
     /// What grows where other coordinates should serve as `u`, in `(q, t)`: what [`Removal::by_coordinates`]
     /// divided by its pivots. Empty where the parametrization is part of what was asked for.

@@ -1,4 +1,4 @@
-//! Systems as a user of the crate meets them: one program, one module a subject.
+//! Systems as a user of the crate meets them: one program, one module per subject.
 
 mod integrability;
 mod removal;

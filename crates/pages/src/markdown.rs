@@ -49,7 +49,7 @@ fn is_harmless(text: &str) -> bool {
 /// What stands for a character in the text of a picture, which is XML.
 const ENTITIES: [(&str, &str); 4] = [("&quot;", "\""), ("&lt;", "<"), ("&gt;", ">"), ("&amp;", "&")];
 
-/// A picture in a page beside it; those who cannot see it are told its title.
+/// A picture in a page beside it; its title is the alternative text.
 pub fn image(picture: &File) -> String {
     let name = picture.path.file_name().map_or(String::new(), |name| name.to_string_lossy().into_owned());
     let title = picture.text.split_once("<title>").and_then(|(_, rest)| Some(rest.split_once("</title>")?.0));

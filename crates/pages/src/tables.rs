@@ -25,7 +25,7 @@ pub fn verdict_words(gap: &deltaq::Gap) -> String {
     }
 }
 
-/// One line a run: how it was started and how it ended.
+/// One line per run: how it was started and how it ended.
 pub(crate) fn runs(comparison: &Comparison) -> Table {
     let mut table = Table::new(["motion", "free constants", "ended", "error estimate", "method", "steps"]);
     for (i, run) in comparison.runs.iter().enumerate() {
@@ -66,7 +66,7 @@ pub(crate) fn runs(comparison: &Comparison) -> Table {
     table
 }
 
-/// One line a pair: the verdict, when thresholds are passed, and how sure it is.
+/// One line per pair: the verdict, when thresholds are passed, and how sure it is.
 pub(crate) fn pairs(comparison: &Comparison) -> Table {
     let columns = ["pair", "verdict", "τ(1e-6)", "τ(1e-3)", "τ(0.1)", "largest gap", "errors, both"];
     let mut table = Table::new(columns.into_iter().chain(["largest difference by coordinate"]));

@@ -1,4 +1,4 @@
-//! Independent pieces of work over all processors, or over as many threads as the program was told.
+//! Independent pieces of work on all processors, or on the number of threads given by `--threads`.
 
 use std::sync::LazyLock;
 use std::sync::atomic::{AtomicUsize, Ordering};

@@ -1,4 +1,4 @@
-//! Who may work now, where several jobs share a few threads.
+//! A work queue with priorities: which piece may run next, where several jobs share a few threads.
 
 use std::cell::Cell;
 use std::collections::BTreeMap;
@@ -104,10 +104,10 @@ mod tests {
     use super::*;
 
     const THREADS: usize = 3;
-    /// For pieces that never come to be as many.
+    /// Time limit for the pieces to reach that number.
     const PATIENCE: Duration = Duration::from_secs(1);
 
-    /// One test, as there is one desk: jobs with pieces, one of which panics.
+    /// One test, because the queue is global: jobs with pieces, one of which panics.
     #[test]
     fn no_more_work_at_once_than_there_are_threads_and_the_least_rank_goes_first() {
         let (now, most) = (AtomicUsize::new(0), AtomicUsize::new(0));

@@ -70,7 +70,7 @@ struct WideBlock<T> {
     factors: Factors<T>,
 }
 
-/// What is read off a motion at one time, in a wide type.
+/// Outputs of a motion at one time, in extended precision.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Point<T> {
     /// `q`.
@@ -200,7 +200,7 @@ impl<T: Wide> Instant<T> {
         Ok(())
     }
 
-    /// What is read off at `(t, y)`.
+    /// Outputs at `(t, y)`.
     ///
     /// # Errors
     /// As [`Instant::rates`].

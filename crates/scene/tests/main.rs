@@ -1,4 +1,4 @@
-//! Scene files as a user writes them: one program, one module a subject.
+//! Scene files as a user writes them: one program, one module per subject.
 
 mod bytes;
 mod catalogue;

@@ -39,7 +39,7 @@ impl Bounded {
         RELATIVE_BOUND * self.magnitude
     }
 
-    /// Whether the value cannot be told from zero.
+    /// Whether the value is zero up to round-off.
     pub fn may_be_zero(self) -> bool {
         self.value.abs() <= self.round_off()
     }

@@ -36,7 +36,7 @@ pub fn cancellable<T>(is_unwanted: impl Fn() -> bool + 'static, work: impl FnOnc
     done.map_or_else(is_cancelled, Some)
 }
 
-/// So many new expressions come between two questions.
+/// Number of new expressions between two checks for cancellation.
 pub(crate) const EVERY: usize = 256;
 
 /// Leaves the work of this thread if it is no longer wanted.

@@ -70,9 +70,9 @@ impl Graph {
         }
     }
 
-    /// Whether `e` is zero as a rational function of its symbols, sines, roots and other functions, or by its
-    /// normal form, whatever the values of its symbols: what may be taken out of equations. `false` where
-    /// that cannot be told.
+    /// Whether `e` is identically zero, for all values of its symbols: as a rational function of its symbols,
+    /// sines, roots and other functions, or by its normal form. Such an `e` may be removed from equations.
+    /// `false` where this is undecided.
     ///
     /// ```
     /// let g = symbolic::Graph::new();
@@ -97,7 +97,8 @@ impl Graph {
         zero != faults::goes_wrong("answer turned")
     }
 
-    /// Whether the value of `e` at these values of its symbols cannot be told from zero: no divisor.
+    /// Whether the value of `e` at these values of its symbols is zero up to round-off, so that it must not
+    /// divide.
     pub fn is_round_off(&self, e: Expr, values: &HashMap<Symbol, f64>) -> bool {
         self.bounded(e, values).is_some_and(Bounded::may_be_zero)
     }

@@ -11,8 +11,8 @@ const EXACT_IN_F64: i64 = 1 << 53;
 /// Decimals with up to this number of digits are exact.
 const DIGITS: usize = 15;
 
-/// The π of `f64` as a quotient of two primes, off by 4e-18: so it is told apart from all that is written
-/// without.
+/// The π of `f64` as a quotient of two primes, off by 4e-18: so it differs from every number that is written
+/// without π.
 pub const PI: (i64, i64) = (29_111_083_649, 9_266_345_723);
 
 /// A reduced fraction; compared and hashed by its two parts.

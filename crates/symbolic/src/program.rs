@@ -78,7 +78,7 @@ impl Program {
         self.values.len()
     }
 
-    /// Makes room for so many more values.
+    /// Reserves memory for `count` more values.
     pub(crate) fn reserve(&mut self, count: usize) {
         self.values.reserve(count);
         self.constant.reserve(count);

@@ -17,8 +17,8 @@ const P: u64 = (1 << 61) - 1;
 const POINTS: u64 = 2;
 
 impl Arena {
-    /// Whether `e` is zero as a rational function of its symbols, roots and functions; `false` where that
-    /// cannot be told.
+    /// Whether `e` is zero as a rational function of its symbols, roots and functions; `false` where this is
+    /// undecided.
     pub(crate) fn is_zero_rational(&self, e: Expr) -> bool {
         e == Arena::ZERO || (1..=POINTS).all(|seed| self.in_field(e, seed) == Some(0))
     }

@@ -128,7 +128,7 @@ pub struct SeriesTape {
 pub struct SeriesWorkspace<T: SeriesScalar> {
     /// Coefficients, series after series.
     rows: Vec<T>,
-    /// So many of them are of series.
+    /// Number of these coefficients in use.
     used: usize,
     plan: Plan<T>,
 }
@@ -186,10 +186,10 @@ impl<T: SeriesScalar> Drop for SeriesWorkspace<T> {
     }
 }
 
-/// So many rooms a thread keeps: a motion takes one, or two where its plan may fail.
+/// Number of spare workspaces per thread: a motion takes one, or two where its plan may fail.
 const SPARE: usize = 4;
 
-/// Room for so many coefficients or more, all zero.
+/// Memory for at least `count` coefficients, all zero; a spare workspace if one is large enough.
 fn zeros<T: SeriesScalar>(count: usize) -> Vec<T> {
     let kept = T::spare().and_then(|spare| spare.try_with(|spare| spare.borrow_mut().pop()).ok().flatten());
     kept.filter(|rows| rows.len() >= count).unwrap_or_else(|| vec![T::from_f64(0.0); count])

@@ -1,4 +1,4 @@
-//! Expressions as a user of the crate meets them: one program, one module a subject.
+//! Expressions as a user of the crate meets them: one program, one module per subject.
 
 mod algebra;
 mod evaluation;

@@ -173,8 +173,8 @@ fn fresh(digest: &str) -> Result<(PathBuf, String)> {
     Ok((page, said(&mut bundle)?))
 }
 
-/// Deep expressions are walked on the stack, of which a program has 8 MB elsewhere, too. No page is to name
-/// the folders of who built it.
+/// A stack of 8 MB, as programs have elsewhere: deep expressions are walked on it. The page must not contain
+/// paths of the machine that built it.
 fn flags() -> String {
     let home = || std::env::home_dir().map(|home| home.join(".cargo"));
     let packages = std::env::var_os("CARGO_HOME").map(PathBuf::from).or_else(home).unwrap_or_default();

@@ -1,4 +1,4 @@
-//! The modules of one crate, and which names the items of which others.
+//! The modules of one crate, and the arrows between them: one module names an item of another.
 //!
 //! An arrow goes from a file to the file that owns the item it names: re-exports are followed. What a module
 //! says of its children by `mod` or `pub use` is no arrow: it names them without need; nor are tests.

@@ -20,7 +20,7 @@ const STEPS: f64 = 4.0;
 /// Grids; each step is 2^(1/4) times shorter than the one before.
 const GRIDS: u32 = 48;
 
-/// So many of the finest grids over the plateau give the slope.
+/// Number of grids that give the slope: the finest above the plateau.
 const POINTS: usize = 3;
 
 fn choice(scene: &Scene, formulation: &Formulation, constants: Option<Vec<f64>>) -> Choice {

@@ -195,7 +195,7 @@ pub fn common(findings: &mut Findings, sample: &Sample, instant: &Instant) -> Po
     at
 }
 
-/// Another form of equations: what is read off is what was read off before.
+/// Another form of equations: outputs stay the same.
 pub fn same_motion(before: &Reading, after: &Reading) -> Findings {
     let mut findings = Findings::new();
     findings.same("rates where the form is least accurate", &after.near, &before.near);

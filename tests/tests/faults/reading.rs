@@ -21,7 +21,7 @@ pub struct Sample {
     pub constants: Vec<f64>,
 }
 
-/// What is read off in one state.
+/// Outputs, rates and guards in one state.
 #[derive(Clone)]
 pub struct Instant {
     pub y: Vec<f64>,
@@ -37,7 +37,7 @@ pub struct Instant {
     pub statements: Vec<f64>,
 }
 
-/// What is read off, with the names of states, multipliers and invariants.
+/// Readings in several states, with the names of states, multipliers and invariants.
 #[derive(Clone)]
 pub struct Reading {
     pub states: Vec<Symbol>,
@@ -291,7 +291,7 @@ impl<'a> Reader<'a> {
     }
 }
 
-/// Compiled formulas, and of which symbols they are.
+/// Compiled formulas and their input symbols.
 type Formulas = Option<(Vec<Symbol>, Evaluator<f64>)>;
 
 /// Values of what is `wanted`, which is compiled once for the same symbols.

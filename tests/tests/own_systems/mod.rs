@@ -21,9 +21,9 @@ const LARGEST: f64 = 10.0;
 const OVER: f64 = 0.01;
 /// Accuracy of the judge, over how far the motion goes.
 const ACCURACY: f64 = 1e-19;
-/// Part of the motions in well-conditioned families that may be told untrusted or stop.
+/// Largest fraction of the motions in well-conditioned families that may be untrusted or stop.
 const TOLD: f64 = 0.05;
-/// Part of all systems whose motion the judge may not know well enough.
+/// Largest fraction of all systems whose motion the judge may know too inaccurately.
 const UNKNOWN: f64 = 0.02;
 
 /// Errors over estimates of one family.

@@ -147,7 +147,7 @@ fn shrunk(theorem: u8, kinds: &[Kind], cases: u32) {
     });
 }
 
-/// The part of the systems of which something that is counted is so, and how many they were.
+/// The fraction of the systems that have the property `what`, and the number of systems.
 pub fn part(found: &Findings, what: &str) -> (f64, usize) {
     let values: Vec<f64> = found.observations.iter().filter(|o| o.what == what).map(|o| o.value).collect();
     println!("   {what}: {:.3} of {}", values.iter().sum::<f64>() / values.len() as f64, values.len());

@@ -11,7 +11,7 @@ use crate::{EngineError, Pose, Setup, Surface};
 /// A coefficient of friction that no motion here exhausts: the ball sticks.
 const ROUGH: f64 = 1e9;
 
-/// How the engine is told to hold contacts.
+/// Contact settings of the engine.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Contacts {
     /// Every parameter but the time step as the engine ships it: soft contacts, four substeps, a simplified
@@ -62,7 +62,7 @@ impl Run {
     /// Lets the engine move the ball.
     ///
     /// The engine gets masses, shapes, velocities and gravity. Contacts on planes are its own. It has no
-    /// hollow cone, only triangles, so there each step is told the contact of ball and cone in closed form
+    /// hollow cone, only triangles, so there each step gets the contact of ball and cone in closed form
     /// ([`Surface::foot_and_normal`]): a point, a normal, a distance. What follows is left to it.
     ///
     /// # Errors

@@ -41,7 +41,7 @@ const KINDS: [Kind; 4] = [Kind::PartlyIntegrable, Kind::Linear, Kind::Affine, Ki
 /// Rates that count as 1.
 const RATE: std::ops::RangeInclusive<f64> = 0.95..=1.05;
 
-/// Distances at `N = 10³` from which a rate can be told.
+/// Distances at `N = 10³` above which a rate is measured.
 const VISIBLE: f64 = 1e-6;
 
 /// Words where there is no rate.
@@ -72,7 +72,7 @@ impl Approach {
         }
     }
 
-    /// `log₁₀` of the distance at `N = 10³` over that at `10⁴`; `None` where it cannot be told.
+    /// `log₁₀` of the distance at `N = 10³` over that at `10⁴`; `None` where the distance is too small.
     fn rate(&self) -> Option<f64> {
         let rate = (self.distances[1] / self.distances[2]).log10();
         (self.distances[1] > VISIBLE && rate.is_finite()).then_some(rate)
@@ -117,7 +117,7 @@ impl RealizationReport {
         (rates, [TOO_CLOSE, STOPS].map(|word| all.clone().filter(|a| a.word() == word).count()))
     }
 
-    /// Every rate on the page that can be told.
+    /// Every rate that is measured on the page.
     fn rates(&self) -> Vec<f64> {
         self.scenes.iter().flat_map(|(_, a)| a).chain(self.random.iter().flatten()).filter_map(Approach::rate).collect()
     }

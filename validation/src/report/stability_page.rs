@@ -89,7 +89,7 @@ impl StabilityReport {
         )
     }
 
-    /// The verdicts for machines: a word a cell.
+    /// The verdicts for machines: one word per cell.
     pub fn verdicts(&self) -> Value {
         let mut cases = Map::new();
         for cell in &self.cells {

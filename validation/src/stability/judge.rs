@@ -43,7 +43,7 @@ pub enum Verdict {
         /// Why.
         cause: String,
     },
-    /// An error that nobody was told of.
+    /// An error without a warning.
     Wrong {
         /// True error.
         error: f64,
@@ -101,7 +101,7 @@ pub struct Allowance {
     /// in proportion, but for [`TRUSTED`] of its own way at most: tolerances are parts of sizes that states
     /// have within the whole run.
     pub end: f64,
-    /// So many coordinates, the first ones, are compared.
+    /// Number of coordinates that are compared, from the first on.
     pub compared: usize,
     /// Each coordinate and multiplier is judged by its own estimate, and the worst of them is the verdict;
     /// else all coordinates at once in the kinetic metric.

@@ -25,7 +25,7 @@ pub const LONG_RUNS: &str = "million-steps";
 /// Steps of equal length, and the limit on those of the adaptive methods.
 pub const MILLION: usize = 1_000_000;
 
-/// Times at which energy and constraints are read off, less one; at every 50th node of a million.
+/// Number of times at which energy and constraints are evaluated, less one: every 50th node of a million.
 const SAMPLES: usize = 20_000;
 
 /// Parts of a run whose mean energies are compared.

@@ -96,8 +96,8 @@ pub struct Subject {
     pub equations: Equations,
     /// Free constants.
     pub constants: ConstantsRule,
-    /// Of which formulation they are, where they are just that: who leaves the method open leaves their form
-    /// open too.
+    /// The choice behind them, where they are its equations as derived: `auto` is then free to choose their
+    /// form, too.
     pub choice: Option<Choice>,
     /// The system in whose kinetic metric errors are measured.
     pub measured: System,
@@ -113,7 +113,7 @@ pub struct Question {
     pub subject: Box<dyn Fn() -> Result<Subject, String> + Send + Sync>,
     /// What is known of the motion.
     pub reference: Reference,
-    /// So many coordinates, the first ones, are compared.
+    /// Number of coordinates that are compared, from the first on.
     pub compared: usize,
     /// [`Allowance::each`]; the reference has multipliers then, after all coordinates.
     pub each: bool,

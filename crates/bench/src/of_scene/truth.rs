@@ -13,9 +13,9 @@ use super::KeptReferences;
 pub struct Truth {
     /// Times, the last at the end.
     pub times: Vec<f64>,
-    /// What the coordinates are wrong by at most, in the kinetic metric.
+    /// Upper bound of the error of the coordinates, in the kinetic metric.
     pub error: f64,
-    /// How they were had.
+    /// How they were computed.
     pub origin: String,
     /// Whether the motion ends before the scene does, and the times therefore before its end.
     pub shortened: bool,

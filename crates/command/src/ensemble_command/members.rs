@@ -73,7 +73,7 @@ impl Members {
         self.count
     }
 
-    /// One value a name.
+    /// One value per name.
     pub(crate) fn row(&self, member: usize) -> Vec<f64> {
         let (varied, line) = Range::combined(&self.ranges, member);
         let listed = self.names.len() - self.ranges.len();

@@ -50,7 +50,7 @@ impl Outcome {
     }
 }
 
-/// The answer of the command, piece by piece: a head, one piece a member, an end.
+/// The output of the command in pieces: a head, one piece per member, an end.
 pub(super) struct Answers<'a> {
     format: Format,
     scene: &'a Scene,

@@ -5,8 +5,8 @@ use program::Lines;
 
 use super::output::Answers;
 
-/// Keeps the members whose rows are there, but for the last one, of which rows may be missing, and counts
-/// them. `first` gives the rows of the first member.
+/// Keeps and counts the members whose rows are there, except the last one, whose rows may be incomplete.
+/// `first` gives the rows of the first member.
 pub(super) fn resume(
     answers: &mut Answers,
     lines: &mut Lines,

@@ -181,8 +181,8 @@ impl TwoPoint {
         Some(unknowns.iter().zip(change.iter()).map(|(x, change)| x - change).collect())
     }
 
-    /// What is read off at the end, and `∂q_i/∂x_j` there, with these unknowns in the units of the scene;
-    /// `None` where the motion stops before.
+    /// Outputs at the end, and `∂q_i/∂x_j` there, with these unknowns in the units of the scene; `None` where
+    /// the motion stops before.
     fn derivatives(&mut self, x: &[f64]) -> Result<Option<(Outputs, DMatrix<f64>)>, SolveError> {
         let along = self.directions(x)?;
         self.runs = self.runs.map(|runs| runs + 1);

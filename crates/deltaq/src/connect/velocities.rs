@@ -25,7 +25,7 @@ impl Velocities {
         let jacobian = program.evaluate(&[&q[..], v, &[*t]].concat()).to_vec();
         let mut units = metric.inertia(*t, q, v).0;
         let largest = units.iter().fold(0.0, |a: f64, &x| a.max(x));
-        // what has no inertia is told by the others, if it can be
+        // coordinates without inertia are determined by the others where possible
         units.iter_mut().for_each(|unit| *unit = unit.max(1e-6 * if largest > 0.0 { largest } else { 1.0 }));
         let scaled = DMatrix::from_fn(h, n, |i, j| jacobian[i * n + j] / units[j]);
         let mut order = DMatrix::from_fn(1, n, |_, j| j);

@@ -163,7 +163,8 @@ impl Reader<'_> {
         lost_digits::round_off(&mut rates, &names, &looked, &looser, &sizes)
     }
 
-    /// The start and these instants, as far as it can be told what is added up to rates there.
+    /// States and sums of terms behind rates at the start and at these instants, up to the first at which
+    /// they cannot be evaluated.
     fn looked(
         &mut self,
         member: &EnsembleMember,

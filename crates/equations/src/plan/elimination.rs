@@ -158,8 +158,8 @@ impl<'a> Elimination<'a> {
         self.found.watched.extend(watched);
     }
 
-    /// Parts of a sum of which one at least is large against it where terms cancel. Terms of one sign count
-    /// as one; and where one part is large another is, so the longest may go.
+    /// Parts of a sum such that, where terms cancel, at least one part is large compared with the sum. Terms
+    /// of one sign form one part. If one part is large, so is another: the longest is therefore left out.
     fn cancelling(&self, terms: &[Expr]) -> Vec<Expr> {
         let g = self.graph;
         let (mut parts, mut signed) = (Vec::new(), [Vec::new(), Vec::new()]);

@@ -23,7 +23,7 @@ pub struct Case {
     pub taylor: bool,
     pub events: (usize, Events),
     pub projection: Projection,
-    /// So many accepted states are refused; the others are written down.
+    /// Number of accepted states that are refused; the others are recorded.
     pub refuse: usize,
     pub accepted: Vec<(f64, Vec<f64>)>,
     pub evaluations: usize,

@@ -97,7 +97,7 @@ impl Problem {
         }
     }
 
-    /// Solves from `start`, one number an unknown; `sizes` of what was added up to the results.
+    /// Solves from `start`, one number per unknown; `sizes` are the sums of terms behind the results.
     pub(super) fn solve(&mut self, known: &[f64], sizes: &[f64], start: &[f64]) -> Result<Solved, CompileError> {
         let (m, n) = (self.equations, self.unknowns.len());
         let measured = self.measured.evaluator()?;

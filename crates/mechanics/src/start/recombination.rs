@@ -26,7 +26,8 @@ impl Recombination {
     /// The recombination for a start; `None` where the constraints are well apart as they are.
     ///
     /// # Errors
-    /// [`StartError::DependentConstraints`] where they cannot be told apart; [`StartError::NotFinite`].
+    /// [`StartError::DependentConstraints`] where they are dependent up to round-off;
+    /// [`StartError::NotFinite`].
     pub fn at(system: &System, state: &State) -> Result<Option<Recombination>, StartError> {
         if system.constraints.len() < 2 {
             return Ok(None);

@@ -1,4 +1,5 @@
-//! Limits that motions have, by the errors that they carry or where they can no longer be told apart.
+//! Limits of claims on motions: their error estimates, or the distance below which two motions cannot be
+//! distinguished.
 
 use deltaq::{CHETAEV, Gap, Metric, Motion, Settings, VAKONOMIC, compare_motions, growth};
 use random::{CHECKS, Finding, FoundOut, Which, Word, found_out, make, referee};

@@ -141,7 +141,7 @@ pub(super) fn fit(case: &mut Case) -> Result<(), CheckError> {
     Ok(())
 }
 
-/// The least that mismatch `least` makes over this duration.
+/// The gap, over this duration, from which on the mismatch `least` has to be seen.
 fn visible(least: f64, duration: f64) -> f64 {
     SEEN * least * duration.powf(1.5)
 }
@@ -161,7 +161,7 @@ mod tests {
     use super::*;
     use crate::{Word, draw_recipe};
 
-    /// A mismatch of 2 over a time of 4 makes 16, of which a thousandth has to be seen.
+    /// A mismatch of 2 over a time of 4 makes a gap of 16; a thousandth of it has to be seen.
     #[test]
     fn a_fit_is_denied_where_a_thousandth_of_the_gap_would_be_seen() {
         let mut case = Case::new(draw_recipe(1, 0, &[Kind::Linear]), "fits").unwrap_or_else(|e| panic!("{e}"));

@@ -259,8 +259,8 @@ fn told(of: &str, line: &str) -> String {
     format!("{of:<24} {line}\n")
 }
 
-/// All scenes, over all processors, in the order of `names`; answers are told at once, before fits, unless
-/// `quiet`.
+/// Compares all scenes on all processors; results are in the order of `names`. Unless `quiet`, each answer is
+/// printed at once, before fits.
 fn compare_all(names: &[&str], quiet: bool) -> Result<Vec<SceneReport>> {
     let settings = Settings::protocol();
     let bar = parallel::progress(2 * names.len(), quiet);

@@ -113,7 +113,7 @@ impl Ball {
         }
     }
 
-    /// `ċ = a ω × n`, `I ω̇ = −a n × F`, `F = m (c̈ − g)`, of which the part along `n` does not enter.
+    /// `ċ = a ω × n`, `I ω̇ = −a n × F`, `F = m (c̈ − g)`, whose component along `n` does not enter.
     fn newton(&self) -> Reference {
         Reference::Ode {
             y: vec![self.r, self.gamma, self.spin.x, self.spin.y, self.spin.z],
