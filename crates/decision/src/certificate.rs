@@ -1,4 +1,4 @@
-//! What somebody else needs to check a proof.
+//! Certificates: proofs that others can check.
 
 use std::collections::BTreeSet;
 

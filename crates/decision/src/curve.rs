@@ -1,4 +1,4 @@
-//! Curves `q(t)`: given from outside, or integrated from the equations of a formulation.
+//! Curves `q(t)`: given by the caller, or integrated from the equations of a formulation.
 
 use equations::{Equations, Role};
 use integrate::{EvaluationError, Gauge};

@@ -1,4 +1,4 @@
-//! Why a question cannot be decided.
+//! Reasons why a question cannot be decided.
 
 use integrate::CallError;
 use mechanics::StartError;

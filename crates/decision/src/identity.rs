@@ -1,5 +1,5 @@
-//! Is a section an identity? Asked of expressions, with an exact normal form: where that says zero it is
-//! proved.
+//! Tests whether a section is an identity, in expressions with an exact normal form: a zero of that form is a
+//! proof.
 
 use std::collections::{HashMap, HashSet};
 

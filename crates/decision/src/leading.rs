@@ -1,4 +1,4 @@
-//! How a motion of the family leaves the curve.
+//! The leading term of the difference between a motion of the family and the curve.
 
 use mechanics::{State, System};
 use nalgebra::{DMatrix, DVector};
@@ -11,11 +11,11 @@ use crate::series::{MismatchSeries, SeriesStart, order as at_order};
 use crate::start::ExactStart;
 use crate::transport::root_of_mass;
 
-/// Orders that are looked at.
+/// Highest order that is tried.
 const HIGHEST: usize = 12;
-/// And for the least mismatch.
+/// The same for the least mismatch.
 const TAYLOR: usize = 24;
-/// Of the time in which coefficients get no larger; and slices of that part.
+/// Fraction of the time within which coefficients do not grow, and number of slices of that part.
 const FAST: f64 = 0.5;
 const SLICES: usize = 24;
 

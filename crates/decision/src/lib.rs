@@ -11,20 +11,20 @@
 //! Aᵀ μ̇ = C μ − E .                     along Chetaev's motion E = Aᵀλ:   Aᵀ (μ̇ + λ) = C μ
 //! ```
 //!
-//! **Forces**: `∫ (δL + Q·δq) dt = 0` in every formulation, for its variations `δq`; so `E` has lost `Q`.
+//! **Forces**: `∫ (δL + Q·δq) dt = 0` in every formulation, for its variations `δq`; hence the `− Q` in `E`.
 //!
-//! **Any family.** Nothing of this is typed here. [`Family`] reads it from the derived equations of a
-//! formulation: residuals `R` are affine in its costates `η` (`μ`, or `P` and what goes with it) and in the
-//! unknowns `z` of one instant (`a` and `μ̇`, or `ü`), so that
+//! **Any family.** None of these equations is written in this crate. [`Family`] extracts them from the
+//! derived equations of a formulation: residuals `R` are affine in its costates `η` (`μ`, or `P` and what
+//! goes with it) and in the unknowns `z` of one instant (`a` and `μ̇`, or `ü`), so that
 //!
 //! ```text
 //! R = J z + R_η η + R₀ ,   J = ∂R/∂z ,   R_η = ∂R/∂η   (vakonomic: R_η = −C, J = [M Aᵀ; A 0] at μ = 0) .
 //! ```
 //!
 //! With the curve's own accelerations in `R₀`, `J Δz = −(R_η η + R₀)` gives `η̇` where that is an unknown,
-//! and the difference `y` of the acceleration that the family's equations ask for and the curve's. Along
-//! Chetaev's motion `y = Π (Cμ − Aᵀλ)` with `Π` from the bordered matrix, and `η̇ = XCη − λ`. The curve is in
-//! the family iff `y ≡ 0`. Other formulations affine in their costates need no line here.
+//! and the difference `y` between the acceleration required by the family's equations and that of the curve.
+//! Along Chetaev's motion `y = Π (Cμ − Aᵀλ)` with `Π` from the bordered matrix, and `η̇ = XCη − λ`. The curve
+//! is in the family iff `y ≡ 0`. Other formulations affine in their costates need no line here.
 //!
 //! **The set.** `η = Φ c + φ` for constants `c`, `Φ` and `φ` integrated beside the curve; so `y = O(t) c +
 //! y₀(t)`, and `{c : y ≡ 0}` is an affine space: empty, a point, …, everything. Its dimension is the number
@@ -32,11 +32,11 @@
 //!
 //! **Decided in floating point** ([`decide`]). The rows `√w √M [O | y₀]` at 256 Gauss nodes or more go into
 //! one triangular matrix: `ρ²` is the least `∫ |y|²_M dt`. A looser run gives the noise,
-//! `‖difference of the rows‖ √(1 + |c*|²)`, at least 1e-14 of all that was added up. `ρ` over ten times the
+//! `‖difference of the rows‖ √(1 + |c*|²)`, at least 1e-14 of the sum of magnitudes. `ρ` over ten times the
 //! noise: *not contained*. Else *contained*, of the dimension of the directions whose rows are noise;
 //! *undecided* if the noise is over 1e-6 of the curve's own acceleration, unless that is round-off of what
-//! balances at rest. This is judged up to ten times of the run: what no constants can do up to one of these
-//! they cannot do at all; otherwise the longest time that is not too loud counts ([`Decision::until`]). The
+//! balances at rest. This is judged up to several times within the run: if no constants fit up to one of
+//! these, none fit at all; otherwise the longest time with low enough noise counts ([`Decision::until`]). The
 //! least-norm element is the first guess for fits.
 //!
 //! **Proved over a finite field** ([`Question::prove`]). Taylor coefficients `y_k = O_k c + y₀_k` at the
@@ -45,20 +45,20 @@
 //! `T ↦ τ`, `S ↦ σ`, `ζ = e^{iπ/720720} ↦ z` into the field of `p ≈ 2^60` elements is a homomorphism where
 //! nothing divided by is 0. A minor of `[O | y₀]` not zero there is not zero. So rank `[O | y₀]` = h + 1 at
 //! some order proves that *this very start* has no constants and, as the minor is analytic on `f = 0`, that
-//! *almost no* start of its branch has ([`Question::certificate`], for others to check). What is zero in one
-//! field is looked at in a second one, and still is no proof: where both ranks stay from one order to the
-//! next at random `(q, v, t)`, all later coefficients follow, and almost every start *has* constants; so has
-//! this one, if its rank is that one. At rest, where time stands nowhere, `η̇` is linear in `η` with constant
-//! coefficients: coefficients of `y` follow from as many as there are costates, and one.
+//! *almost no* start of its branch has ([`Question::certificate`], for others to check). A zero in one field
+//! is checked in a second one, and is still no proof: where both ranks stay the same from one order to the
+//! next at random `(q, v, t)`, all later coefficients depend on them, and almost every start *has* constants;
+//! so has this start, if its rank is the same. At rest, in an autonomous system, `η̇` is linear in `η` with
+//! constant coefficients: for k costates the first k + 1 coefficients of `y` determine the others.
 //!
-//! **Numbers** are those that are written: decimals, formulas of them, multiples of π in sines and cosines;
-//! square roots of products of small primes. A double is no formula. Logarithms, other roots, π elsewhere
-//! have no images, nor have numbers that were rounded: [`Finding::NotApplicable`] says why.
+//! **Numbers** are taken as written: decimals, formulas of them, multiples of π in sines and cosines, square
+//! roots of products of small primes. Logarithms, other roots, π elsewhere and rounded numbers have no images
+//! in a field: [`Finding::NotApplicable`] gives the reason.
 //!
-//! **An identity** ([`Question::section`]). `c = φ(q, v)`, sought among combinations of momenta, constants
-//! and velocities at random points of one field, tried at others of a second: `μ = −L_ṡ`, say. Put into the
-//! equations along the curve it is proved where these become the number zero ([`Section::proved`]). It holds
-//! on `f = 0`.
+//! **An identity** ([`Question::section`]). `c = φ(q, v)`, for example `μ = −L_ṡ`, is searched for among
+//! combinations of momenta, constants and velocities at random points of one field, and tested at points of a
+//! second. It is proved if the equations along the curve, with it substituted, become the number zero
+//! ([`Section::proved`]). It holds on `f = 0`.
 //!
 //! **The first difference** ([`Question::leading_difference`]), for any constants: the first `y_k ≠ 0` gives
 //!

@@ -1,4 +1,4 @@
-//! The parameters and memory variables of a removal along a curve `q(t)`, where they are no coordinates.
+//! Lift of a curve `q(t)` to the variables of a removal, where these are not coordinates.
 
 use equations::Equations;
 use mechanics::{Removal, RemovalStart, State, System, complete_removal_start};

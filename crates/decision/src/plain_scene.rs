@@ -1,4 +1,4 @@
-//! What a proof is about, in a form that little is needed to read.
+//! The system and start of a proof as plain scalar formulas, which a small reader can parse.
 
 use std::fmt::Write;
 

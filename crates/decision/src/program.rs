@@ -1,4 +1,5 @@
-//! Expressions as numbers of any kind, parameters among the inputs: so they stay exact where the numbers are.
+//! Evaluation of expressions in any number type. Parameters are inputs, so that exact numbers give exact
+//! values.
 
 use symbolic::{CompileError, Expr, Graph, Scalar, Symbol, Tape, Workspace};
 

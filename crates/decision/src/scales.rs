@@ -1,4 +1,4 @@
-//! What is of size 1: equations, unknowns and constants in sizes that come from the start, the time and `M`.
+//! Scaling: sizes of equations, unknowns and constants from the start, the time and `M`.
 
 use nalgebra::DMatrix;
 use symbolic::Bounded;

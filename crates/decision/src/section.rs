@@ -17,7 +17,8 @@ use crate::start::ExactStart;
 /// Points of a second field at which an identity is tried again after it was found.
 const TRIALS: u64 = 4;
 
-/// Constants with which every start on the constraint has the motion in question.
+/// Constants as functions of the start, for which the motion belongs to the family at every start on the
+/// constraint.
 ///
 /// `c_j = Σ a_{jb} B_b(q, v)` with fractions `a_{jb}` and as `B_b` the momenta `∂L/∂v`, 1 and the velocities.
 /// Solved for `a` at random points of one finite field, they hold at four of another. That is no proof.

@@ -1,33 +1,33 @@
-//! What is known of a mismatch, and what it is compared with.
+//! Noise of a mismatch, and the sizes that it is compared with.
 
 use nalgebra::{DMatrix, DVector};
 
 use crate::scales::power;
 
-/// A mismatch up to this many times its noise is none.
+/// A mismatch up to this many times its noise counts as zero.
 pub(crate) const CERTAIN: f64 = 10.0;
-/// What round-off leaves of the rows at best, relative to their size and to what was added up to them.
+/// Least round-off of the rows, relative to their size and to the sum of terms behind them.
 pub(crate) const ROUND_OFF: f64 = 1e-14;
 
-/// Of one constant in the triangle.
+/// Sizes of one constant in the triangular matrix.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Column {
-    /// What a constant of size 1 in the triangle is.
+    /// Value of the constant that has size 1 in the triangular matrix.
     pub(crate) scale: f64,
-    /// What its column is known to, and its size: without one, that of what was added up to it.
+    /// Noise of its column, and its size: where it is within noise, that of the sum of terms behind it.
     pub(crate) noise: f64,
     pub(crate) size: f64,
 }
 
-/// What a mismatch is compared with.
+/// Sizes that a mismatch is compared with.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Sizes {
-    /// What `y₀` is known to, and `O` times a constant of size 1.
+    /// Noise of `y₀`, and of `O` times a constant of size 1.
     pub(crate) noise: f64,
     /// The curve's own acceleration, and its speed over the time.
     pub(crate) acceleration: f64,
     pub(crate) speed: f64,
-    /// What was added up, without regard to signs.
+    /// The sum of magnitudes of terms.
     pub(crate) terms: f64,
     /// Whether the curve moves at any node, by more than round-off of that.
     pub(crate) moves: bool,

@@ -1,15 +1,14 @@
-//! Motions that go on where pivots have become small: by equations that have no pivots.
+//! Change of charts: where pivots become small, a motion is continued with equations without pivots.
 //!
-//! What is handed over belongs to the coordinates, not to the chart: `(q, v)`, and multipliers `μ` or
-//! canonical momenta. A form in quasi-velocities goes on with multipliers, as its formulation is
-//! derived. Of a removal by coordinates, with parameters `u` and memory `w`, these are
+//! The state handed over does not depend on the chart: `(q, v)`, and multipliers `μ` or canonical momenta. A
+//! form in quasi-velocities continues with multipliers, the form in which its formulation is derived. For a
+//! removal by coordinates, with parameters `u` and memory `w`, the momenta are
 //!
 //! ```text
 //! p_u = G_u̇ ,      p_w = −P      (P = −∂(L + μ·f)/∂ẇ) ,
 //! ```
 //!
-//! the momenta `p = ∂(L + μ·f)/∂v` of the vakonomic motion that it is. It goes on as that motion, by
-//! Hamilton's equations for `(q, p)`.
+//! equal to `p = ∂(L + μ·f)/∂v`: the motion is vakonomic, and continues by Hamilton's equations for `(q, p)`.
 //!
 //! Both runs of a motion change at the time of the kept one, each from its own state.
 

@@ -1,4 +1,4 @@
-//! What is chosen before a motion is computed: formulation, removal, free constants; the resulting equations.
+//! A choice of formulation, removal and free constants, and the equations that result.
 
 use std::collections::{HashMap, HashSet};
 

@@ -1,4 +1,4 @@
-//! Equations of motion as source text in other languages, for those who step time themselves.
+//! Equations of motion as source code in other languages, for other integrators.
 
 mod c;
 mod python;

@@ -1,7 +1,7 @@
 //! Two derivation paths, one answer: results that cannot both be true.
 //!
 //! Motions, the decision in floating point, the proof over a finite field and Frobenius' test share little
-//! code. Where two of them exclude each other one is wrong, and nothing is concluded from either.
+//! code. If two of them contradict each other, one is wrong, and no conclusion is drawn from either.
 
 use std::fmt::{self, Display, Formatter};
 

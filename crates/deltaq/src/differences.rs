@@ -1,4 +1,5 @@
-//! Derivatives of what is computed for a number, smooth and right to the last digits, and kinks of it.
+//! Numerical derivatives of a function that is smooth and accurate to the last digits, and detection of its
+//! kinks.
 //!
 //! The derivative is a central difference of order 8 at the best of several distances,
 //!
@@ -6,7 +7,7 @@
 //! y'(x) = Σ_j w_j (y(x + jh) − y(x − jh))/h + O(h⁸) ,    w = 4/5, −1/5, 4/105, −1/280,
 //! ```
 //!
-//! with the distance from that of order 6, and round-off, for its error. A kink at x itself, where the slope
+//! and its error is the difference from that of order 6, with round-off. A kink at x itself, where the slope
 //! jumps by 2k, is even and has no part in these; it is
 //!
 //! ```text

@@ -1,8 +1,8 @@
-//! How motions move with their numbers, as far as what is prepared keeps it.
+//! Derivatives of starts and constants with respect to numbers of a scene, as prepared equations store them.
 
 use nalgebra::DMatrix;
 
-/// How a motion and its constants move with a number, times `scale`.
+/// Derivatives of a motion's start and constants with respect to a number, times `scale`.
 #[derive(Clone)]
 pub(crate) struct Direction {
     /// Of the start, `dy(t₀)`.

@@ -1,10 +1,11 @@
-//! Equations with round-off of the rates put in by hand, so that a run tells what becomes of it.
+//! Equations with added round-off of the rates: a run shows how it grows.
 
 use equations::{Equations, FreeConstant};
 use mechanics::fresh_symbol;
 use symbolic::Symbol;
 
-/// `ẏ_i = F_i (1 + η_i) + d_i`, but for rates that are states themselves, with these numbers: `d`, then `η`.
+/// `ẏ_i = F_i (1 + η_i) + d_i`, except for rates that are states themselves, with these numbers: `d`, then
+/// `η`.
 pub(crate) fn disturbed(equations: &Equations, by: &[f64]) -> Equations {
     let mut equations = equations.clone();
     let symbols = disturb(&mut equations);

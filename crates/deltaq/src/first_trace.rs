@@ -1,12 +1,12 @@
-//! How large the first trace of vakonomic mechanics, `−ε C λ`, is along a motion by Chetaev.
+//! Size of the first-order vakonomic term `−ε C λ` along Chetaev's motion.
 
 use equations::Compiled;
 use scene::Scene;
 
 use crate::{Metric, Motion, SolveError};
 
-/// What one unit of `ε` changes of accelerations, beside these: lengths in the kinetic metric, the largest
-/// along the motion.
+/// Change of the acceleration per unit of `ε`, and the acceleration itself: largest lengths in the kinetic
+/// metric along the motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FirstTrace {
     /// `|∂a/∂ε|` at `ε = 0`.

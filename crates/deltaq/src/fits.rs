@@ -1,4 +1,4 @@
-//! What the free constants of one run can do to meet another.
+//! Fits of the free constants of one run to the motion of another.
 
 use equations::{Equations, Formulation, FreeConstant};
 use mechanics::ConstantsRule;
@@ -14,7 +14,7 @@ use crate::{
     constant_names, costates_of, derive_at, multipliers_of, setting, solve,
 };
 
-/// The vakonomic motion is searched for Chetaev's by this many times the work of other searches.
+/// Divisor of the work limit of all searches, except that of a vakonomic motion for Chetaev's.
 const LESS: usize = 4;
 
 /// Which free constants are fitted.

@@ -1,9 +1,9 @@
-//! Numbers at which the equations of a motion have a kink all the time.
+//! Detects parameters and start values at which the equations have a kink along the whole motion.
 //!
 //! A motion and its constants move by `(dy, dc)` with a number. Where rates depend on `√(p²)` and p = 0,
-//! their slope along this direction jumps at the motion itself, and numbers with tangents have the mean of
-//! both sides. Where a motion only crosses a kink, derivatives are continuous. A kink that is there for less
-//! than a two-hundredth of the time, and at none of the times that are asked for, may be missed.
+//! their slope along this direction jumps on the motion itself, and automatic differentiation gives the mean
+//! of both sides. Where a motion only crosses a kink, derivatives are continuous. A kink that lasts less than
+//! a two-hundredth of the time, and contains none of the times asked for, may be missed.
 
 use crate::carried::{Carried, Moves};
 use crate::differences::has_kink;

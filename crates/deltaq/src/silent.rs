@@ -1,4 +1,5 @@
-//! Where constraints say nothing of the velocities, or are dependent, whatever the velocities are.
+//! Configurations at which a constraint does not restrict the velocities, or constraints are dependent, for
+//! all velocities.
 
 use std::collections::BTreeMap;
 

@@ -1,5 +1,5 @@
-//! How a search for the least largest gap goes down: steps to the linearized minimum, from the beginning
-//! of the motion to the whole, and a population that finds its way in valleys too narrow for steps.
+//! Minimization of the largest gap: steps to the linearized minimum, on longer and longer parts of the
+//! motion, and a population of candidates for valleys too narrow for such steps.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -9,8 +9,8 @@ use crate::gap_search::{BEYOND, COARSE, FINE, GAIN, Search, Value};
 const STEPS: usize = 10;
 
 impl Search {
-    /// Steps to the least largest gap of the linearized motion up to this part of it, as long as they gain
-    /// something.
+    /// Steps to the minimum of the largest gap of the linearized motion up to this part of it, as long as the
+    /// gap decreases.
     pub(crate) fn descent(&mut self, start: Value, part: f64) -> Value {
         let fine = self.differences.largest(&start.0, part, FINE);
         let mut best = (start.0, fine);

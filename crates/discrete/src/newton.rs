@@ -1,5 +1,5 @@
-//! Newton's method for one step, without allocation. A step that it does not solve at once is refused as too
-//! long: a root farther off is another motion.
+//! Newton's method for one step, without allocation. If it does not converge quickly, the step is refused as
+//! too long: a distant root belongs to another motion.
 
 use std::collections::HashMap;
 

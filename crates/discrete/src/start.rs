@@ -1,4 +1,4 @@
-//! What a discrete motion starts from: values at `t₀`, and what is refused.
+//! The start of a discrete motion: values at `t₀`, and refusals.
 
 use std::collections::HashMap;
 

@@ -1,4 +1,4 @@
-//! Every error, and what needs more than the order to be seen.
+//! Tests of every error, and of properties that the order does not show.
 
 use mechanics::{State, System};
 use scene::Scene;

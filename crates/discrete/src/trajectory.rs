@@ -1,4 +1,4 @@
-//! A discrete motion that is kept and read off at any time.
+//! A stored discrete motion, evaluated at any time.
 
 use crate::step::Node;
 use crate::sum::Compensated;

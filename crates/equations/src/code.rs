@@ -1,4 +1,4 @@
-//! Equations as code in other languages: what stands in it. The files are written where systems are known.
+//! Expressions of equations as code in other languages. The files are written in crates that know systems.
 
 use std::collections::HashMap;
 

@@ -1,4 +1,4 @@
-//! What a formulation is to the rest of the program: a name and a pass from a system to equations.
+//! A formulation: a name and a pass from a system to equations.
 
 use std::fmt;
 

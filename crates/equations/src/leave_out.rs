@@ -1,4 +1,4 @@
-//! What the motion does not need is left out of its equations, once for all formulations.
+//! Removes from equations what the motion does not need, in one place for all formulations.
 //!
 //! Quadratures are named only, and stay under the error control of the time loop: users want those
 //! coordinates as accurate as the others. Without them DOP853 takes as many steps and is 1 % to 13 % faster

@@ -1,4 +1,4 @@
-//! What the equations of several formulations have in common.
+//! Parts that the equations of several formulations share.
 
 use mechanics::System;
 use symbolic::Expr;

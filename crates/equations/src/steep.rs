@@ -1,4 +1,5 @@
-//! What may change within less than a step: functions that are steep, angles that jump, divisors that vanish.
+//! Quantities that may change within less than a step: rapidly varying functions, jumping angles, vanishing
+//! divisors.
 
 use std::collections::{HashMap, HashSet};
 

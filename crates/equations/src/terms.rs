@@ -1,4 +1,4 @@
-//! Programs in numbers that know what was added up to them.
+//! Compiled programs in numbers that carry the sum of magnitudes behind them ([`Bounded`]).
 
 use symbolic::{Bounded, Evaluator};
 

@@ -1,8 +1,9 @@
-//! The law of first order with slip, `f = −λ/N`: a fit with a bound that its motions do not come to.
+//! Fits of the first-order law with slip, `f = −λ/N`, whose bound 1/N = 0 its motions do not reach.
 //!
-//! Motions creep in the time `m/N`: the smaller 1/N, the more steps they take. At `1/N = 0` constraints are
-//! kept, and the equations are others. So there are two fits: with constraints that are kept, which is what
-//! creeping motions tend to, and with 1/N from the least on that motions can be followed with.
+//! Motions with slip have the time constant `m/N`: the smaller 1/N, the more steps they take. At `1/N = 0`
+//! constraints hold exactly, and the equations are different. So there are two fits: one with exact
+//! constraints, the limit of motions with slip, and one with 1/N above the least value that can be
+//! integrated.
 
 use crate::distribution::normal_tails;
 use crate::fit::{RISE, RISE_AT_BOUND};
@@ -10,13 +11,13 @@ use crate::profile::NORMAL;
 use crate::search::{Stage, least};
 use crate::{Estimate, Fit, FitError, Problem};
 
-/// Halvings of where the search begins, to the least 1/N that motions are followed with, and times as many
-/// steps as there that these may take.
+/// Maximum number of halvings of the initial 1/N down to the least one, and factor by which motions may take
+/// more steps than there.
 const HALVINGS: i32 = 8;
 const STEPS: usize = 16;
-/// The end of an interval is found to this part.
+/// Relative accuracy of an end of the interval.
 const CLOSE: f64 = 0.02;
-/// Steps outwards to it, by a factor of two.
+/// Maximum number of doublings in the search for it.
 const OUTWARDS: usize = 20;
 
 /// `problem` with a bound for its unknown `i`, 1/N: the least with which motions can be followed.

@@ -1,4 +1,4 @@
-//! Which film would show most: numbers d of the motion, each between two bounds, that
+//! The best design of a film: numbers d of the motion, each between two bounds, that
 //!
 //! ```text
 //! tell two formulations apart:   max over d of  min over θ of  χ²(d, θ) ,

@@ -1,4 +1,4 @@
-//! Tails of the distributions that tests ask for.
+//! Tail probabilities of the normal and the χ² distribution.
 
 /// `P(X > x)` of a χ² distribution with `k > 0` degrees of freedom: the incomplete gamma function
 /// `Q(k/2, x/2)`, by its series where that converges fast and by a continued fraction otherwise.

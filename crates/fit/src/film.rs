@@ -1,4 +1,4 @@
-//! A film as a table: times, and what is seen of the motion.
+//! A film as a table: times, and observed columns.
 
 use scene::{Scene, Table, TableError};
 use symbolic::Expr;

@@ -1,4 +1,4 @@
-//! One formulation fitted to films: estimates with intervals, and what residuals say.
+//! One formulation fitted to films: estimates with intervals, and tests on residuals.
 
 use nalgebra::{DMatrix, DVector};
 

@@ -1,14 +1,14 @@
-//! What films of some columns can show at all: the rank of their time derivatives in the unknowns.
+//! Identifiability: the rank of the derivatives of a film's Taylor coefficients with respect to the unknowns.
 //!
 //! A film without gaps and noise shows the coefficients `c_k` of its columns, `c(t₀ + s) = Σ c_k s^k`. These
-//! are algebraic in the numbers of the scene (see [`decision`]); at random unknowns in a finite field, known
-//! numbers being as written, `∂c_k/∂θ` comes from series whose coefficients carry derivatives ([`Dual`]).
+//! are algebraic in the numbers of the scene (see [`decision`]); at random unknowns in a finite field, with
+//! known numbers as written, `∂c_k/∂θ` comes from series whose coefficients carry derivatives ([`Dual`]).
 //!
 //! - Full rank: a minor that is not zero modulo a prime is not zero. Analytic in θ, it is not zero at almost
-//!   all θ, and there other θ nearby give other films: *proved*. What is known before counts as measured.
-//!   Where something that varies stands under a root, or has kinks, there are several pieces: *open*.
-//! - Less, to the order of as many coefficients as there are states and unknowns, in two fields: no proof;
-//!   what kernels contain is named.
+//!   all θ, and there other θ nearby give other films: *proved*. A prior counts as a measurement. Where a
+//!   variable expression stands under a root, or has kinks, the set of θ has several pieces: *open*.
+//! - Lower rank, up to an order equal to the number of states and unknowns, in two fields: no proof; the
+//!   unknowns in the kernel are named.
 //!
 //! Source: A. Sedoglavic, *A probabilistic algorithm to test local algebraic observability in polynomial
 //! time*, J. Symbolic Computation 33 (2002) 735.

@@ -1,4 +1,4 @@
-//! Answers as JSON: what the command prints, and Python reads. What is infinite is null.
+//! Answers as JSON, printed by the command and read by Python. Infinite numbers are null.
 
 use scene::Scene;
 use serde_json::{Value, json};

@@ -1,4 +1,4 @@
-//! How long a film has to be that tells two formulations apart.
+//! The shortest film that separates two formulations.
 
 use crate::search::{Stage, least};
 use crate::{EXCLUDED, Fit, Problem};

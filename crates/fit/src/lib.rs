@@ -1,6 +1,6 @@
 //! # Films of motions: estimates with intervals, and which formulation a film supports
 //!
-//! Given: a scene, films, and what is not known of the scene. A film is a table of times `t_k` and columns
+//! Given: a scene, films, and unknowns of the scene. A film is a table of times `t_k` and columns
 //! `c(t, q, v, p)` with standard deviations σ; unknown numbers θ are parameters, start values, multipliers
 //! `μ₀` or costates `P₀`, and those of the constraint law: ε, 1/N. In each formulation that is asked for,
 //!
@@ -11,12 +11,12 @@
 //! is minimised by Levenberg and Marquardt's method, with exact derivatives of the motions, from several
 //! starts, and over beginnings of the films that become longer ([`search()`]).
 //!
-//! - [`Film::read`]: a film from CSV, with the line of what is wrong.
+//! - [`Film::read`]: a film from CSV; errors name the line.
 //! - [`Problem`]: residuals of several films in one formulation, with shared unknowns and others of their
 //!   own.
 //! - [`fit()`]: estimates, intervals of 95 %, tests on residuals ([`residual_tests`]).
-//! - [`Identifiability`]: what films of some columns can show at all, by ranks over finite fields.
-//! - [`standard_errors`]: what films that are not yet made would show; [`Design`]: which would show most.
+//! - [`Identifiability`]: which unknowns films of some columns can show at all, by ranks over finite fields.
+//! - [`standard_errors`]: accuracy expected of films that are not yet made; [`Design`]: the best film.
 //! - [`fit_formulations`]: formulations side by side, and the verdict ([`Verdict`]).
 //!
 //! **Intervals.** `± 1.96` standard errors where χ² rises by 3.84 there, to 5 %, all others fitted again;
@@ -28,7 +28,7 @@
 //! and the intervals of these unknowns are infinite.
 //!
 //! **What it refuses.** Films that cannot be read, with the place ([`FitError`]). No verdict is given where
-//! residuals of the best formulation object.
+//! residuals of the best formulation fail their tests.
 
 mod answer;
 mod choose;

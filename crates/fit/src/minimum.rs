@@ -1,4 +1,4 @@
-//! Minima of χ², and which of them are worth a look.
+//! Minima of χ², and the selection of those to refine.
 
 /// A local minimum.
 #[derive(Clone, Debug, PartialEq)]

@@ -1,4 +1,4 @@
-//! What a film shows of a motion, as numbers with derivatives.
+//! Columns of a film as functions of the motion, with derivatives.
 
 use equations::Outputs;
 use mechanics::System;

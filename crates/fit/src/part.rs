@@ -1,4 +1,4 @@
-//! One film and the motion that it shows: residuals with their derivatives.
+//! One film with its motion: residuals and their derivatives.
 
 use deltaq::{Choice, Model, Settings};
 use scene::Scene;

@@ -1,4 +1,4 @@
-//! Films that are not yet made.
+//! Predictions for films that are not yet made.
 
 use std::str::FromStr;
 

@@ -1,4 +1,4 @@
-//! How χ² rises beside its minimum, where one unknown is held and the others are fitted.
+//! Profiles of χ²: one unknown is fixed near the minimum, and the others are fitted.
 //!
 //! The others follow by chords: with the Jacobian `J` that they have at the minimum,
 //!

@@ -1,4 +1,4 @@
-//! What is asked of films, and what each formulation makes of it.
+//! Questions about films, and the fit problem of each formulation.
 
 use deltaq::{
     Choice, FIRST_ORDER, FORMULATIONS, Settings, UnknownFormulation, VAKONOMIC_COSTATE, constants_of, costate_names,
@@ -11,11 +11,11 @@ use scene::Scene;
 use crate::unknown::with_start;
 use crate::{Film, FitError, Problem, Unknown};
 
-/// Residuals above this size count linearly where outliers are to count little.
+/// Residuals above this size count linearly where the weight of outliers is to be reduced.
 pub const ROBUST: f64 = 1.345;
 
-/// The constraint law with numbers. That of κ is none of these: where Chetaev's law is right, κ is infinite,
-/// and motions with large κ are stiff; ε is the number for it.
+/// The constraint law with fitted parameters. κ is not one of them: where Chetaev's law is right, κ is
+/// infinite, and motions with large κ are stiff; ε = 1/κ replaces it.
 pub(crate) const LAW: &Formulation = FIRST_ORDER;
 pub(crate) const SLIP: &str = "slip";
 

@@ -1,5 +1,5 @@
-//! Whether residuals are independent, normal and of variance one, as they are where formulation, numbers and
-//! standard deviations are right.
+//! Tests whether residuals are independent, normal and of variance one, as they are for the right
+//! formulation, numbers and standard deviations.
 
 use crate::distribution::{chi_squared_tail, normal_tails};
 use crate::{Film, Residual};

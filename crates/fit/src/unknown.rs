@@ -1,4 +1,4 @@
-//! What is not known of a scene.
+//! Unknowns of a scene or a film.
 
 use std::str::FromStr;
 
@@ -7,7 +7,7 @@ use scene::Scene;
 use crate::film::positive;
 use crate::{FitError, quantity};
 
-/// What was known before: a normal distribution.
+/// A normal prior distribution.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Prior {
     /// Its mean.
@@ -16,14 +16,14 @@ pub struct Prior {
     pub deviation: f64,
 }
 
-/// By how much the clock of a film is slow, unless the scene has a parameter of this name.
+/// Name of the relative error of a film's clock, unless the scene has a parameter of this name.
 pub(crate) const CLOCK: &str = "clock";
 
-/// A number of a scene that is not known: a parameter, a start value, `mu0_1`, `P0_w`; or that of a film: by
-/// how much its clock is slow, `clock`: what it calls `t` is `t₀ + (1 + clock)(t − t₀)`.
+/// An unknown number of a scene (a parameter, a start value, `mu0_1`, `P0_w`) or of a film: the relative
+/// error `clock` of its clock. Time `t` of the film is `t₀ + (1 + clock)(t − t₀)` in the scene.
 ///
 /// Written `NAME`, `NAME@2` for the second film alone, `NAME~VALUE` with a value at which the search begins,
-/// `NAME~MEAN±DEVIATION` with what is known before; `NAME>=BOUND`.
+/// `NAME~MEAN±DEVIATION` with a prior; `NAME>=BOUND`.
 ///
 /// ```
 /// use fit::{Prior, Unknown};

@@ -1,4 +1,4 @@
-//! What somebody else needs to check an answer: `validation/proof/verify.py` reads it.
+//! Certificates of answers, which `validation/proof/verify.py` checks.
 
 use decision::exact::{Modular, in_any_field, inverse};
 use decision::{ExactStart, Images, PlainScene, SeriesStart, named};

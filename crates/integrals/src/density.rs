@@ -1,4 +1,4 @@
-//! Densities of invariant measures that can be written down.
+//! Densities of invariant measures as formulas.
 //!
 //! With `σ = Σ c_k log B_k` the condition `X_b σ = −θ_b` is linear in the `c_k`: a few random points of a
 //! field give more rows than there are unknowns. `B_0 = det g`, for which `X_b log det g = g^{ac}

@@ -1,4 +1,4 @@
-//! Brackets of a basis of `ker A`, and what an invariant measure would have to be along them.
+//! Brackets of a basis of `ker A`, and the condition on an invariant measure along each of them.
 //!
 //! Along Chetaev's motion, with `p_a = g_ab s^b` and `[X_a, X_b] = C_ab^c X_c + (M-orthogonal to ker A)`,
 //!

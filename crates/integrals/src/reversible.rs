@@ -1,4 +1,4 @@
-//! What is asked of a system without time, of homogeneous constraints and a potential.
+//! Measures and integrals of autonomous systems with homogeneous constraints and a potential.
 
 use decision::exact::{FIELDS, agreed};
 use decision::{DecisionError, ExactStart};
@@ -14,7 +14,7 @@ use crate::multiplier::{Reduction, reductions};
 
 /// Seeds of the random points, one per field.
 const SEEDS: [u64; FIELDS.len()] = [0x17e6_0001, 0x17e6_0002, 0x17e6_0003, 0x17e6_0004];
-/// Weights beyond the heaviest bracket that are looked at, first few.
+/// Numbers of weights beyond the heaviest bracket that are tried, a few first.
 const ORDERS: [usize; 2] = [6, 9];
 
 /// Whether a measure `e^{σ(q)} dq dp`, smooth and positive, is invariant near almost every point.

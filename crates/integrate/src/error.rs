@@ -1,4 +1,4 @@
-//! Bad calls.
+//! Errors of wrong calls.
 
 use thiserror::Error;
 

@@ -1,4 +1,4 @@
-//! Where the event functions change their signs, or touch zero.
+//! Locates zeros of event functions: changes of sign, and zeros that are touched.
 
 use crate::dense::{Basis, evaluate_segment};
 use crate::root::find_root_between;

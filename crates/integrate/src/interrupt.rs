@@ -1,4 +1,4 @@
-//! How an integration is ended from elsewhere, and watched.
+//! Stops an integration from another thread, and reports its progress.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, AtomicUsize, Ordering};

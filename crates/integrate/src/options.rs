@@ -1,4 +1,4 @@
-//! How to integrate.
+//! Options of an integration.
 
 use std::sync::Arc;
 

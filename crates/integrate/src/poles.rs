@@ -1,10 +1,10 @@
-//! Steps over zeros of divisors.
+//! Detects poles within steps: zeros of divisors.
 //!
-//! A wall c/x² with c under the tolerance is in no term of a series that begins far from it, and a method
-//! sees its rates at a few points only. So divisors ([`crate::Problem::divisors`]) are evaluated at both ends
-//! and in the middle of each step. Where one changes its sign, or the parabola through its values comes near
-//! zero, that is approached along the step's polynomial, closer each time: the step is refused if the rates
-//! are no slope of it there. A divisor whose zero does nothing, as in (sin x)/x, stops nothing.
+//! A wall c/x² with c below the tolerance does not show in a series that begins far from it, and a method
+//! evaluates its rates at a few points only. So divisors ([`crate::Problem::divisors`]) are evaluated at both
+//! ends and in the middle of each step. Where one changes its sign, or the parabola through its values comes
+//! near zero, points closer and closer to this zero are taken on the step's polynomial: the step is refused
+//! if its slope differs from the rates there. A removable singularity, as in (sin x)/x, refuses no step.
 
 use crate::dense::segment_with_slope;
 use crate::events::Segment;

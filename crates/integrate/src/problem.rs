@@ -1,4 +1,4 @@
-//! What is to be integrated.
+//! The initial value problem as a trait.
 
 use thiserror::Error;
 

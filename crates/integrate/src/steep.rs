@@ -1,4 +1,4 @@
-//! Steps over what is switched on and off within them.
+//! Detects functions that are switched on and off within a step.
 //!
 //! A method knows its rates at a few points of a step. A function that is constant at all of these may still
 //! change between them: a force for half a second within a step of ten. So the arguments of such functions,

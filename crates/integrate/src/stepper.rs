@@ -1,4 +1,4 @@
-//! What a method is to the time loop.
+//! The interface of a method to the time loop.
 
 use crate::dense::Basis;
 use crate::status::StopCause;

@@ -1,4 +1,4 @@
-//! How far the eigenvalues of a matrix may be from those computed, and whether some of them are defective.
+//! Error bounds of computed eigenvalues, and whether some of them are defective.
 //!
 //! While `|(z − A)⁻¹| E` has a spectral radius under 1, no matrix within `E` of `A`, entry by entry, has the
 //! eigenvalue `z`. Where that holds all round a circle, as many eigenvalues are within it whatever the error.
@@ -14,7 +14,7 @@ const CONTOUR: usize = 64;
 const CLEAR: f64 = 0.5;
 /// A matrix is raised to the power of two to this for its spectral radius.
 const SQUARINGS: usize = 7;
-/// A circle so much smaller is tried.
+/// Factor by which the next circle to be tried is smaller.
 const SHRUNK: f64 = 1.5;
 /// Circles tried.
 const TRIALS: usize = 200;

@@ -1,4 +1,4 @@
-//! Steady motions that are looked for.
+//! Search for steady motions.
 
 use deltaq::{CHETAEV, Choice, Setting};
 use mechanics::{ConstantsRule, SingularValues, State};

@@ -16,10 +16,10 @@ pub(crate) struct Point {
     pub(crate) y: Vec<f64>,
 }
 
-/// What is a coordinate, and what a velocity or stands for one.
+/// Roles of coordinates, and of velocities or what replaces them.
 pub(crate) const COORDINATES: [Role; 3] = [Role::Position, Role::DisplacementParameter, Role::Memory];
 pub(crate) const VELOCITIES: [Role; 3] = [Role::Velocity, Role::QuasiVelocity, Role::ParameterRate];
-/// Points beside it.
+/// Number of points near it.
 const SAMPLES: usize = 3;
 /// How far they are, in parts of the states or of 1; 0: the point itself.
 const APART: [f64; 9] = [1e-1, 1e-3, 1e-5, 1e-7, 1e-9, 1e-11, 1e-13, 1e-15, 0.0];

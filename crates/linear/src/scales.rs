@@ -1,4 +1,4 @@
-//! How far states may be moved before their rates are others to first order, in whatever units they come.
+//! Scales of states: how far they may be displaced before the Jacobian changes, in any units.
 
 use nalgebra::{DMatrix, linalg::balancing::balance_parlett_reinsch};
 
@@ -10,7 +10,7 @@ use crate::weyl::Weyl;
 /// Powers of ten by which states are moved: from one up to the other.
 const LEAST: i32 = -30;
 const MOST: i32 = 30;
-/// The Jacobian is another one where it changes by this part of its length.
+/// A change of the Jacobian by this fraction of its length counts.
 const ANOTHER: f64 = 0.1;
 
 impl Point {

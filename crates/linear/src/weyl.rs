@@ -1,6 +1,6 @@
 //! Numbers without a pattern.
 
-/// Numbers without a pattern, the same in every run: Weyl's sequence.
+/// Pseudorandom numbers, the same in every run: Weyl's sequence.
 #[derive(Default)]
 pub(crate) struct Weyl(f64);
 

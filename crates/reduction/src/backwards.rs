@@ -1,4 +1,4 @@
-//! The recursion of the velocities gone through backwards.
+//! Adjoints of the dependent velocities: their recursion in reverse order.
 
 use std::collections::{HashMap, HashSet};
 

@@ -1,4 +1,4 @@
-//! What ways to write the same motion cost, and the cheapest of them.
+//! The cost of equivalent equations of one motion, and the cheapest of them.
 
 use equations::{Compiled, Equations};
 

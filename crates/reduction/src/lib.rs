@@ -6,14 +6,14 @@
 //! v = S(q, t) w + s(q, t) ,      A S = 0 ,   A s + b = 0 ,
 //! ```
 //!
-//! with n − h quasi-velocities `w`. This crate states again in `(q, w)`, or `(q, p)`, what the crates of the
-//! formulations derive with multipliers: fewer unknowns, nothing to project, and for a chain of n bodies O(n)
-//! operations. The motions are the same; a test between crates holds each form against the first one of its
-//! formulation, and nothing but speed depends on this crate.
+//! with n − h quasi-velocities `w`. This crate reformulates in `(q, w)`, or `(q, p)`, the equations that the
+//! crates of the formulations derive with multipliers: fewer unknowns, no projection, and O(n) operations for
+//! a chain of n bodies. The motions are the same: a test compares each form with the first one of its
+//! formulation, and only speed depends on this crate.
 //!
 //! - [`QuasiVelocities`]: `S` and `s` as a recursion, by sparse elimination of the constraints.
 //! - [`Frame`]: `u = U(q) v` with the kinetic energy squares of constant coefficients, and `dω` of its forms.
-//! - Chains in few coordinates, by the velocities of their bodies: what both of these do first (`chain`).
+//! - Chains in few coordinates, by the velocities of their bodies, the first step of both (`chain`).
 //! - [`REDUCED_CHETAEV`]: `Sᵀ (d/dt ∂L/∂v − ∂L/∂q − Q) = 0`.
 //! - [`REDUCED_VAKONOMIC`]: `Sᵀ (p − L_v) = 0`, `ṗ = L_q − (∂v/∂q)ᵀ (p − L_v)`.
 //! - [`cheapest`]: which of several ways to write the same motion takes the fewest operations.

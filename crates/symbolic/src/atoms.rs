@@ -1,4 +1,4 @@
-//! What sums and products are made of: numbers, names, calls and brackets, their components and rates.
+//! Operands of sums and products: numbers, names, calls and brackets, their components and rates.
 
 use crate::lexer::{Fault, Spanned, Token};
 use crate::parse::Parser;

@@ -1,15 +1,16 @@
-//! Numbers that know how much round-off there may be in them.
+//! Numbers with an estimate of their round-off: running error analysis.
 
 use crate::Scalar;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-/// A value below this part of what was added up to it is round-off.
+/// A value below this fraction of its magnitude counts as round-off.
 const RELATIVE_BOUND: f64 = 1e-11;
 
 /// Added in every product, so that what underflows counts as round-off.
 const UNDERFLOW: f64 = 1e-300;
 
-/// A value and its round-off measure: all that was added up, each times how much the value depends on it.
+/// A value and its round-off measure: the sum of the magnitudes of all intermediate results, each times the
+/// derivative of the value by it.
 ///
 /// ```
 /// use std::collections::HashMap;
@@ -29,12 +30,12 @@ const UNDERFLOW: f64 = 1e-300;
 pub struct Bounded {
     /// The value.
     pub value: f64,
-    /// The size of what was added up to it.
+    /// The sum of magnitudes behind it.
     pub magnitude: f64,
 }
 
 impl Bounded {
-    /// What of the value may be round-off.
+    /// Bound of the round-off in the value.
     pub fn round_off(self) -> f64 {
         RELATIVE_BOUND * self.magnitude
     }

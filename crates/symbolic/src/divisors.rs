@@ -1,4 +1,4 @@
-//! What is divided by.
+//! Divisors in expressions.
 
 use crate::arena::Node;
 use crate::{Expr, Function, Graph, Range, Symbol};
@@ -6,7 +6,7 @@ use rustc_hash::FxHashMap;
 use std::collections::{BTreeSet, HashMap};
 
 impl Graph {
-    /// What `es` divide by, where that may vanish: bases of negative powers, and of powers that are no
+    /// Divisors in `es` that may vanish: bases of negative powers, and of powers whose exponents are not
     /// numbers; the cosine under a tangent. `known` are ranges of symbols, such as the values of parameters.
     ///
     /// ```

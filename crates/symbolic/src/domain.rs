@@ -1,4 +1,4 @@
-//! Where formulas have values as they were written, though a simpler form has them elsewhere, too.
+//! Domains of formulas as written, which are smaller than those of their simplified forms.
 
 use crate::{Expr, Fraction, Function, Graph, Range};
 use std::collections::HashMap;
@@ -27,8 +27,8 @@ impl Graph {
         call
     }
 
-    /// What has to be no less than zero for the formulas read so far, where nothing in `es` says so any more:
-    /// `√z·√z` is kept as `z`, and so is `(z^(1/3))³`; `log z − log z` as 0.
+    /// Expressions that have to be non-negative for the formulas read so far, where this no longer follows
+    /// from `es`: `√z·√z` and `(z^(1/3))³` are stored as `z`, and `log z − log z` as 0.
     ///
     /// ```
     /// let g = symbolic::Graph::new();

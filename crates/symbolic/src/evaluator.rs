@@ -1,4 +1,4 @@
-//! A tape with all that one thread needs to evaluate it again and again.
+//! A tape with the memory for repeated evaluation in one thread.
 
 use crate::{Scalar, Tape, Workspace};
 

@@ -1,4 +1,4 @@
-//! Faults on purpose: one operation of a derivation is made wrong, to test whether anybody notices.
+//! Fault injection: one operation of a derivation is made wrong, to test whether a judge notices.
 //!
 //! Constructors, derivatives, substitutions and questions of a [`Graph`] ask here whether and how to go
 //! wrong: each such *chance* has a number, counted from the beginning of the work. [`chances`] counts them,

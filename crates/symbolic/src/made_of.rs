@@ -1,4 +1,4 @@
-//! What an expression is made of.
+//! Queries on expressions: symbols, denominators, roots, size.
 
 use crate::arena::Node;
 use crate::number::{Number, Rational};
@@ -57,7 +57,7 @@ impl Graph {
         bases.into_iter().filter(|b| arena.as_number(*b).is_none()).collect()
     }
 
-    /// Whether every number in `es` is a fraction that nothing has rounded.
+    /// Whether every number in `es` is an exact fraction.
     pub fn are_exact(&self, es: &[Expr]) -> bool {
         let arena = self.arena.borrow();
         !es.iter().any(|&e| arena.contains_float(e))

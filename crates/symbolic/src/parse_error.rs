@@ -1,4 +1,4 @@
-//! What can be wrong with a formula, and where.
+//! Errors in formulas, with their places.
 
 use std::fmt;
 

@@ -1,4 +1,4 @@
-//! Shared by the printers of plain text and LaTeX: writing without recursion, order and signs of terms.
+//! Common part of the printers of plain text and LaTeX: output without recursion, order and signs of terms.
 
 use crate::Expr;
 use crate::arena::{Arena, Node};

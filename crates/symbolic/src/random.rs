@@ -1,4 +1,4 @@
-//! Numbers that look random and are the same in every run and on every machine.
+//! Pseudorandom numbers, the same in every run and on every machine.
 
 /// Sebastiano Vigna's SplitMix64: good from any seed.
 ///

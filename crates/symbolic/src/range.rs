@@ -1,4 +1,4 @@
-//! What values an expression can take, whatever its symbols are.
+//! Ranges of expressions over all values of their symbols: interval arithmetic.
 
 use crate::arena::{Arena, Node};
 use crate::number::Rational;

@@ -1,4 +1,5 @@
-//! Functions that may change within little of their arguments, so that steps can pass over it unseen.
+//! Rapidly varying functions: they may change within a small part of their arguments, which time steps can
+//! miss.
 
 use crate::arena::Node;
 use crate::number::Rational;
@@ -6,10 +7,10 @@ use crate::{Expr, Function, Graph, Range, Symbol};
 use rustc_hash::{FxHashMap, FxHashSet};
 use std::collections::{BTreeSet, HashMap};
 
-/// A call `F(x)` that is nearly constant but for a part of its arguments.
+/// A call `F(x)` that is nearly constant except on a small part of its arguments.
 #[derive(Clone, Copy, Debug)]
 pub struct Steep {
-    /// What `F` is, such as `tanh`, for people.
+    /// Name of `F` in messages, such as `tanh`.
     pub function: &'static str,
     /// `x`.
     pub argument: Expr,
@@ -28,15 +29,16 @@ enum Kind {
     Angle,
 }
 
-/// Beyond this `tanh` is ±1, below minus twice this `exp` is 0, to the last digit of what they are added to.
+/// Beyond this `tanh` counts as ±1, and below minus twice this `exp` counts as 0: up to round-off of sums
+/// that contain them.
 const TAIL: f64 = 20.0;
 /// Under a root less than this counts as zero, of what round-off has a part in: a kink is not looked at more
 /// closely. What is divided by may be less.
 const FLOOR: f64 = 1e-15;
 const LEAST: f64 = 1e-20;
-/// A quantity that changes by no more than this factor, whatever its symbols are, makes nothing steep.
+/// A quantity that changes by at most this factor, for all values of its symbols, makes no function steep.
 const MODERATE: f64 = 50.0;
-/// From this exponent on a power of what is bounded is nothing but near its largest value.
+/// From this exponent on, a power of a bounded quantity is negligible except near its largest value.
 const HIGH: f64 = 20.0;
 
 impl Kind {

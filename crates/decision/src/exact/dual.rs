@@ -1,4 +1,4 @@
-//! Elements of the field with their derivatives by one number.
+//! Dual numbers over the field: elements with their derivatives by one number.
 
 use std::ops::{Add, Mul, Neg, Sub};
 

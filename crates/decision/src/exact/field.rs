@@ -1,4 +1,4 @@
-//! Fields of `p` elements, and in which of them a computation is.
+//! Fields of `p` elements, and the field of the current computation.
 
 use std::cell::Cell;
 

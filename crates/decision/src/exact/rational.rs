@@ -1,4 +1,4 @@
-//! Numbers that stay known exactly: `a + b π` with fractions `a` and `b`, the angles among them.
+//! Exact numbers: `a + b π` with fractions `a` and `b`, among them angles.
 
 use std::f64::consts::PI;
 use std::fmt;

@@ -1,4 +1,4 @@
-//! Fractions of few digits from their images.
+//! Reconstruction of short fractions from their images in a field.
 
 use symbolic::Fraction;
 

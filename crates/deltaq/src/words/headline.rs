@@ -1,7 +1,7 @@
-//! What is said of a scene first: the same or different, why, and how sure that is.
+//! The headline of a comparison: the same or different, why, and how sure that is.
 //!
-//! Everything follows from the rows of the table of pairs, those of the control left out: no sentence is
-//! about more motions than its rows are.
+//! Every sentence follows from the rows of the table of pairs, without those of the control, and covers only
+//! the motions in these rows.
 
 use equations::Role;
 
@@ -11,7 +11,7 @@ use crate::contradiction::FAULT;
 use crate::table::is_in_table;
 use crate::{CERTAINTY, CHETAEV, Comparison, Gap, Pair, REMOVED_CONSTRAINT, VAKONOMIC, VAKONOMIC_COSTATE, Verdict};
 
-/// Three answers, each in a few sentences.
+/// Three answers, a few sentences each.
 pub struct Headline {
     /// The same or different, and from when.
     pub verdict: String,

@@ -1,4 +1,4 @@
-//! What a plan is.
+//! A plan of evaluation: definitions in place of blocks.
 
 use symbolic::{Expr, Symbol};
 

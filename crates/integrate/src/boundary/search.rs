@@ -1,4 +1,4 @@
-//! The road of a search: what the minimiser asks for, what was best.
+//! State of a search: evaluations for the minimizer, and the best point found.
 
 use std::cell::RefCell;
 

@@ -1,4 +1,4 @@
-//! What a frame is.
+//! Parts of a frame: velocities, constraints in them, and structure coefficients.
 
 use std::collections::BTreeMap;
 

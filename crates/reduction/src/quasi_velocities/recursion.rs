@@ -1,4 +1,4 @@
-//! What quasi-velocities are.
+//! Quasi-velocities, and the dependent velocities as a recursion in them.
 
 use std::collections::{BTreeSet, HashMap};
 

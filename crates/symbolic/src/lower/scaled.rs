@@ -1,4 +1,4 @@
-//! Factors that overflow together, each by what it is in functions that do not.
+//! Products of factors that overflow, written in functions that do not.
 
 use super::{Lowering, Signed};
 use crate::number::{Number, Rational};

@@ -1,4 +1,4 @@
-//! The orders behind the first, one after the other.
+//! Computation of the orders after the first, one by one.
 
 use super::scalar::Place;
 use super::{Correct, Implicit, Placed, Plan, SeriesScalar, SeriesTape, Source, Store, Task, Weights, Window};

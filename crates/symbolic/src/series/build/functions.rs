@@ -1,4 +1,4 @@
-//! What equations the coefficients of quotients, roots and functions satisfy.
+//! Recurrences for the coefficients of quotients, roots and functions.
 
 use super::{Builder, Part, Sum};
 use crate::Function;

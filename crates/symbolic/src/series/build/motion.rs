@@ -1,4 +1,4 @@
-//! Values that are linear in states and time, and functions of these, which are integrated.
+//! Values that are linear in states and time, and functions of these, whose series are integrated.
 
 use super::{Builder, Integrated};
 use crate::Function;
