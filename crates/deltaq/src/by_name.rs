@@ -17,7 +17,7 @@ pub struct ByName {
     costates: Costates,
 }
 
-/// What a motion with some numbers starts from.
+/// The start of a motion with given numbers.
 pub(crate) struct Beginning {
     pub(crate) state: State,
     pub(crate) parameters: Vec<f64>,
@@ -47,7 +47,7 @@ impl ByName {
         Ok(ByName { varying, choice, starts, costates })
     }
 
-    /// What the motion with the numbers of a row, one per name, starts from.
+    /// The start of the motion with the numbers of a row, one per name.
     ///
     /// # Panics
     /// If there are not as many numbers as names.

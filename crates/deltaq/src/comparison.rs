@@ -20,7 +20,7 @@ pub struct Comparison {
     pub scene: Scene,
     /// Frobenius' verdict on the constraints.
     pub integrability: Integrability,
-    /// What is worked out of it.
+    /// The extent of the comparison.
     pub extent: Extent,
     /// Runs: the formulations of the table in order, removals within.
     pub runs: Vec<Run>,
@@ -28,22 +28,22 @@ pub struct Comparison {
     pub pairs: Vec<Pair>,
     /// Fits of free constants, if any were asked for.
     pub fits: Vec<Fit>,
-    /// Which motions are motions of another formulation for some values of its constants. Of removals by
-    /// coordinates nothing is asked: their families are the vakonomic one.
+    /// Which motions are motions of another formulation for some values of its constants. Removals by
+    /// coordinates are left out: their family is the vakonomic one.
     pub decided: Vec<Decided>,
 }
 
-/// What is worked out besides gaps: how they begin, and which family has which motion.
+/// Results besides the gaps: how gaps begin, and which family contains which motion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Extent {
-    /// Of Chetaev's motion and the vakonomic family only: what the answer to a scene says.
+    /// For Chetaev's motion and the vakonomic family only, as the printed answer needs.
     Answer,
     /// Of all.
     Everything,
 }
 
 impl Comparison {
-    /// Of a scene, without a motion so far.
+    /// A comparison of a scene, before any motion is computed.
     ///
     /// # Errors
     /// [`mechanics::RemovalError`] for dependent constraints; [`SolveError::Tolerance`].

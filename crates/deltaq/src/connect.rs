@@ -52,7 +52,7 @@ pub struct Aim {
 /// Number of starts where none is given.
 pub const CONNECT_STARTS: usize = 60;
 
-/// What was found.
+/// The result of a two-point problem.
 pub struct Connections {
     /// Names of the unknowns: free start velocities, free constants.
     pub unknowns: Vec<String>,
@@ -70,11 +70,11 @@ pub struct Connection {
     pub start: State,
     /// The unknowns, in the order of [`Connections::unknowns`].
     pub unknowns: Vec<f64>,
-    /// How far these may be wrong: `|(∂q(t₁)/∂x)⁻¹|` times what q(t₁) misses and the estimate of its error.
+    /// Error bounds of these: `|(∂q(t₁)/∂x)⁻¹|` times the sum of the miss of q(t₁) and its error estimate.
     pub errors: Vec<f64>,
     /// Condition number of `∂q(t₁)/∂x`, rows and columns in units of the problem.
     pub condition: f64,
-    /// `∫ L dt`, and what its quadrature is off by.
+    /// `∫ L dt`, and the error of its quadrature.
     pub action: [f64; 2],
     /// The motion, with an error estimate of its own.
     pub motion: Motion,
@@ -96,7 +96,7 @@ impl Connection {
     }
 }
 
-/// Above this condition number a motion is not isolated.
+/// Condition number above which a motion counts as not isolated.
 const ISOLATED: f64 = 1e8;
 /// Tolerance of the runs of a search, and of what it misses; the latter also of the final one, over its
 /// tolerance.

@@ -15,9 +15,9 @@ use crate::{Answer, CHETAEV, Comparison, Growth, LeadingTerm, Membership, PRESCR
 /// Two results that exclude each other.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Contradiction {
-    /// What one says.
+    /// Statement of the first.
     pub one: String,
-    /// What the other says.
+    /// Statement of the second.
     pub other: String,
 }
 
@@ -27,16 +27,16 @@ impl Display for Contradiction {
     }
 }
 
-/// What a contradiction means.
+/// The explanation of a contradiction in messages.
 pub(crate) const FAULT: &str = "This is a fault of the program: please report it, with the scene.";
 
-/// Results exclude each other, and nothing is concluded from them.
+/// Results contradict each other, and no conclusion is drawn from them.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("results contradict each other. {FAULT}{}", .0.iter().map(|found| format!("\n  {found}")).collect::<String>())]
 pub struct Contradicted(pub Vec<String>);
 
-/// What is computed in numbers shares little with a certificate ([`crate::certificate`]), and has no say but
-/// against it.
+/// Checks a certificate ([`crate::certificate`]) against results in floating point, which share little code
+/// with it and can only contradict it.
 ///
 /// # Errors
 /// [`Contradicted`], with the name of the scene.

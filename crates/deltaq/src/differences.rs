@@ -70,7 +70,7 @@ pub(crate) fn size(x: f64) -> f64 {
 
 struct Found {
     derivative: Vec<f64>,
-    /// Of the worst part, over its size.
+    /// Largest error of a part, over the size of that part.
     error: f64,
     /// Whether both sides differ by more than round-off.
     even: bool,
@@ -105,7 +105,7 @@ fn best(x: f64, here: &[f64], round_off: &[f64], at: &mut dyn FnMut(f64) -> Valu
     least.ok_or_else(|| failure.expect("there are distances"))
 }
 
-/// Of each part the differences of order 8 and of order 6, and the kink.
+/// For each part: the differences of order 8 and of order 6, and the kink.
 fn sums(x: f64, h: f64, here: &[f64], at: &mut dyn FnMut(f64) -> Values) -> Result<Vec<[f64; 3]>, SolveError> {
     let mut sums = vec![[0.0; 3]; here.len()];
     for j in 0..4 {
@@ -124,7 +124,7 @@ fn sums(x: f64, h: f64, here: &[f64], at: &mut dyn FnMut(f64) -> Values) -> Resu
     Ok(sums)
 }
 
-/// By what each part scatters where a number moves by its last digits, `s` times its size.
+/// Round-off of each part: its scatter when the number changes in its last digits, `s` times its size.
 fn round_off(here: &[f64], at: &mut dyn FnMut(f64) -> Values) -> Values {
     let mut found: Vec<f64> = here.iter().map(|x| f64::EPSILON * x.abs()).collect();
     for j in 1..5 {

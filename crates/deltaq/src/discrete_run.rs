@@ -57,7 +57,7 @@ impl DiscreteRun {
     /// The first step that knows nothing of what is within it, on the straight line from node to node: a step
     /// knows its middle only. The gauge of a steep function grows as [`integrate::Problem::gauges`] does not
     /// let it, or the rates jump with the angle of a point. `kept` is the length of the steps of the run that
-    /// is kept. What cannot be read off is no part of the motion.
+    /// is kept. Nodes whose outputs cannot be evaluated are not part of the motion.
     pub(crate) fn passed_over(&mut self, prepared: &mut Prepared, kept: f64) -> Option<PassedOver> {
         let Prepared { compiled, equations, .. } = prepared;
         let angles = equations.angles();

@@ -36,7 +36,8 @@ impl Ending {
         }
     }
 
-    /// Of one run of a motion that was at these points before. That it left a chart is no end.
+    /// The ending of one run of a motion that passed through the points `before`. Leaving a chart counts as
+    /// completed.
     pub(crate) fn of(
         equations: &Equations,
         compiled: &mut Compiled,

@@ -96,7 +96,7 @@ pub enum SolveError {
     /// Something that is to vary is not in the scene.
     #[error(transparent)]
     Scene(Box<SceneError>),
-    /// What is to vary in an ensemble or a sweep does not, or a motion cannot be a member.
+    /// A number cannot vary in an ensemble or a sweep, or a motion cannot be a member.
     #[error("{reason}")]
     Member { reason: String },
     /// A two-point problem makes no sense.

@@ -18,17 +18,17 @@ pub const TRUSTED: f64 = 1e-3;
 /// Differences of a coordinate under this part of [`Metric::round_off_sizes`] are round-off.
 const ROUND_OFF: f64 = 1e-12;
 
-/// Largest differences of the two runs of a motion, over the time up to some instant. Where round-off of the
-/// rates, which both runs share, is more than they differ by, the looser run has as much of it in its rates.
+/// Largest differences of the two runs of a motion up to some instant. Where round-off of the rates, which
+/// both runs share, exceeds their difference, the looser run is made with that round-off added to its rates.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ErrorEstimate {
     /// In the kinetic metric.
     pub absolute: f64,
-    /// Over the largest distance from the start, where there is one.
+    /// The same over the largest distance from the start; as it is where the motion stays at the start.
     pub relative: f64,
-    /// Of each coordinate, in its unit; length n. The kinetic metric hides those of little inertia.
+    /// For each coordinate, in its unit; length n. The kinetic metric hides coordinates with little inertia.
     pub coordinates: Vec<f64>,
-    /// Of each multiplier, in its unit; with the round-off of what is added up to it, where that is more than
+    /// For each multiplier, in its unit, with the round-off of the sum of terms behind it, where this exceeds
     /// its last digits.
     pub multipliers: Vec<f64>,
     /// The coordinate with the largest difference over its own size, which is the largest value that it has
@@ -65,7 +65,7 @@ fn is_trusted(relative: f64) -> bool {
     relative <= TRUSTED
 }
 
-/// A difference in a motion that goes so far from its start.
+/// A difference relative to `scale`, the motion's largest distance from its start.
 pub(crate) fn relative_to(scale: f64, absolute: f64) -> f64 {
     if scale > 0.0 { absolute / scale } else { absolute }
 }
@@ -145,7 +145,7 @@ pub(crate) struct Differences<'a> {
     names_of_multipliers: &'a [String],
     multipliers: Vec<f64>,
     sizes_of_multipliers: Vec<f64>,
-    /// What was added up to each multiplier, as far as it was asked for.
+    /// The sum of terms behind each multiplier, as far as it was computed.
     terms: Vec<f64>,
     /// Round-off of each multiplier as it was computed from states.
     round_off: Vec<f64>,
@@ -175,8 +175,8 @@ impl<'a> Differences<'a> {
         }
     }
 
-    /// What the two runs are at `t`. Of a motion that is looked at rarely, its velocities times `reach` tell
-    /// sizes, too.
+    /// Adds the outputs of the two runs at `t`. If instants are few, velocities times `reach` also count as
+    /// sizes of coordinates.
     pub(crate) fn add(&mut self, metric: &mut Metric, t: f64, kept: &Outputs, looser: &Outputs, reach: f64) {
         let (q, v) = (&kept.coordinates, &kept.velocities);
         let difference = subtract(q, &looser.coordinates);
@@ -207,7 +207,7 @@ impl<'a> Differences<'a> {
         })
     }
 
-    /// How much is added up to each multiplier at an instant.
+    /// The sum of terms behind each multiplier at an instant.
     pub(crate) fn add_terms(&mut self, terms: Option<Vec<f64>>) {
         self.terms.iter_mut().zip(terms.into_iter().flatten()).for_each(|(most, term)| *most = most.max(term));
     }

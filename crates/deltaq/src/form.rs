@@ -13,14 +13,14 @@ pub enum Form {
     /// The one that suits the system: quasi-velocities, where there are any.
     #[default]
     Suited,
-    /// That of the name that was asked for.
+    /// The form whose name was given.
     Named,
 }
 
-/// What a form can be asked for by: the one that suits, that with multipliers, other forms by name.
+/// Words for forms: `auto` for the one that suits, then forms by name.
 pub const FORM_WORDS: [&str; 4] = ["auto", "multipliers", "costates", "quasi-velocities"];
 
-/// A formulation in the form of that word; none where there is no such form.
+/// The formulation in the form named by `word`; `None` where it has no such form.
 pub fn formulation_in(word: &str, own: &'static Formulation) -> Option<(&'static Formulation, Form)> {
     match word {
         "auto" => Some((own, Form::Suited)),

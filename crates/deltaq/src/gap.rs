@@ -87,13 +87,14 @@ pub struct GapPoint {
     pub t: f64,
     /// `sqrt(Δqᵀ |M| Δq)`.
     pub gap: f64,
-    /// What a gap has to pass: [`CERTAINTY`] times the summed error estimates up to `t`, infinite in doubt.
+    /// Limit above which the gap is certain: [`CERTAINTY`] times the sum of both error estimates up to `t`,
+    /// infinite in doubt.
     pub limit: f64,
     /// Whether the gap or the difference of a coordinate passes its limit.
     pub certain: bool,
 }
 
-/// What the comparison of two motions found.
+/// The comparison of two motions.
 #[derive(Clone, Debug)]
 pub struct Gap {
     /// The word.
@@ -277,7 +278,7 @@ pub fn compare_motions_by(
     })
 }
 
-/// How much has been added up to coordinate `i` at `t`, straight between the times at which that is known.
+/// The sum of terms behind coordinate `i` at `t`, by linear interpolation between known times.
 fn up_to(terms: &[(f64, Vec<f64>)], i: usize, t: f64) -> f64 {
     let has_begun = |ends: &&[(f64, Vec<f64>)]| (t - ends[0].0) * (ends[1].0 - ends[0].0) >= 0.0;
     let Some([(a, first), (b, last)]) = terms.windows(2).take_while(has_begun).last() else { return 0.0 };
@@ -322,7 +323,7 @@ impl Gap {
         self.points.iter().any(|p| p.gap > p.limit)
     }
 
-    /// What the gap was under at every instant, for all that was measured; infinite in doubt.
+    /// Upper bound of the gap at every instant, by measurement; infinite in doubt.
     pub fn bound(&self) -> f64 {
         self.points.iter().fold(0.0, |a, p| larger(a, p.gap + p.limit))
     }

@@ -1,4 +1,4 @@
-//! Times at which a motion is looked at.
+//! Grids of times at which motions are sampled.
 
 use crate::Motion;
 use crate::wanted::{equidistant, kept_before};

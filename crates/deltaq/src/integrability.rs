@@ -1,4 +1,5 @@
-//! Is the constraint integrable? By brackets, and where these cannot tell, by ranks over a finite field.
+//! Is the constraint integrable? Decided by brackets, and where these leave it open, by ranks over a finite
+//! field.
 
 use decision::{ExactStart, Family, Finding, Question};
 use equations::Derivation;

@@ -24,7 +24,7 @@
 //! gap(t) = √(Δqᵀ M Δq) ,      different:  gap(t) > 10 (e₁(t) + e₂(t)) at some t.
 //! ```
 //!
-//! *Same* asks for small estimates besides; everything else is *undecided* ([`Verdict`]).
+//! *Same* also requires small estimates; everything else is *undecided* ([`Verdict`]).
 //!
 //! ```
 //! use deltaq::{CHETAEV, Metric, Settings, VAKONOMIC, Verdict, choices, compare_motions, solve_choice};
@@ -56,9 +56,9 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! **What it refuses.** A motion that cannot be started is a [`SolveError`]. How one that was started ended
-//! is an [`Ending`]; what was reached stays valid. An error estimate that is not to be trusted says so
-//! ([`Doubt`]).
+//! **What it refuses.** A motion that cannot be started is a [`SolveError`]. Once started, it ends with an
+//! [`Ending`], and the part up to its end is valid. An error estimate that cannot be trusted carries a
+//! [`Doubt`].
 
 mod by_name;
 mod carried;

@@ -33,18 +33,18 @@ pub struct Seconds {
     pub integrate: f64,
 }
 
-/// In which form the equations of a motion were evaluated, and how well that went.
+/// The form in which the equations of a motion were evaluated, and how often another one replaced it.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct FormReport {
     /// The form of the formulation.
     pub chosen: ChosenForm,
-    /// How its equations of an instant are solved, what was chosen and why ([`equations::Plan::why`]).
+    /// How its acceleration-level equations are solved, and why ([`equations::Plan::why`]).
     pub why: Vec<String>,
     /// Evaluations of the kept run in the plain form, because a pivot of the chosen form was small.
     pub fallbacks: usize,
 }
 
-/// A trajectory with everything that was learned on the way.
+/// A trajectory with its equations, error estimate, work and checks.
 #[derive(Clone)]
 pub struct Motion {
     /// The equations behind it.
@@ -63,7 +63,7 @@ pub struct Motion {
     pub projection: ProjectionReport,
     /// Time spent.
     pub seconds: Seconds,
-    /// In which form the equations were evaluated.
+    /// The form in which the equations were evaluated.
     pub form: FormReport,
     /// Where pivots became small and others took over. Outputs stay those of the first chart.
     pub charts: Vec<ChartChange>,
@@ -171,7 +171,7 @@ impl Motion {
         self.compiled.terms_of_multipliers(begin, t, &y).ok()
     }
 
-    /// How much is added up to each coordinate at `t`, where that came to `states` of the states.
+    /// The sum of terms behind each coordinate at `t`, given those behind the states.
     pub(crate) fn terms_of_coordinates(&mut self, t: f64, y: &[f64], states: &[f64]) -> Option<Vec<f64>> {
         self.compiled.terms_of_coordinates(t, y, states).ok()
     }

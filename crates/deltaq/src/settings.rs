@@ -1,4 +1,4 @@
-//! What a motion starts from, and how it is integrated.
+//! The start of a motion, and the settings of its integration.
 
 use integrate::{Interrupt, Method, Options, Projection};
 use mechanics::{State, System};
@@ -12,7 +12,7 @@ pub const TIGHTER: f64 = 1e-2;
 /// A gap has to be this many times the sum of the two error estimates to count as a difference.
 pub const CERTAINTY: f64 = 10.0;
 
-/// What a motion starts from: a system and a state on its constraint.
+/// The start of a motion: a system, a state on its constraint, and the end time.
 #[derive(Clone, Copy)]
 pub struct Setting<'a> {
     /// The system.

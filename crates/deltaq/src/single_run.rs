@@ -8,10 +8,10 @@ use integrate::{Gauge, Options, Problem, Solution, Start, Status, StopCause};
 use crate::sizes::sizes;
 use crate::{Metric, SolveError};
 
-/// What a single run came to. Alone it says nothing of its error but what its tolerance does.
+/// The result of a single run. Without a second run, only its tolerance indicates its error.
 #[derive(Clone)]
 pub struct SingleRun {
-    /// How it ended, what it cost, the states over time.
+    /// Status, work and states over time.
     pub solution: Solution,
     /// Evaluations that fell back on the plain form.
     pub(crate) fallbacks: usize,

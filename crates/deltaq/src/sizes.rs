@@ -1,4 +1,4 @@
-//! How large the states of a motion are, in whatever units they come.
+//! Sizes of the states of a motion, independent of units.
 
 use equations::{Compiled, Outputs};
 
@@ -109,12 +109,12 @@ impl Noise {
 }
 
 impl Probe<'_> {
-    /// How large a state is or becomes within a time.
+    /// Size of a state now, or by its rate within a time.
     fn reach(&self, i: usize, time: f64) -> f64 {
         self.y[i].abs().max((self.rates[i] * time).abs())
     }
 
-    /// The sizes that the energy tells; 0 where it tells none.
+    /// The sizes that follow from the energy; 0 where none does.
     fn of_energy(&mut self, time: f64) -> Vec<f64> {
         let (place, velocity) = self.likely(time.abs());
         let mut share = |probe: &mut Self, y: &[f64]| {
@@ -190,7 +190,7 @@ impl Probe<'_> {
         (found != sizes).then_some(found)
     }
 
-    /// By how much a state would have to move for a share of 1.
+    /// The displacement of a state that gives a share of 1.
     fn moved(&mut self, j: usize, time: f64, share: &mut dyn FnMut(&mut Self, &[f64]) -> Option<f64>) -> Option<f64> {
         let reach = self.reach(j, time);
         let mut step = if reach > 0.0 && reach.is_finite() { MOVE * reach } else { LEAST };

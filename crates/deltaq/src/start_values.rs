@@ -1,4 +1,4 @@
-//! What the states of derived equations start from.
+//! Start values of the states of derived equations.
 
 use std::collections::HashMap;
 

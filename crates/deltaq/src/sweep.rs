@@ -11,7 +11,7 @@ use crate::{
     THRESHOLDS, VAKONOMIC, Verdict, choices, choices_among,
 };
 
-/// What a comparison of two motions found.
+/// The comparison of two motions at one point of a sweep.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SweepPoint {
     /// `same`, `different` or `undecided`; empty where one has no motion.
@@ -20,7 +20,7 @@ pub struct SweepPoint {
     pub apart: Option<f64>,
     /// Largest gap, in the kinetic metric.
     pub largest: Option<f64>,
-    /// What a gap had to pass at the end.
+    /// Limit above which a gap is certain, at the end.
     pub limit: Option<f64>,
     /// Whether some constants make the second motion the first, `μ₀` the vakonomic one Chetaev's: `some`,
     /// `none` or `undecided`, with ` proved`. Empty where the table asks nothing of the two.
@@ -94,7 +94,7 @@ impl Sweep {
         Ok(sweep)
     }
 
-    /// What a comparison finds for these numbers, one per name: a pure function of them.
+    /// The comparison for these numbers, one per name; it depends on nothing else.
     ///
     /// # Panics
     /// If there are not as many numbers as names.

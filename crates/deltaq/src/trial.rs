@@ -1,10 +1,10 @@
-//! Whether a run shows that its method does not suit the motion.
+//! Detects from a run that its method does not suit the motion.
 
 use integrate::{Method, Options, Status, StopCause};
 
 use crate::{Prepared, SingleRun};
 
-/// Attempts of the trial: as many as a pace is measured by.
+/// Attempts of the trial: one window of the stall detector.
 pub(crate) const TRIAL: usize = 500;
 /// Upper bound on the cost of a step of [`Method::Radau5`] over that of others.
 pub(crate) const FARTHER: f64 = 10.0;
@@ -13,7 +13,7 @@ pub(crate) const FARTHER: f64 = 10.0;
 pub(crate) enum NotSuited {
     /// It is not smooth.
     NotSmooth,
-    /// Too many steps are ahead; whether an implicit method has far less of them.
+    /// The rest needs too many steps; `stiff` if an implicit method needs far fewer.
     Slow { stiff: bool },
 }
 

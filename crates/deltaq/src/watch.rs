@@ -1,5 +1,5 @@
-//! What has to hold along a motion whatever was derived: the scene's own constraints, and what is listed as
-//! constant. `f` is compiled from the scene alone, so a term that a derivation lost shows here.
+//! Checks along a motion that do not depend on its derivation: the scene's own constraints, and quantities
+//! listed as constant. `f` is compiled from the scene alone, so a term that a derivation lost shows here.
 
 use equations::{Equations, Named, Outputs};
 use mechanics::System;
@@ -11,10 +11,10 @@ use crate::settings::CERTAINTY;
 /// A drift under this part of the terms of an invariant is round-off.
 const ROUND_OFF: f64 = 1e-11;
 
-/// What round-off leaves of a coordinate or velocity that should be zero, over the largest one in its unit.
+/// Round-off of a coordinate or velocity that should be zero, over the largest one in its unit.
 const DIGITS: f64 = 1e-15;
 
-/// Tells how much was added up to each invariant.
+/// Returns the sum of terms behind each invariant.
 pub(crate) type Terms<'a> = &'a mut dyn FnMut() -> Option<Vec<f64>>;
 
 /// Holds `f = 0` and the invariants against the error estimate.
@@ -27,14 +27,14 @@ pub(crate) struct Watch {
     units: Vec<String>,
     /// `|f|` and the invariants at the start.
     start: (Vec<f64>, Vec<f64>),
-    /// What was added up to each invariant, where it is known to be more than its value.
+    /// The sum of terms behind each invariant, where it is known to exceed its value.
     sizes: Vec<f64>,
     /// Largest differences of the two runs so far: of `(q, v)`, and of the invariants.
     differences: (Vec<f64>, Vec<f64>),
 }
 
 impl Watch {
-    /// Of a motion by `equations` of a system with these varying parameters.
+    /// For a motion by `equations` of a system with these varying parameters.
     pub(crate) fn new(system: &System, equations: &Equations, parameters: &[Symbol]) -> Result<Watch, CompileError> {
         let mut inputs = vec![system.time];
         inputs.extend(system.positions().into_iter().chain(system.velocities()).chain(parameters.iter().copied()));
@@ -80,7 +80,7 @@ impl Watch {
         drifts.iter().zip(&self.sizes).all(|(drift, size)| drift.abs() <= ROUND_OFF * size)
     }
 
-    /// What is off by more than the two runs, at `t` and before, leave open.
+    /// A message on the first quantity whose drift exceeds the difference of the two runs up to `t`.
     pub(crate) fn complaint(
         &mut self,
         t: f64,

@@ -48,7 +48,7 @@ pub(super) fn natural_constants(
 /// Steps by the same Jacobian; each has to lessen the residual to this part.
 const CHORDS: usize = 5;
 const LESS: f64 = 0.1;
-/// What is this part of what is accepted is not improved.
+/// A residual below this fraction of the accepted one is not improved.
 const AT_ONCE: f64 = 1e-3;
 
 /// The chord of this motion; `None` where its constants are not found, or derivatives are not carried.

@@ -139,7 +139,7 @@ fn how_different(comparison: &Comparison, gap: &Gap) -> String {
     format!("apart in {}, which the kinetic metric does not show", enumerate(&certain))
 }
 
-/// What was measured of two motions that are proved to differ, and do not differ by more than their errors.
+/// The measured bound for two motions that are proved to differ, but differ by no more than their errors.
 pub fn unseen(gap: &Gap) -> String {
     match gap.bound() {
         bound if bound.is_finite() => format!("by less than {} up to {} s: measured", short(bound), short(gap.end)),
@@ -153,7 +153,7 @@ fn until(comparison: &Comparison) -> String {
     same.min_by(f64::total_cmp).map_or(String::new(), |t| format!(" up to {} s", short(t)))
 }
 
-/// What has the same reason, together, in the order of the first.
+/// Groups labels by reason, in the order of first occurrence.
 fn by_reason(all: Vec<(String, String)>) -> Vec<(String, Vec<String>)> {
     let mut reasons: Vec<(String, Vec<String>)> = Vec::new();
     for (reason, of) in all {
@@ -220,7 +220,7 @@ fn substituted(comparison: &Comparison) -> impl Iterator<Item = usize> {
     })
 }
 
-/// How large the errors are beside which gaps were judged.
+/// The size of the error estimates behind the verdicts.
 fn errors(comparison: &Comparison) -> Option<String> {
     let estimates = rows(comparison).flat_map(|p| p.gap.estimates);
     let largest =

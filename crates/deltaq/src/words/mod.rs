@@ -1,4 +1,4 @@
-//! What is said of a comparison and of a decision, in sentences; numbers as readers like them.
+//! Sentences about comparisons and decisions, and numbers in a readable form.
 
 mod decision;
 mod headline;
