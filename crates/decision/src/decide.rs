@@ -30,7 +30,7 @@ pub struct DecisionSettings {
     pub tolerance: f64,
     /// The tighter run has this part of it.
     pub tighter: f64,
-    /// Whether it is proved that no constants do: then a mismatch is worth one attempt, whatever it tells.
+    /// Whether it is proved that no constants exist: one attempt then suffices, whatever its mismatch.
     pub refuted: bool,
 }
 
@@ -43,19 +43,19 @@ impl Default for DecisionSettings {
 /// Whether the curve is a motion of the family.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Verdict {
-    /// Some constants leave no mismatch that stands out from the noise.
+    /// For some constants the mismatch is within the noise.
     Contained,
-    /// None do.
+    /// For no constants it is.
     NotContained,
-    /// The noise is too loud to tell.
+    /// The noise is too large to decide.
     Undecided,
 }
 
 /// Constants `point + span(directions)`.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct AffineSet {
-    /// The element of least norm, each constant in its scale; one far along a direction where only that
-    /// leaves no mismatch.
+    /// The element of least norm, each constant in its scale; an element far along a direction if only that
+    /// has no mismatch.
     pub point: Vec<f64>,
     /// Orthonormal directions; none for a single point, all for every choice.
     pub directions: Vec<Vec<f64>>,
@@ -78,7 +78,7 @@ impl AffineSet {
     }
 }
 
-/// What was decided, and from which numbers.
+/// A decision, and the numbers that it rests on.
 ///
 /// The mismatch of accelerations is `y(t) = O(t) c + y₀(t)` for constants `c`; lengths are
 /// `(∫ |y|²_M dt)^{1/2}`, in the unit of `√E/√T`.
@@ -92,13 +92,13 @@ pub struct Decision {
     pub least: f64,
     /// The mismatch at `c = 0`.
     pub at_zero: f64,
-    /// What ρ is known to.
+    /// The noise of ρ.
     pub noise: f64,
-    /// `(∫ |a|²_M dt)^{1/2}` of the curve: what ρ is compared with for the reader.
+    /// `(∫ |a|²_M dt)^{1/2}` of the curve, for comparison with ρ.
     pub acceleration: f64,
     /// Names of the constants.
     pub constants: Vec<String>,
-    /// Up to when this was judged, if not to the end: what comes after is too loud, or cannot be followed.
+    /// Time up to which this was decided, if not the end: later the noise is too large, or integration fails.
     pub until: Option<f64>,
     triangle: DMatrix<f64>,
     columns: Vec<Column>,
@@ -121,12 +121,12 @@ impl Decision {
         DVector::from_iterator(constants.len(), constants.iter().zip(&self.columns).map(|(c, column)| c / column.scale))
     }
 
-    /// Whether the constants `c` leave no mismatch that stands out from the noise.
+    /// Whether the mismatch for the constants `c` is within the noise.
     pub fn admits(&self, constants: &[f64]) -> bool {
         self.verdict_at(constants) != Verdict::NotContained
     }
 
-    /// The verdict on the constants `c` alone: the noise of large ones may be too loud to tell.
+    /// The verdict on the constants `c` alone: for large constants the noise may be too large to decide.
     pub fn verdict_at(&self, constants: &[f64]) -> Verdict {
         let reach = (1.0 + self.scaled(constants).norm_squared()).sqrt();
         verdict_on(self.mismatch_at(constants), reach, &self.sizes)

@@ -17,27 +17,27 @@ use crate::start::ExactStart;
 const SEEDS: [u64; FIELDS.len()] = [0x5eed_0001, 0x5eed_0002, 0x5eed_0003, 0x5eed_0004];
 /// Orders for which a certificate has room for its series.
 const MOST: usize = ORDERS - 3;
-/// Steps of programs times cubes of orders that take half a second or so.
+/// Work limit in steps of programs times cubes of orders: about half a second.
 const WORK: usize = 100_000_000;
 
-/// What the jets of the mismatch say about a start.
+/// Result of the proof for a start, from the jets of the mismatch.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Finding {
     /// No constants give this motion.
     None(NoConstants),
-    /// Some do, by ranks modulo two primes: that of `[O | o]` is that of `O` at every order, and grows no
-    /// more.
+    /// Some constants do, by ranks modulo two primes: `[O | o]` and `O` have the same rank at every order,
+    /// and it stops growing.
     Contained {
         /// The rank of `O`: the number of constants that are fixed.
         rank: usize,
-        /// The order from which on the ranks stay.
+        /// The order from which on the ranks stay the same.
         order: usize,
     },
-    /// Up to this order some do, and nothing is known beyond.
+    /// Some constants do up to this order; higher orders are not known.
     ThroughOrder {
         /// The rank of `O` there.
         rank: usize,
-        /// The highest order that was looked at.
+        /// The highest order that was tried.
         order: usize,
     },
     /// There is no proof of this kind, for this reason.
@@ -47,22 +47,23 @@ pub enum Finding {
 /// A proof that no constants give the motion.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NoConstants {
-    /// The order of the derivative of the mismatch at which the last choice is gone.
+    /// The order of the derivative of the mismatch that excludes the last constants.
     pub order: usize,
-    /// Whether a minor of full size is not zero: a proof. Without full rank of `O` there is none, and it
-    /// rests on ranks modulo two primes, those of the real numbers but for an accident.
+    /// Whether a minor of full size is not zero: a proof. Without full rank of `O` there is no such minor,
+    /// and the result rests on ranks modulo two primes, which equal those of the real numbers except by
+    /// accident.
     pub full_rank: bool,
 }
 
-/// What can be proved about one start and about almost every start.
+/// Results of the proof for one start and for almost every start.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Proof {
     /// About the start as it is written.
     pub this_start: Finding,
     /// About all starts on the constraint but a set of measure zero.
     pub almost_every_start: Finding,
-    /// Whether something varies under roots: then what is said of almost every start is said of the branch
-    /// that this start is on.
+    /// Whether a variable expression stands under a root: `almost_every_start` then refers to the branch of
+    /// this start.
     pub one_branch: bool,
     /// Velocities given as decimals that miss the constraints by round-off, solved from these here.
     pub completed: Vec<String>,

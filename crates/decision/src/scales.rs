@@ -5,21 +5,22 @@ use symbolic::Bounded;
 
 use crate::family::{CostateRate, Instant, Shape};
 
-/// Sizes of what is transported, each a power of two: with them nothing depends on units, and nothing is
-/// rounded.
+/// Scales of curve, costates and constants, powers of two: scaled by them, results do not depend on units,
+/// and scaling rounds nothing.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Scales {
-    /// Of the coordinates: how far they come with the energy at hand; over the time, of their velocities.
+    /// Scales of the coordinates: distances that the energy allows; divided by the time, those of the
+    /// velocities.
     pub(crate) coordinates: Vec<f64>,
     /// Factors of the residuals.
     pub(crate) residuals: Vec<f64>,
-    /// Of the unknowns of one instant, of the costates, of the constants.
+    /// Scales of the unknowns of one instant, of the costates, of the constants.
     pub(crate) unknowns: Vec<f64>,
     pub(crate) costates: Vec<f64>,
     pub(crate) constants: Vec<f64>,
 }
 
-/// What the sizes come from, all of it at the start.
+/// Data at the start from which scales are computed.
 pub(crate) struct Start<'a> {
     /// One instant, and the terms that add up in it without regard to signs.
     pub(crate) instant: Instant<'a, f64>,

@@ -232,7 +232,7 @@ impl Compiled {
         self.fallbacks
     }
 
-    /// What one evaluation of the rates costs, in the plain plan and in the chosen one.
+    /// Cost of one evaluation of the rates, in the plain plan and in the chosen one.
     pub fn cost(&self) -> [Cost; 2] {
         let plain = self.cost_of(&|_| true, self.rates.tape().len());
         let chosen = self.planned.as_ref().map(|s| self.cost_of(&|k| self.left.contains(&k), s.len()));

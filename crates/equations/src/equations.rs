@@ -10,7 +10,7 @@ use symbolic::{CompileError, Evaluator, Expr, Graph, Matrix, Scalar, Symbol, Tap
 use crate::definitions::{needed, symbols_behind};
 use mechanics::{Removal, System};
 
-/// What a state variable is.
+/// The kind of a state variable.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Role {
     /// A coordinate `q`.
@@ -59,7 +59,7 @@ pub struct Block {
     pub residuals: Vec<Expr>,
     /// A value of `z` near the solution at the start, in its symbols; used where `R` is not linear in `z`.
     pub guess: Vec<Expr>,
-    /// What has to be regular for the block to be solvable, in the field's words.
+    /// Name of the matrix or quantity that has to be regular for the block to be solvable.
     pub regular: &'static str,
 }
 
@@ -95,7 +95,7 @@ pub struct LeftOut {
 /// An equation for the reader: `left = right`.
 #[derive(Clone, Debug)]
 pub struct Statement {
-    /// What the equation says.
+    /// The meaning of the equation.
     pub meaning: String,
     /// Left-hand side.
     pub left: Expr,
@@ -160,20 +160,20 @@ pub struct Equations {
     pub watched: usize,
     /// Projection onto the constraint, where the states can leave it.
     pub projection: Option<ConstraintProjection>,
-    /// Whether the constraints are not kept, but creep.
+    /// Whether the motion has slip, `f = −λ/N`, instead of exact constraints.
     pub creeps: bool,
     /// Expressions in `(t, y)` whose zero is a singularity of the equations.
     pub guards: Vec<Expr>,
     /// Those of the guards at which formulas, as they were written, cease to have values.
     pub domains: Vec<Expr>,
-    /// Those of the guards at which a constraint says nothing: `∂f/∂v` of it vanishes.
+    /// Those of the guards at which a constraint does not restrict the velocities: its `∂f/∂v` vanishes.
     pub silent: Vec<Expr>,
     /// By which pivots they were derived, where these may become small along a motion and others be taken;
     /// never where the outputs are other coordinates than those of the system.
     pub chart: Option<Chart>,
     /// The derived equations, for the reader.
     pub statements: Vec<Statement>,
-    /// What this system did not need.
+    /// Variables and equations that this system did not need.
     pub left_out: Vec<LeftOut>,
     /// Error of velocities and momenta in units in the last place; 1 unless constraints nearly depend.
     pub lost_digits: f64,
@@ -220,8 +220,8 @@ impl Equations {
         g.symbols_of(e).iter().all(|s| self.parameters.contains_key(s))
     }
 
-    /// What is not constant and zero where these expressions of `g` are singular: what they divide by, and
-    /// what they have kinks by.
+    /// Expressions, not constant, that vanish where these expressions of `g` are singular: denominators and
+    /// arguments of kinks.
     pub fn singularities(&self, g: &Graph, of: &[Expr]) -> Vec<Expr> {
         let mut found = [g.denominators(of), g.kinks(of), g.radicands(of)].concat();
         found.retain(|&e| !self.is_constant(g, e));

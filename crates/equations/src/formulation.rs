@@ -6,7 +6,7 @@ use crate::Equations;
 use mechanics::{Removal, RemovalError, State, System};
 use symbolic::Symbol;
 
-/// What a derivation may depend on besides the system.
+/// Inputs of a derivation besides the system.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Derivation<'a> {
     /// The parametrization that removes the constraints, for formulations that need one.
@@ -83,7 +83,7 @@ pub enum DerivationError {
     },
 }
 
-/// What a formulation needs of a system beyond `L`, `f` and `Q`.
+/// Requirements of a formulation on a system beyond `L`, `f` and `Q`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Needs {
     /// Nothing.
@@ -127,7 +127,8 @@ pub struct Formulation {
     pub name: &'static str,
     /// Name for the reader.
     pub title: &'static str,
-    /// What it needs beyond `L`, `f` and `Q`. Systems without it are not compared in this formulation.
+    /// Its requirements beyond `L`, `f` and `Q`. Systems that do not meet them are not compared in this
+    /// formulation.
     pub needs: Needs,
     /// Whether its free constants are multipliers `μ₀` at the start, one per constraint.
     pub starts_multipliers: bool,

@@ -62,9 +62,9 @@ impl Jacobian {
         }
     }
 
-    /// How much was added up to each entry of `∂F/∂y = ∂F/∂y|z − ∂F/∂z (∂R/∂z)⁻¹ ∂R/∂y`, row-major: `x`,
-    /// the last two factors, is off by `|∂R/∂z|⁻¹` times what is added up in `∂R/∂z x + ∂R/∂y` and on the way
-    /// to `x`. `matrices`: the `∂R/∂z` of the blocks, whose factors are at hand.
+    /// The sum of magnitudes behind each entry of `∂F/∂y = ∂F/∂y|z − ∂F/∂z (∂R/∂z)⁻¹ ∂R/∂y`, row-major. The
+    /// error of `x`, the last two factors, is `|∂R/∂z|⁻¹` times the sum of magnitudes in `∂R/∂z x + ∂R/∂y`
+    /// and in the computation of `x`. `matrices`: the `∂R/∂z` of the blocks, whose factors are at hand.
     pub(crate) fn terms(&self, inputs: &[Bounded], blocks: &mut [CompiledBlock], matrices: &[Vec<f64>]) -> Vec<f64> {
         let n = self.states;
         let mut program = Evaluator::<Bounded>::new(self.program.tape().clone());

@@ -1,17 +1,18 @@
 //! # Equations of motion, and how they are evaluated
 //!
-//! What every formulation hands over is one thing, [`Equations`]: states `y ∈ Rᴺ`, unknowns `z ∈ Rᴷ` of one
-//! instant (accelerations, multipliers or their rates), and in expressions
+//! Every formulation returns [`Equations`]: states `y ∈ Rᴺ`, unknowns `z ∈ Rᴷ` of one instant (accelerations,
+//! multipliers or their rates), and in expressions
 //!
 //! ```text
 //! ẏ = Y(t, y, z) ,        R(z; t, y) = 0 ∈ Rᴷ ,        y(t₀) = y₀(t₀, q₀, v₀; free constants).
 //! ```
 //!
-//! Beside these stand outputs (`q`, `q̇`, multipliers), what stays constant, what must not vanish (guards)
+//! They also contain outputs (`q`, `q̇`, multipliers), invariants, guards (expressions that must not vanish)
 //! and the equations for the reader. A [`Formulation`] is a name and a pass from a system to such equations.
 //!
-//! **Left out** ([`Equations::leave_out_unneeded`]). `R` falls apart into independent blocks, single unknowns
-//! are solved on the spot, states on which nothing depends are dropped. The motion is the same.
+//! **Left out** ([`Equations::leave_out_unneeded`]). `R` is split into independent blocks, equations for
+//! single unknowns are solved symbolically, states on which nothing depends are dropped. The motion is the
+//! same.
 //!
 //! **Compiled** ([`Compiled`]). `F(t, y) = Y(t, y, z(t, y))` as straight-line programs. `z` solves the
 //! blocks: by LU factorization where they are linear, by Newton's method from the last accepted state where
@@ -21,7 +22,7 @@
 //! ∂F/∂y = Y_y − Y_z R_z⁻¹ R_y ,
 //! ```
 //!
-//! the Taylor coefficients of the motion, and the return `v ← v + δv` onto a constraint with the smallest
+//! the Taylor coefficients of the motion, and the projection `v ← v + δv` onto a constraint with the smallest
 //! `δvᵀ M δv`. [`LaneEquations`] do the same for eight motions at once.
 //!
 //! **Planned** ([`Plan`]). Linear blocks whose pivots are known beforehand are eliminated in expressions,
@@ -55,8 +56,7 @@
 //! ([`EvaluationFailure`]); a system that a formulation has no equations for ([`DerivationError`]). It knows
 //! no formulation, no principle and no time step.
 //!
-//! Source of the return onto the constraint: E. Hairer, C. Lubich, G. Wanner, *Geometric Numerical
-//! Integration*, IV.4.
+//! Source of the projection: E. Hairer, C. Lubich, G. Wanner, *Geometric Numerical Integration*, IV.4.
 
 mod blocks;
 mod code;

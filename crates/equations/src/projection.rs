@@ -1,4 +1,4 @@
-//! Return of a state onto its constraint.
+//! Projection of a state onto its constraint.
 
 use symbolic::{CompileError, Evaluator, Symbol};
 
@@ -9,7 +9,8 @@ use mechanics::linear::{Factors, PIVOT_LIMIT, Singular};
 /// Newton steps allowed; a step under this length relative to the velocity ends the iteration.
 pub(crate) const STEPS: usize = 12;
 pub(crate) const LIMIT: f64 = 4.0 * f64::EPSILON;
-/// What is left after all of them may be this long: round-off of constraints that nearly depend.
+/// Largest allowed length of the last step, relative to the velocity: round-off of nearly dependent
+/// constraints.
 pub(crate) const LEFT: f64 = 1e-9;
 
 /// Minimizes `δvᵀ M δv` subject to `f(q, v + δv, t) = 0`, by Newton steps

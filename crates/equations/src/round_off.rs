@@ -18,8 +18,8 @@ impl Compiled {
         found
     }
 
-    /// How much was added up to each invariant at `(t, y)`: [`Bounded::magnitude`], of states and unknowns as
-    /// they are.
+    /// The sum of magnitudes behind each invariant at `(t, y)`: [`Bounded::magnitude`], with states and
+    /// unknowns taken as exact.
     ///
     /// # Errors
     /// As [`Compiled::rates`].
@@ -30,11 +30,11 @@ impl Compiled {
         Ok(self.with_terms(|_, terms| of_last(terms.outputs.evaluate(&inputs))))
     }
 
-    /// How much was added up to each rate at `(t, y)`, that of the unknowns `z` of the instant included: of a
-    /// block `R(z; t, y) = 0` it is `|∂R/∂z|⁻¹` times that of `R`.
+    /// The sum of magnitudes behind each rate at `(t, y)`, including that of the unknowns `z` of the instant:
+    /// for a block `R(z; t, y) = 0` the latter is `|∂R/∂z|⁻¹` times that of `R`.
     ///
-    /// These are the equations as they are written; [`Compiled::terms_of_evaluation`] has what their
-    /// evaluation adds up.
+    /// These sums are those of the equations as written; [`Compiled::terms_of_evaluation`] gives those of
+    /// their evaluation.
     ///
     /// # Errors
     /// As [`Compiled::rates`].
@@ -45,9 +45,9 @@ impl Compiled {
         })
     }
 
-    /// How much evaluation adds up to each rate, then to each multiplier: [`Compiled::terms_of_rates`], and
-    /// what the elimination of a block, in numbers or beforehand in the chosen plan, adds up on its way.
-    /// Errors of both are a few ε of that.
+    /// The sum of magnitudes in the evaluation of each rate, then of each multiplier:
+    /// [`Compiled::terms_of_rates`], and intermediate results of the elimination of a block, in numbers or in
+    /// the chosen plan. Errors are a few ε of these sums.
     ///
     /// # Errors
     /// As [`Compiled::rates`].
@@ -65,8 +65,8 @@ impl Compiled {
         })
     }
 
-    /// How much was added up to each entry of the Jacobian at `(t, y)`, row-major, as of rates: entries under
-    /// some ε of that are round-off, in whatever units states come.
+    /// The sum of magnitudes behind each entry of the Jacobian at `(t, y)`, row-major, as for rates: entries
+    /// below some ε of it are round-off, in any units of the states.
     ///
     /// # Errors
     /// As [`Compiled::rates`].
@@ -98,7 +98,7 @@ impl Compiled {
         Ok(values[2 * self.sizes.coordinates..][..self.sizes.multipliers].to_vec())
     }
 
-    /// How much was added up to each coordinate at `(t, y)` whose states have come from sums of these sizes.
+    /// The sum of magnitudes behind each coordinate at `(t, y)`, given the sums behind the states.
     ///
     /// # Errors
     /// As [`Compiled::rates`].
@@ -115,7 +115,7 @@ impl Compiled {
         })
     }
 
-    /// How much was added up to the arguments of [`Compiled::gauges`] at `(t, y)`.
+    /// The sum of magnitudes behind each argument of [`Compiled::gauges`] at `(t, y)`.
     pub fn terms_of_gauged(&mut self, t: f64, y: &[f64], terms: &mut [f64]) {
         self.load(t, y);
         let inputs = bounded(&self.inputs[..self.sizes.known()]);

@@ -9,8 +9,8 @@ use crate::compiled::Compiled;
 use crate::equations::Equations;
 
 impl Equations {
-    /// Functions in the equations that may change within little of their arguments, where these are known
-    /// before the instant is solved.
+    /// Rapidly varying functions in the equations whose arguments are known before the acceleration-level
+    /// system is solved.
     pub fn steep(&self) -> Vec<Steep> {
         let mut steep = self.graph.steep(&self.all(), &self.values());
         if !steep.is_empty() {
@@ -20,7 +20,7 @@ impl Equations {
         steep
     }
 
-    /// The highest power in the equations of what has no bounds: [`symbolic::Graph::highest_power`].
+    /// The highest power of an unbounded quantity in the equations: [`symbolic::Graph::highest_power`].
     pub fn highest_power(&self) -> f64 {
         self.graph.highest_power(&self.all(), &self.values())
     }
@@ -35,7 +35,7 @@ impl Equations {
         angles
     }
 
-    /// What the equations divide by that changes along a motion and may vanish, likewise:
+    /// Divisors in the equations that change along a motion and may vanish, likewise:
     /// [`symbolic::Graph::divisors`].
     pub fn divisors(&self) -> Vec<Expr> {
         let mut divisors = self.graph.divisors(&self.all(), &self.values());
@@ -55,7 +55,7 @@ impl Equations {
         self.state_symbols().into_iter().chain([self.time]).collect()
     }
 
-    /// All that is evaluated for the rates.
+    /// All expressions that are evaluated for the rates.
     fn all(&self) -> Vec<Expr> {
         let definitions = self.definitions.iter().map(|(_, e)| *e);
         let residuals = self.blocks.iter().flat_map(|block| block.residuals.iter().copied());

@@ -70,7 +70,7 @@ impl Tangents {
         self.directions
     }
 
-    /// By how much the constants move along a direction.
+    /// Sets the components of a direction along the free constants.
     ///
     /// # Panics
     /// If there is no such direction, or the length is not that of [`crate::Equations::free_constants`].

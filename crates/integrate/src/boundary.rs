@@ -4,8 +4,8 @@
 //! shoot: find c ∈ Rᵏ with r(c) = 0,   r(c) ∈ Rᵏ        fit: minimise |r(c)|²,   r(c) ∈ Rᵐ,  m ≥ k
 //! ```
 //!
-//! `r` is the caller's: it integrates from the start state that belongs to `c` and returns what is to vanish
-//! at the end. Its derivatives are the caller's, too, where he has them ([`Residuals::jacobian`]), or central
+//! The caller supplies `r`: it integrates from the start state that belongs to `c` and returns the residuals
+//! at the end. Derivatives are also supplied by the caller ([`Residuals::jacobian`]), or else central
 //! differences. The minimiser is the crate `levenberg-marquardt`, a port of MINPACK's.
 
 mod search;
@@ -24,8 +24,8 @@ const SINGULAR: f64 = 1e12;
 /// How to solve for the unknowns.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ShootOptions {
-    /// [`shoot`] is done where the Euclidean norm `|r(c)|` is not above this; > 0. To [`fit`], a difference
-    /// not above this is none: an unknown that changes no more stays where it is.
+    /// [`shoot`] ends when the Euclidean norm `|r(c)|` is at most this; > 0. [`fit`] takes a difference up to
+    /// this for zero: an unknown that changes no more is left unchanged.
     pub tolerance: f64,
     /// Limit on the number of evaluated Jacobians; > 0.
     pub max_iterations: usize,
@@ -34,8 +34,7 @@ pub struct ShootOptions {
     pub difference_step: f64,
     /// The magnitude below which an unknown counts as small; > 0.
     pub scale: f64,
-    /// Done where an iteration lessens `|r|²` by no more than this part, and none more was to be expected; in
-    /// (0, 1).
+    /// The search ends when an iteration reduces `|r|²` by at most this fraction, as predicted; in (0, 1).
     pub least_gain: f64,
 }
 
@@ -120,7 +119,7 @@ impl Solution {
     }
 }
 
-/// What is to vanish as a function of the unknowns; a closure has no derivatives of its own.
+/// Residuals as a function of the unknowns; a closure has no derivatives of its own.
 pub trait Residuals {
     /// Reads `c`, writes `r(c)`.
     ///

@@ -246,7 +246,7 @@ impl DenseOutput {
     }
 }
 
-/// What the coefficients of a step are multiplied by.
+/// The basis functions of a step's coefficients.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(crate) enum Basis {
     /// 1, θ, θ (1 − θ), θ² (1 − θ) …; all components of the first coefficient, then those of the second …

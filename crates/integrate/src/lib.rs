@@ -1,4 +1,4 @@
-//! Time integration, knowing no mechanics:
+//! Time integration, independent of mechanics:
 //!
 //! ```text
 //! y' = F(t, y),   y(t₀) = y₀,        t from t₀ to t₁, forwards or backwards
@@ -9,9 +9,10 @@
 //!
 //! and boundary values on top of it: constants `c ∈ Rᵏ` in `y₀` such that `r(y(t₁)) = 0`, or `|r|` least.
 //!
-//! - [`Problem`] is what is to be integrated, [`Options`] says how, [`integrate`] does it.
+//! - [`Problem`] is the initial value problem, [`Options`] has method and tolerances, [`integrate`] solves
+//!   it.
 //! - [`Solution`] has the [`Status`] (how the run ended, which is not an error), the [`DenseOutput`] (the
-//!   solution as a function of time), the [`Work`] (what it cost) and the [`ProjectionReport`].
+//!   solution as a function of time), the [`Work`] (steps and evaluations) and the [`ProjectionReport`].
 //! - [`shoot`] and [`fit`] solve for constants; [`find_root`] finds roots.
 //!
 //! All methods share one time loop; a method is a way to attempt a step. A method's order and dense output:
@@ -28,37 +29,38 @@
 //! | [`Method::Radau5`] | 5 | 3 | stiff problems, down to tight tolerances |
 //!
 //! # What the tolerance means
-//! It bounds the estimated error *of one step* (see [`Options`]). The error at the end is larger by what the
-//! problem makes of it. DOP853's dense output between the ends of the steps is not estimated at all: on
-//! smooth problems it is about as good as the ends of the steps; on `y' = y cos t`, where the estimate lets
-//! some steps be long, up to 300 times the tolerance has been measured. An error estimate worth the name is
-//! the difference to a second run with a tighter tolerance, taken where the solution is wanted.
+//! It bounds the estimated error *of one step* (see [`Options`]). The error at the end depends on how the
+//! problem amplifies these errors. DOP853's dense output between the ends of the steps is not estimated at
+//! all: on smooth problems it is about as good as the ends of the steps; on `y' = y cos t`, where the
+//! estimate lets some steps be long, up to 300 times the tolerance has been measured. For a reliable error
+//! estimate, take the difference from a second run with a tighter tolerance, at the times at which the
+//! solution is wanted.
 //!
 //! # Events
-//! Each accepted step is looked at in eight parts of equal length: a function whose signs at two neighbouring
+//! Each accepted step is sampled in eight parts of equal length: a function whose signs at two neighbouring
 //! points differ has a root between them, found by Brent's method on the dense output to round-off of θ; the
 //! first root of the step ends the run, and the dense output is cut there. So an event is as accurate as the
-//! dense output. A function that grows again, with the same sign, after it came under 1e-17 of the largest
-//! value it had has touched zero. What can be missed is a pair of roots (or a touching one) within an eighth
-//! of a step. A function that is exactly zero at the start is passed over until it has a sign, and so is a
-//! root within round-off of the start: a run that goes on from where an event ended another one does not stop
-//! at once.
+//! dense output. A function that grows again, with the same sign, after it fell below 1e-17 of its largest
+//! value so far has touched zero. A pair of roots (or a touching one) within an eighth of a step can be
+//! missed. A function that is exactly zero at the start is ignored until it has a sign, and so is a root
+//! within round-off of the start: a run that continues from the event of another one does not stop at once.
 //!
 //! # Projection
 //! With [`Projection::EveryStep`], [`Problem::project`] is applied to each accepted state before it is
 //! stored. Dop853 evaluates the rates at the projected state instead of the other one, so that projection
-//! costs no evaluation, and the dense output stays continuously differentiable. Taylor goes on from the
-//! projected state at no cost; the move goes into the last coefficient of the step's polynomial. Tsit45,
-//! TrBdf2 and Esdirk34 go on from the projected state, at one evaluation a step. Bdf remembers several steps
-//! and would have to forget them, so that its own solution is left unprojected until the projection moves the
-//! state by more than 1000 tolerances; what is stored is always projected. In each case the order of the
-//! method is kept, between the ends of the steps the manifold is met to the accuracy of the dense output.
+//! costs no evaluation, and the dense output stays continuously differentiable. Taylor continues from the
+//! projected state at no cost; the move is added to the last coefficient of the step's polynomial. Tsit45,
+//! TrBdf2 and Esdirk34 continue from the projected state, at one evaluation per step. Bdf uses several
+//! previous steps and would have to restart, so that its own solution is left unprojected until the
+//! projection moves the state by more than 1000 tolerances; stored states are always projected. In each case
+//! the order of the method is kept; between the ends of steps the solution is on the manifold to the accuracy
+//! of the dense output.
 //!
 //! # What never happens
 //! A NaN or an infinity is never part of a solution: a step with stages, state or rates that are not finite
 //! is tried again at half its length, at most 60 times; then the run stops with [`StopCause::NotFinite`].
-//! Likewise for [`EvaluationError`]s, with [`StopCause::Evaluation`] and the problem's own words, and for a
-//! Taylor step across a point where the rates are not smooth, with [`StopCause::NotSmooth`].
+//! Likewise for [`EvaluationError`]s, with [`StopCause::Evaluation`] and the message of the problem, and for
+//! a Taylor step across a point where the rates are not smooth, with [`StopCause::NotSmooth`].
 //!
 //! # Sources
 //! E. Hairer, S. P. Nørsett, G. Wanner, *Solving Ordinary Differential Equations I*, 2nd ed., Springer 1993

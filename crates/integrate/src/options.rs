@@ -85,10 +85,10 @@ pub enum Projection {
     Off,
 }
 
-/// What is kept of the solution between its ends.
+/// The stored part of the solution between its ends.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum Dense {
-    /// One polynomial a step. [`Method::Dop853`] spends three more evaluations a step on it.
+    /// One polynomial per step. [`Method::Dop853`] needs three more evaluations per step for it.
     Everywhere,
     /// Only the two end points.
     EndOnly,
@@ -107,27 +107,27 @@ pub struct Options {
     pub relative_tolerance: f64,
     /// Tolerance in the state's own units; > 0.
     pub absolute_tolerance: f64,
-    /// What the absolute tolerance is multiplied by, component by component, each > 0; empty: by 1. Small
-    /// components have small errors only where their size is known.
+    /// Factors of the absolute tolerance, one per component, each > 0; empty: all 1. Small components have
+    /// small errors only if their size is given here.
     pub sizes: Vec<f64>,
     /// Whether accepted states are projected.
     pub projection: Projection,
     /// Limit on the number of attempted (accepted and rejected) steps, those before too; > 0.
     pub max_steps: usize,
-    /// The run is given up where more attempts than this are ahead of it, at the pace of its last 500.
+    /// The run is given up where the rest needs more attempts than this, at the pace of its last 500.
     pub patience: f64,
     /// No step is longer; > 0, infinite without a limit.
     pub max_step: f64,
     /// Times at which a step ends, in any order, where the method begins anew: those within the run.
     pub breakpoints: Vec<f64>,
-    /// What is kept between the ends.
+    /// The stored part between the ends.
     pub dense: Dense,
-    /// Times at which the solution is wanted, ascending: of a run whose steps take more than 2 MB only those
-    /// are kept within which one of them lies. `None`: all are.
+    /// Times at which the solution is wanted, ascending: if the steps of a run take more than 2 MB, only
+    /// steps that contain one of these times are stored. `None`: all steps are.
     pub wanted: Option<Arc<[f64]>>,
     /// The flag that ends the run, with its cause ([`Interrupt::cause`]); looked at before each attempt.
     pub interrupt: Option<Interrupt>,
-    /// What was done before, by the run that this one goes on from ([`crate::Solution::done`]).
+    /// Counters of the previous run, if this one continues it ([`crate::Solution::done`]).
     pub before: Option<Before>,
 }
 

@@ -1,4 +1,4 @@
-//! How an integration ended, and what it cost.
+//! Status and work of an integration.
 
 use thiserror::Error;
 
@@ -6,22 +6,22 @@ use crate::dense::DenseOutput;
 use crate::pace::Pace;
 use crate::problem::Start;
 
-/// What an integration returns.
+/// The result of an integration.
 #[derive(Clone, Debug)]
 pub struct Solution {
-    /// How it ended. Whatever it says, `dense` is valid as far as it reaches.
+    /// How it ended. Whatever the status, `dense` is valid up to its end.
     pub status: Status,
     /// The solution as a function of time.
     pub dense: DenseOutput,
-    /// What it cost, with what was done before.
+    /// Steps and evaluations, including those of previous runs ([`Before`]).
     pub work: Work,
-    /// How far the projections moved the states, with those before.
+    /// Moves of the states by projections, including those of previous runs.
     pub projection: ProjectionReport,
     pub(crate) pace: Pace,
 }
 
 impl Solution {
-    /// For a run that goes on from the end of this one, as a part of it: [`crate::Options::before`].
+    /// Counters for a run that continues this one: [`crate::Options::before`].
     pub fn done(&self) -> Before {
         Before { work: self.work, projection: self.projection, pace: self.pace.clone() }
     }
@@ -38,7 +38,7 @@ impl Solution {
     }
 }
 
-/// What was done before a run that goes on from another: it shares the limits, and the steps are counted on.
+/// Counters of the runs that a run continues: limits and step counts apply to all of them together.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Before {
     pub(crate) work: Work,
@@ -103,17 +103,18 @@ pub enum StopCause {
     /// The limit on attempted steps was reached.
     #[error("more than {limit} steps")]
     TooManySteps { limit: usize },
-    /// Many steps hardly moved the time, at a singularity or at what is too fast for the length of the run.
+    /// The run stalled: many steps hardly changed the time, at a singularity, or because the motion is too
+    /// fast for the length of the run.
     #[error("the last {steps} steps moved time by {moved:.1e} only: steps became too short to come to the end")]
     Creeping {
         steps: usize,
         /// Time they took together.
         moved: f64,
     },
-    /// More attempts are ahead than [`crate::Options::patience`] allows.
+    /// The rest needs more attempts than [`crate::Options::patience`] allows.
     #[error("{ahead:.0e} steps are ahead, where the last ones moved time by {moved:.1e}")]
     Slow {
-        /// How many, at the pace of the last ones.
+        /// Their number, at the pace of the last ones.
         ahead: f64,
         /// Time that the last stretch of attempts took.
         moved: f64,
@@ -133,7 +134,7 @@ pub enum StopCause {
     Solver { reason: String },
 }
 
-/// What an integration cost.
+/// Steps and evaluations of an integration.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Work {
     /// Accepted steps.
@@ -144,8 +145,8 @@ pub struct Work {
     pub evaluations: usize,
     /// Evaluations of ∂F/∂y.
     pub jacobians: usize,
-    /// Orders of Taylor series: one is the coefficients of one power of time, of all components. Each series
-    /// counts as one evaluation besides (its order 0).
+    /// Orders of Taylor series: one order is the coefficients of one power of time, for all components. Each
+    /// series also counts as one evaluation (its order 0).
     pub orders: usize,
 }
 

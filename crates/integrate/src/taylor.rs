@@ -66,7 +66,7 @@ pub(crate) struct Taylor<'s, 'p> {
     rough: bool,
     /// The rates at the candidate, where they are looked at first.
     rates: Vec<f64>,
-    /// What the last digits of the state at `t` change rates by; empty until they are asked for.
+    /// Changes of the rates with the last digits of the state at `t`; empty until computed.
     digits: Vec<f64>,
     /// The polynomial inside the step, its slope there times the step, and the last place, as a part of it.
     inside: Vec<f64>,
@@ -216,8 +216,8 @@ impl<'s, 'p> Taylor<'s, 'p> {
         Ok(())
     }
 
-    /// Compares the slope of the polynomial at the end with the rates there. They may differ by as much as
-    /// the last digits of the start say of the rates, too: a pendulum 1e-12 rad from its top.
+    /// Compares the slope of the polynomial at the end with the rates there. A difference that the last
+    /// digits of the start make in the rates is allowed, too: a pendulum 1e-12 rad from its top.
     fn check_slope(&mut self) -> Result<(), Failure> {
         let ends = Ends {
             reached: self.reached.as_chunks::<1>().0,
@@ -234,7 +234,7 @@ impl<'s, 'p> Taylor<'s, 'p> {
         if (self.slope[component] - rate).abs() <= allowed { Ok(()) } else { Err(Failure::NotSmooth { component }) }
     }
 
-    /// How much the last digits of the state at the start of the step change the rates, added up: once per
+    /// Sums the changes of the rates with the last digits of the state at the start of the step; once per
     /// start, however often the step is halved.
     fn find_digits(&mut self) -> Result<(), Failure> {
         if !self.digits.is_empty() {

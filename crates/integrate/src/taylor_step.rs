@@ -11,9 +11,9 @@ const LEAST_ORDER: f64 = 4.0;
 const LAST: f64 = 0.135;
 /// Allowed factor by which a term before the last two exceeds geometric decay.
 const SLACK: f64 = 1e3;
-/// The slope of the polynomial, times the step, may differ from the rates by so many tolerances, and at the
-/// end by as many moves of a projection, which may move it by as many tolerances; a relative tolerance below
-/// round-off is read as that.
+/// Allowed difference between the polynomial's slope, times the step, and the rates, in tolerances; at the
+/// end of a step also this many times the move of the projection, which itself may be this many tolerances.
+/// A relative tolerance below round-off counts as round-off.
 pub(crate) const DEFECT: f64 = 100.0;
 pub(crate) const ROUND_OFF: f64 = 1e-14;
 /// A step that is this many times shorter than its terms allow is checked at many places inside, as these do
@@ -107,7 +107,7 @@ fn any_over<const N: usize>(sizes: &[[f64; N]], x: [f64; N], bound: f64) -> bool
 
 /// The end of a step, component after component.
 pub(crate) struct Ends<'a, const N: usize> {
-    /// What the polynomial reaches, what a projection made of it, and the polynomial's slope times the step.
+    /// The end of the polynomial, the same after projection, and the polynomial's slope times the step.
     pub(crate) reached: &'a [[f64; N]],
     pub(crate) candidate: &'a [[f64; N]],
     pub(crate) slope: &'a [[f64; N]],
@@ -136,7 +136,7 @@ impl<const N: usize> Defect<N> {
 }
 
 impl<const N: usize> Ends<'_, N> {
-    /// How far the polynomial is from the rates.
+    /// Difference between the slope of the polynomial and the rates.
     #[inline(always)]
     pub(crate) fn defect(&self, absolute_tolerances: &[[f64; N]], relative_tolerance: f64) -> Defect<N> {
         let orders = self.next_coefficients.len() / self.candidate.len();

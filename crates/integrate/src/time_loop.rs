@@ -59,7 +59,7 @@ pub(crate) fn run(
     Solution { status, dense, work: system.work(), projection, pace }
 }
 
-/// What has been integrated so far.
+/// The solution so far, with its counters.
 struct Record<'a, 'p> {
     system: &'a System<'p>,
     dense: DenseOutput,
@@ -72,17 +72,17 @@ struct Record<'a, 'p> {
     options: &'a Options,
 }
 
-/// What is looked at inside of steps.
+/// Checks inside of steps.
 struct Inside {
     steep: SteepWatch,
     poles: PoleWatch,
 }
 
-/// Moves of projections over what errors of steps are.
+/// Moves of projections, relative to the allowed error of a step.
 struct Moves {
-    /// The largest one that counts as none.
+    /// The largest move that is allowed.
     allowed: f64,
-    /// That of the last attempt, and the number of attempts in a row that were dropped for it.
+    /// The move of the last attempt, and the number of consecutive attempts refused for their move.
     last: f64,
     shorter: usize,
 }

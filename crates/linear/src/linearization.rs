@@ -38,18 +38,19 @@ pub struct Linearization {
     pub matrix: DMatrix<f64>,
     /// The eigenvalues, with their errors.
     pub spectrum: Spectrum,
-    /// Places in `states` of coordinates, and of velocities and what stands for them.
+    /// Places in `states` of coordinates, and of velocities or what replaces them.
     coordinates: Vec<usize>,
     velocities: Vec<usize>,
 }
 
-/// Rates up to this part of what is added up to them count as none.
+/// Rates up to this fraction of the sum of terms behind them count as zero.
 const STEADY: f64 = 1e-9;
 
 /// The equations of `choice` to first order about the start of `setting`, which has to be a steady motion.
 ///
-/// A rate counts as none up to 1e-9 of `Σ |J_ij| s_j` and what is added up to it, with `s` as far as states
-/// that are coupled both ways can be moved before their part of `J` is another one; of others `s_j = |y_j|`.
+/// A rate counts as zero up to 1e-9 of `Σ |J_ij| s_j` plus the sum of terms behind it. For states that are
+/// coupled in both directions, `s` is how far they can be displaced before their part of `J` changes; for
+/// others `s_j = |y_j|`.
 ///
 /// # Errors
 /// [`LinearError::NotSteady`], [`LinearError::TimeDependent`]; [`LinearError::Solve`] where the formulation
@@ -217,11 +218,11 @@ pub struct Part {
     pub states: Vec<usize>,
     /// Eigenvalues other than zero, by falling real part.
     pub eigenvalues: Vec<Eigenvalue>,
-    /// How many more there are, all zero: of integrals, symmetries and families of steady motions.
+    /// Number of zero eigenvalues: of integrals, symmetries and families of steady motions.
     pub zeros: usize,
-    /// How far these may be from zero.
+    /// Error of these zeros.
     pub zero_error: f64,
-    /// Which of all these let deviations grow as powers of time, or leave that open.
+    /// Groups of these for which deviations grow as powers of time, or may do so.
     pub chains: Vec<Chain>,
 }
 

@@ -1,4 +1,4 @@
-//! Eigenvalues of a matrix whose entries are known up to some error, block by block.
+//! Eigenvalues of a matrix with errors of its entries, block by block.
 
 use mechanics::SingularValues;
 use nalgebra::DMatrix;
@@ -12,7 +12,7 @@ use crate::discs::Discs;
 pub struct Eigenvalue {
     /// `s` of `e^(s t)`, in 1 over the unit of time.
     pub value: Complex<f64>,
-    /// How far it moves where the matrix moves by its error: see [`Spectrum`].
+    /// Change of the eigenvalue when the matrix changes by its error: see [`Spectrum`].
     pub error: f64,
 }
 
@@ -23,21 +23,21 @@ impl Eigenvalue {
     }
 }
 
-/// Places of a matrix that depend on one another, all of them on each.
+/// A strongly connected set of places of a matrix: each depends on every other.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Block {
     /// The places.
     pub places: Vec<usize>,
     /// Eigenvalues other than zero, by falling real part.
     pub eigenvalues: Vec<Eigenvalue>,
-    /// How many more there are, all zero.
+    /// Number of zero eigenvalues.
     pub zeros: usize,
-    /// How far these may be from zero.
+    /// Error of these zeros.
     pub zero_error: f64,
 }
 
-/// Eigenvalues that no error tells from a multiple one on the imaginary axis, with fewer eigenvectors than
-/// eigenvalues: deviations grow as powers of time, at first at least.
+/// Eigenvalues that equal, within errors, a multiple one on the imaginary axis with too few eigenvectors:
+/// deviations grow as powers of time, at least at first.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Chain {
     /// Their mean; its imaginary part is that of those above the real axis.
@@ -57,15 +57,16 @@ pub struct Chain {
 
 /// All eigenvalues of a matrix.
 ///
-/// Entries below their error are none. What is left falls apart into blocks that are coupled in one direction
-/// only; the eigenvalues are those of the blocks. Of a block the null space is split off, again and again
-/// until there is none: so zeros are counted, chains among them as well.
+/// Entries below their error count as zero. The rest splits into blocks that are coupled in one direction
+/// only; the eigenvalues are those of the blocks. The null space of a block is split off repeatedly until
+/// none is left: this counts zeros, including chains of them.
 ///
-/// Errors: entries are off by what is given, by themselves where they were left out, and within a block,
-/// balanced, by ε of its norm and what the QR algorithm leaves. The error of an eigenvalue is the radius of a
-/// circle round it that none crosses while all entries of the matrix move so far, and at least 4 ε of the
-/// largest eigenvalue. Of `k` eigenvalues close to a multiple one it is about the `k`-th root of that. Only
-/// zeros that every matrix with entries in these places has stay where they are.
+/// Errors: the error of an entry is the given one, its own value if it was left out, and within a balanced
+/// block also ε of its norm and the residual of the QR algorithm. The error of an eigenvalue is the radius of
+/// a circle round it that no eigenvalue crosses while all entries change by up to their errors, and at least
+/// 4 ε of the largest eigenvalue. For `k` eigenvalues close to a multiple one it is about the `k`-th root of
+/// the error of the matrix. Only structural zeros, which every matrix with the same pattern of entries has,
+/// are exact.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Spectrum {
     /// Blocks, by their first places.
@@ -73,11 +74,11 @@ pub struct Spectrum {
     /// Independent eigenvectors of the eigenvalue zero; less than the zeros where deviations grow as powers
     /// of time.
     pub zero_vectors: usize,
-    /// What lets deviations grow as powers of time, or leaves that open.
+    /// Groups of eigenvalues for which deviations grow as powers of time, or may do so.
     pub chains: Vec<Chain>,
 }
 
-/// Discs of more than this part of the matrix, half of the digits, decide nothing on the axis.
+/// Discs larger than this fraction of the norm of the matrix (half of the digits) decide nothing on the axis.
 const WIDE: f64 = 1e-8;
 /// Eigenvalues closer than this number of errors are one cluster.
 const CLUSTER: f64 = 4.0;

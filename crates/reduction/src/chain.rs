@@ -1,7 +1,7 @@
-//! Chains in few coordinates: the velocities of their bodies as rates of coordinates of their own.
+//! Chains in minimal coordinates: velocities of their bodies become rates of additional coordinates.
 //!
-//! In as few coordinates as there can be, the kinetic energy of a chain is a sum of squares of velocities,
-//! each of which contains one before it,
+//! In minimal coordinates, the kinetic energy of a chain is a sum of squares of velocities, each containing
+//! an earlier one,
 //!
 //! ```text
 //! ½ Σ c_k ż_k² ,      ż_k = ż_before + Σ d_kj(q) v_j      (few j),
@@ -10,7 +10,7 @@
 //! and its matrix in `v` is full. Where the forms `d_k` are closed, `ż_k` is the rate of a function of `q`:
 //! with `z` as coordinates and `ż_k − ż_before − d_k v = 0` as constraints, which are integrable, the motions
 //! are the same. `L` is then short, as are constraints of the system once they are written in `ż` too; the
-//! elimination of all constraints is sparse. Nothing contains `z` itself: it is no state in the end.
+//! elimination of all constraints is sparse. No equation contains `z` itself: it does not become a state.
 
 use std::collections::{HashMap, HashSet};
 
@@ -32,7 +32,7 @@ struct Link {
     row: Sparse,
     /// The link that it contains.
     before: Option<usize>,
-    /// What it has beside that one.
+    /// The rest, without that link.
     own: Sparse,
 }
 

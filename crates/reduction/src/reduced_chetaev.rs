@@ -14,14 +14,14 @@
 //!
 //! The constraint holds in every state `(q, w)`: there is nothing to drift from and nothing to project.
 //!
-//! What is left of the balance before it is reduced is `Aᵀ λ`; going through the recursion of the velocities
-//! backwards gives `λ` ([`crate::EliminatedConstraint`]), an output that no rate needs.
+//! The residual of the balance before reduction is `Aᵀ λ`; the recursion of the velocities in reverse order
+//! gives `λ` ([`crate::EliminatedConstraint`]), an output that no rate needs.
 //!
 //! `S` is not written out in `q`: it is a recursion ([`QuasiVelocities`]), as are its columns, `γ` and both
 //! sides of the equation, each quantity short in those before. A chain of n bodies: O(n), not O(n²) or more.
 //!
-//! Where a [`Frame`] shows the kinetic energy as squares with constant coefficients, and equations are
-//! cheaper so, `v` are its velocities: `SᵀMS` is then free of how the body is turned, often constant.
+//! Where a [`Frame`] writes the kinetic energy as squares with constant coefficients, and this makes
+//! equations cheaper, `v` are its velocities: `SᵀMS` is then independent of attitude, often constant.
 //!
 //! Sources: G. Hamel 1904; Ju. I. Neimark, N. A. Fufaev, *Dynamics of Nonholonomic Systems*, chapter III.
 

@@ -15,11 +15,11 @@ const THRESHOLD: f64 = 0.1;
 /// … and than this in the scaled matrix, whose rows have a largest entry of 1.
 const SMALLEST: f64 = 1e-4;
 
-/// What a pivot that is no number costs beside its multiplications: a division and the watch on it.
+/// Extra cost of a pivot that is not a number: a division and the check of its size.
 const MOVING: usize = 4;
 
-/// What it costs that it is small at a point far from the start. (On the diagonal of a mass matrix what is
-/// small against its column does no harm.)
+/// Extra cost of a pivot that is small at a point far from the start. (On the diagonal of a mass matrix, a
+/// pivot that is small compared with its column does no harm.)
 const SMALL: usize = 4;
 
 /// An entry in numbers.
@@ -31,7 +31,7 @@ pub(crate) struct Entry {
     pub(crate) constant: bool,
 }
 
-/// By what the next pivot is taken.
+/// Strategy for the choice of the next pivot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Strategy {
     /// On the diagonal; both sides of it stay the same.

@@ -1,4 +1,4 @@
-//! What is integrated in lanes, and what comes out.
+//! Problem, start and result of an integration in lanes.
 
 use crate::status::{ProjectionReport, Work};
 
@@ -40,7 +40,7 @@ pub trait LaneProblem {
     fn divided(&mut self, _t: &Lane, _y: &[Lane], _values: &mut [Lane]) {}
 }
 
-/// What a motion starts from and where it ends.
+/// Start and end of a motion.
 #[derive(Clone, Debug)]
 pub struct LaneStart {
     /// `t₀`.
@@ -53,10 +53,10 @@ pub struct LaneStart {
     pub sizes: Vec<f64>,
 }
 
-/// Why a motion was left to be integrated by itself.
+/// Why a motion has to be integrated alone.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum Left {
-    /// The problem does not trust what it computed.
+    /// The problem does not trust its evaluation.
     #[error("the form of the equations is not to be trusted on the way")]
     Untrusted,
     /// A coefficient, a state or an event function is NaN or infinite.
@@ -68,7 +68,7 @@ pub enum Left {
     /// A divisor changes its sign or comes near zero within a step.
     #[error("a divisor nearly vanishes on the way")]
     Divisor,
-    /// Steps are too short to move the time, creep or are halved too often.
+    /// Steps are too short to change the time, stall, or are halved too often.
     #[error("steps too short on the way")]
     StepTooSmall,
     /// [`crate::Options::max_steps`].
@@ -84,7 +84,7 @@ pub enum Left {
 pub struct LaneRun {
     /// The states at the times asked for, one after the other.
     pub states: Vec<f64>,
-    /// What it cost.
+    /// Steps and evaluations.
     pub work: Work,
     /// How far the projections moved the states.
     pub projection: ProjectionReport,
