@@ -20,9 +20,9 @@ use symbolic::SplitMix;
 const ACTIONS: [f64; 3] = [1e-13, 1.0, 1e13];
 const LENGTHS: [f64; 3] = [1e-9, 1.0, 1e9];
 const TIMES: [f64; 3] = [1e-6, 1.0, 1e6];
-/// One question in this number is asked in one scale; `SCALES=all` asks all in all of them.
+/// One question out of this number is asked, in one scale; `SCALES=all` asks all questions in all scales.
 const ONE_IN: f64 = 4.0;
-/// The error estimates of two results may be wrong by so much, and numbers by this part of their size.
+/// Factor by which the error estimates of two results may be wrong, and allowed relative error of numbers.
 const FACTOR: f64 = 100.0;
 const ROUND_OFF: f64 = 1e-11;
 /// Other words to first order, as a part of all: scales of states not coupled both ways are not known.

@@ -1,4 +1,4 @@
-//! What was measured on one scene.
+//! Measurements on one scene.
 
 mod kept;
 mod measure;
@@ -28,7 +28,7 @@ pub const SAMPLES: usize = 20;
 /// Errors for which the fastest setting is named.
 pub const TARGETS: [f64; 4] = [1e-6, 1e-9, 1e-10, 1e-11];
 
-/// How much is measured.
+/// The extent of the measurements.
 #[derive(Clone, Debug)]
 pub struct Effort {
     /// Runs of one setting are repeated until they took this many seconds together, but for those that take
@@ -56,7 +56,7 @@ impl Default for Effort {
     }
 }
 
-/// What was measured on one scene.
+/// The measurements on one scene.
 #[derive(Clone, Debug)]
 pub struct Bench {
     /// Name and title of the scene.
@@ -69,7 +69,7 @@ pub struct Bench {
     pub entries: Vec<Entry>,
 }
 
-/// What was measured on one formulation of a scene.
+/// The measurements on one formulation of a scene.
 #[derive(Clone, Debug)]
 pub struct Entry {
     /// What the reader sees.

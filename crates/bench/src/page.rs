@@ -72,7 +72,7 @@ pub fn bench_files(benches: &[Bench], ensembles: &[Throughput]) -> Result<Vec<Fi
 /// Allowed ratio of both runs to the fastest single one.
 const WANTED: f64 = 2.5;
 
-/// What one gets who gives nothing but a tolerance, beside the fastest single run of all forms and settings.
+/// The default run, with only the tolerance given, beside the fastest single run of all forms and settings.
 fn usual_section(benches: &[Bench]) -> String {
     let columns = ["scene", "formulation", "form, method", ">both runs (ms)", ">error", ">estimate"];
     let mut table = Table::new(columns.into_iter().chain([">single (ms)", ">ratio"]));

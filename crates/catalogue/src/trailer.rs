@@ -13,7 +13,7 @@ use mechanics::{Completion, Parameter, State, System, View};
 use scene::Scene;
 use symbolic::{Expr, ParseError};
 
-/// What the train is described by.
+/// Description of the train.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Coordinates {
     /// All `(xᵢ, yᵢ, θᵢ)`, hitches as velocity constraints: 3n + 3 coordinates, 3n + 1 short constraints.

@@ -291,7 +291,7 @@ fn judge(
     let own = |c: DVector<f64>| DVector::from_iterator(last, c.iter().zip(&known).map(|(c, k)| c * k.scale));
     let directions = orthonormal(free.into_iter().map(own).collect());
     let verdict = match verdict_on(least, reach, &sizes) {
-        // what is so much more than the motion is round-off of it that has grown
+        // a mismatch this much larger than the motion is amplified round-off
         Verdict::NotContained if ROUND_OFF * least > sizes.scale(reach) => Verdict::Undecided,
         Verdict::Contained if loud => Verdict::Undecided,
         verdict => verdict,

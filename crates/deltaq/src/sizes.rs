@@ -6,19 +6,19 @@ use crate::Metric;
 use crate::last_digits::signs;
 use crate::metric::subtract;
 
-/// A state under this part of the size that the energy tells is round-off.
+/// A state below this fraction of the size from the energy is round-off.
 const NO_SIZE: f64 = 1e-14;
-/// A size over 1, and over this part of what the energy tells, is no size: runs may be long. So much of what
-/// forces would do within the run without a change counts as energy.
+/// A size over 1, and over this fraction of the size from the energy, is not used: runs may be long. This
+/// fraction of the displacement that constant forces would cause within the run counts as energy.
 const LARGE: f64 = 1e-5;
-/// States are moved by this part of their size to see what depends on them; those that tell none, by
-/// `LEAST` and so much more each time until something does.
+/// States are displaced by this fraction of their size to see what depends on them; states without a size, by
+/// `LEAST` and then by larger and larger amounts until something does.
 const MOVE: f64 = 1.0 / (1 << 20) as f64;
 const LEAST: f64 = 1e-30;
 const MOVES: usize = 11;
 /// Changes of the last digits are a sample; round-off may be larger by this factor.
 const DIGITS: f64 = 4.0;
-/// What changes by less than this part of it does not depend on what was moved.
+/// A quantity that changes by less than this fraction of itself does not depend on the displaced state.
 const SEEN: f64 = 1.0 / (1 << 30) as f64;
 
 /// The size of each state at `(t, y)`, by which an absolute tolerance is multiplied: how large it is there,

@@ -23,7 +23,7 @@ pub(crate) fn scattered([start, end]: [f64; 2]) -> impl Iterator<Item = f64> {
     (1..=SCATTERED).map(move |i| start + (end - start) * (i as f64 * GOLDEN).fract())
 }
 
-/// The wanted times of a run between these ends, outputs of which are asked for at `times`, ascending.
+/// The wanted times of a run between these ends, if outputs are asked for at `times`, ascending.
 pub(crate) fn wanted(ends: [f64; 2], times: &[f64]) -> Arc<[f64]> {
     let [start, end] = [ends[0], ends[0] + (ends[1] - ends[0])];
     let ends = [start, end];

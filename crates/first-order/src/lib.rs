@@ -17,12 +17,12 @@
 //! `ε = 0` and `1/N = 0` is Chetaev.
 //!
 //! **Where ε comes from.** With `λ := −(κ μ + μ̇)` the equations of the family `kappa` are
-//! `d/dt ∂L/∂v − ∂L/∂q = Q + Aᵀ λ + C μ`. After the time 1/κ, `μ = −λ/κ + O(1/κ²)`; `ε = 1/κ` is what is
-//! left. So `−ε C λ` is the first trace of vakonomic mechanics in a motion by Chetaev. It needs no start
-//! `μ₀`, and Chetaev, an end of the family, is an inner point here: a number that can be estimated.
+//! `d/dt ∂L/∂v − ∂L/∂q = Q + Aᵀ λ + C μ`. After the time 1/κ, `μ = −λ/κ + O(1/κ²)`; only `ε = 1/κ` remains.
+//! So `−ε C λ` is the first-order vakonomic term in Chetaev's equations. It needs no start `μ₀`, and Chetaev,
+//! a limit of the family, is the inner point ε = 0 here, so that ε can be estimated.
 //!
 //! **Where slip comes from.** A contact of viscosity `N` keeps the constraint by the force `−N Aᵀ f`: that is
-//! `Aᵀ λ` where `f = −λ/N`. The constraint is not kept but creeps.
+//! `Aᵀ λ` where `f = −λ/N`. The constraint holds only up to slip (creep).
 //!
 //! **One instant.** Without slip the unknowns are `(a, λ)`, and `f` is kept by its rate; where `f` is linear
 //! in the velocities they are those of
@@ -35,8 +35,8 @@
 //! With slip `λ = −N f` is known before, and only `M` has to be regular. Where `A` depends on the velocities,
 //! `C` contains `a`, and the equations are not linear.
 //!
-//! **What the motion depends on.** On `(q₀, v₀)`; with slip, started at `f = 0`, it creeps after the time
-//! `m/N`.
+//! **What the motion depends on.** On `(q₀, v₀)`; with slip, started at `f = 0`, the slip builds up within a
+//! time of about `m/N`.
 //!
 //! **What stays constant.** Without slip the energy `v·L_v − L` where nothing depends on time, `Q = 0` and
 //! `f` is homogeneous in `v`: `v·C λ = (1−d) λ·ḟ = 0` for degree `d`. So no friction along the motion

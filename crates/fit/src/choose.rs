@@ -13,20 +13,21 @@ const FOLLOWED: usize = 3;
 const FIRST_STEP: f64 = 0.25;
 const LAST_STEP: f64 = 1.0 / 64.0;
 
-/// What a search for the best film saw.
+/// Result of a search for the best film.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Best {
     /// Films of the scene's own numbers, which may lie outside the bounds.
     pub own: Result<Point, FitError>,
-    /// The best one, looked at again from four times as many starts.
+    /// The best one, verified from four times as many starts.
     pub best: Point,
     /// Other ends of the search, the best first; by fewer starts.
     pub others: Vec<Point>,
-    /// The length of the shortest film of the best motion that tells, where that itself does.
+    /// The length of the shortest film of the best motion that excludes the other formulation, if the whole
+    /// film does.
     pub shortest: Option<f64>,
-    /// Points that were looked at.
+    /// Number of points that were tried.
     pub tried: usize,
-    /// Points of these without a motion through the whole film; they say nothing.
+    /// Number of these without a motion through the whole film; they are ignored.
     pub without_motion: usize,
 }
 

@@ -53,12 +53,12 @@ impl FromStr for Range {
     }
 }
 
-/// What a film is to show.
+/// The aim of a film.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Aim {
-    /// That the first formulation is right and not the second.
+    /// To show that the first formulation is right and the second is not.
     Tell(&'static Formulation, &'static Formulation),
-    /// A number: by the law of first order where numbers of that are unknown, else by Chetaev's.
+    /// To estimate a number: with the first-order law if its numbers are unknown, else with Chetaev's.
     Estimate(String),
 }
 
@@ -288,9 +288,10 @@ impl Design {
         if self.rival.is_some() { a.value > b.value } else { a.value < b.value }
     }
 
-    /// The length of the shortest film of the motion with the numbers d that tells the formulations apart,
-    /// χ² ≥ [`EXCLUDED`], to 2 %, up to eight times as long as the films; none where none was found. Where
-    /// four times as many starts find less there, lengths are looked for from these.
+    /// The length of the shortest film, of the motion with the numbers d, that excludes the second
+    /// formulation, χ² ≥ [`EXCLUDED`]: to 2 %, up to eight times as long as the films; `None` where no such
+    /// length is found. If four times as many starts find a smaller χ² at this length, the search is repeated
+    /// with these.
     pub fn shortest(&self, d: &[f64]) -> Option<f64> {
         self.rival.as_ref()?;
         // what fits a film is a start for a longer one

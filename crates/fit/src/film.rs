@@ -6,7 +6,7 @@ use symbolic::Expr;
 use crate::FitError;
 use crate::quantity::{quantity, unit};
 
-/// What a column of a film shows.
+/// A column of a film.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Column {
     /// Its name: that of an entry of `[film]`, or an expression in `(q, v, t)` and parameters.
@@ -22,13 +22,13 @@ pub struct Film {
     pub name: String,
     /// Times, growing, on the clock of the scene.
     pub t: Vec<f64>,
-    /// What is seen.
+    /// The columns.
     pub columns: Vec<Column>,
-    /// One row per time, one value per column; none where nothing was seen.
+    /// One row per time, one value per column; `None` for a gap.
     pub rows: Vec<Vec<Option<f64>>>,
     /// Lines of the file, the header being the first; one per time.
     pub lines: Vec<usize>,
-    /// Numbers of the scene that are others in this film, and known: `("psi'", 6.0)`.
+    /// Numbers of the scene with another, known value in this film: `("psi'", 6.0)`.
     pub known: Vec<(String, f64)>,
 }
 

@@ -30,13 +30,13 @@ pub fn formulations(names: &[String]) -> Result<Vec<&'static Formulation>, Unkno
     }
 }
 
-/// What is asked of films.
+/// A question about films.
 #[derive(Clone)]
 pub struct Question<'a> {
-    /// What is not known, whatever the formulation. Multipliers and costates at the start are unknown where a
-    /// formulation has them, and need not be named. `start` stands for coordinates and given velocities.
+    /// Unknowns of every formulation. Multipliers and costates at the start are unknowns of formulations that
+    /// have them, and need not be named. `start` stands for coordinates and given velocities.
     pub unknowns: &'a [Unknown],
-    /// Numbers of the law of first order that are not known, `eps` or `slip`: a further row.
+    /// Unknown numbers of the first-order law, `eps` or `slip`: they add a row.
     pub law: &'a [Unknown],
     /// Starts of the search; four times as many where no formulation fits.
     pub starts: usize,

@@ -14,15 +14,15 @@ const LAGS: usize = 10;
 /// A test and what it found.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ResidualTest {
-    /// What it looks at: `chi squared`, `runs of x`, `whiteness of x`, `largest`.
+    /// Its name: `chi squared`, `runs of x`, `whiteness of x`, `largest`.
     pub name: String,
-    /// What was found.
+    /// The value of the test statistic.
     pub found: f64,
-    /// What is expected.
+    /// Its expected value.
     pub expected: f64,
-    /// The probability of what was found or of something rarer.
+    /// The probability of this value or of a rarer one.
     pub probability: f64,
-    /// Whether it objects.
+    /// Whether the test rejects.
     pub objects: bool,
 }
 

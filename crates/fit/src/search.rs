@@ -40,17 +40,17 @@ pub(crate) const POOR: f64 = 100.0;
 /// Minima up to this many times the least are looked at to the last digit, and where residuals are many
 /// deviations.
 const CLOSE: [f64; 2] = [1.5, 1.05];
-/// Two minima are one where χ² differs by no more than this, beside this part of it.
+/// Two minima count as one where χ² differs by at most the first number plus the second, as a fraction of χ².
 const SAME: [f64; 2] = [0.1, 1e-3];
 
-/// What a search saw.
+/// Result of a search.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Found {
     /// The least minimum.
     pub best: Minimum,
     /// χ² of every minimum that was seen over the whole film, the least first.
     pub minima: Vec<f64>,
-    /// Starts that were followed: fewer than were asked for where they are the same.
+    /// Number of starts that were followed: fewer than asked for if some coincide.
     pub starts: usize,
 }
 

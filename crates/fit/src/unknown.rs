@@ -41,9 +41,9 @@ pub struct Unknown {
     pub film: Option<usize>,
     /// Where the search begins; at the scene's value if left out.
     pub start: Option<f64>,
-    /// What is known before.
+    /// The prior.
     pub prior: Option<Prior>,
-    /// The least that it can be.
+    /// Its lower bound.
     pub bound: Option<f64>,
 }
 

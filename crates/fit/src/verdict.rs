@@ -9,7 +9,7 @@ use crate::{Fit, FitError, Identifiability, Problem};
 /// A formulation is excluded where its χ² is this much above the least.
 pub const EXCLUDED: f64 = 15.0;
 
-/// What films say of a formulation.
+/// The verdict of films on a formulation.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Verdict {
     /// It fits, and all others are excluded, by the least χ² that was found of each.
@@ -23,27 +23,28 @@ pub enum Verdict {
     CannotTell {
         /// Labels of the others.
         from: Vec<String>,
-        /// How many times as long a film has to be at least that tells it from each of these, if they are
-        /// right; none where no length up to 8 times was found. See
+        /// Factor by which a film has to be longer, at least, to exclude this formulation if one of these is
+        /// right; `None` where up to 8 times the length do not suffice. See
         /// [`fit_formulations`](crate::fit_formulations).
         needs: Vec<Option<f64>>,
     },
-    /// Residuals object to every formulation that is not excluded: something else is wrong.
+    /// Tests on residuals reject every formulation that is not excluded: something else is wrong.
     None,
     /// It could not be fitted.
     NotFitted(FitError),
 }
 
-/// A formulation and what films say of it.
+/// A formulation with its fit and verdict.
 #[derive(Clone)]
 pub struct Row {
-    /// What was fitted.
+    /// The formulation, removal and constants that were fitted.
     pub choice: Choice,
     /// The fit.
     pub fit: Result<Fit, FitError>,
-    /// Whether such films can show its unknowns at all; none where it could not be asked.
+    /// Whether such films can show its unknowns at all; `None` where this cannot be computed.
     pub shown: Option<Identifiability>,
-    /// What was fitted, to ask further; its unknowns are the first of [`Fit::estimates`].
+    /// The problem that was fitted, for further evaluations; its unknowns are the first of
+    /// [`Fit::estimates`].
     pub problem: Option<Problem>,
     /// The verdict.
     pub verdict: Verdict,

@@ -44,16 +44,16 @@ impl Printed {
     }
 }
 
-/// What was found in an ansatz.
+/// The integrals found in an ansatz.
 #[derive(Clone, Debug)]
 pub struct Ansatz {
     /// Functions that are independent on `f = 0`, the number 1 not among them.
     pub functions: usize,
     /// Dimension of the integrals among their combinations, products of others included.
     pub dimension: usize,
-    /// Those that are written down; none is a combination of products of those before it.
+    /// Integrals given as formulas; none is a combination of products of earlier ones.
     pub printed: Vec<Printed>,
-    /// Others, with coefficients that are no fractions of moderate size.
+    /// Number of other integrals, whose coefficients are not fractions of moderate size.
     pub unprinted: usize,
     /// Coordinates that the functions contain.
     pub names: Vec<String>,

@@ -15,10 +15,10 @@ use crate::{Ansatz, Open, Printed, Reversed, constants, reversible};
 const TOLERANCE: f64 = 1e-12;
 const TIMES: u32 = 50;
 
-/// What is known of the measures and integrals of a scene's motions under one formulation.
+/// Measures and integrals of a scene's motions under one formulation.
 #[derive(Clone)]
 pub struct Integrals {
-    /// What was asked about.
+    /// The scene.
     pub scene: Scene,
     /// Name of the formulation.
     pub formulation: &'static str,
@@ -121,7 +121,7 @@ pub fn watched(scene: &Scene, choice: &Choice) -> Result<Vec<Watched>, NoAnswer>
     read.collect::<Result<_, _>>().map_err(NoAnswer::Open)
 }
 
-/// What is printed, read again with the symbols of `g`.
+/// The printed formula, parsed with the symbols of `g`.
 fn again(g: &Graph, text: &str) -> Result<Expr, String> {
     let known = |name: &str| g.find_symbol(name).map(|symbol| g.variable(symbol));
     g.parse(text, &known, &[]).map_err(|fault| fault.to_string())

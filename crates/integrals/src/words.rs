@@ -22,7 +22,7 @@ impl Display for Integrals {
     }
 }
 
-/// What is meant by a measure, and where it is.
+/// Explanation of a measure, and of where it holds.
 pub const NEAR: &str =
     "near almost every place q; a measure is e^sigma(q) dq dp, sigma smooth there, its periods not asked for";
 

@@ -91,7 +91,7 @@ struct Inner<'p> {
 }
 
 impl<'p> System<'p> {
-    /// With steps of this length at most, after so much work.
+    /// With steps of at most this length, and the work done before.
     pub(crate) fn new(problem: &'p mut dyn Problem, longest: f64, work: Work) -> Self {
         Self {
             longest,

@@ -93,7 +93,7 @@ fn projection_keeps_the_radius_and_does_no_harm() {
 #[test]
 fn projection_holds_what_would_run_away() {
     // A turn with radial instability, (r − 1)' = 2 (r − 1): without projection an error grows like exp(2t),
-    // e⁴⁰ at t = 20. Bdf, too, has to be told of the projections then.
+    // e⁴⁰ at t = 20. Bdf, too, then has to restart from projected states.
     let case = Case::new(2, |_, y| {
         let radius = (&(&y[0] * &y[0]) + &(&y[1] * &y[1])).powf(-0.5);
         let push = &(&radius.number(1.0) - &radius) * 2.0;

@@ -33,14 +33,14 @@ impl Law {
     }
 }
 
-/// What a law leaves of the motion.
+/// Residual of a law on the motion.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Left {
     /// The law.
     pub law: Law,
-    /// What is left of the balance of forces and of the rate of the constraint, rms, in `√E/T`.
+    /// Residual of the balance of forces and of the rate of the constraint, rms, in `√E/T`.
     pub residual: f64,
-    /// What was found with it: `mu0_1 = …`, the removal.
+    /// Fitted numbers: `mu0_1 = …`, the removal.
     pub with: String,
 }
 
@@ -92,10 +92,10 @@ impl Judgement {
     }
 }
 
-/// What is this many times the least, or the noise, does not stand out from it.
+/// Residuals up to this many times the least, or the noise, are not distinguished from it.
 const NOISES: f64 = 3.0;
 
-/// Which law does the program integrate that made these samples?
+/// Which law does the program that computed these samples integrate?
 ///
 /// # Errors
 /// [`JudgeError`]: too few samples, a motion in which nothing happens, dependent constraints, a mass matrix

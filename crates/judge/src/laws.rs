@@ -18,9 +18,9 @@ pub struct FirstOrder {
     pub slip: Option<Number>,
     /// `γ` of a drag `−γ M v`, in `1/T`; none where nothing moves.
     pub drag: Option<Number>,
-    /// What is left of the balance, rms, in `√E/T`.
+    /// Residual of the balance, rms, in `√E/T`.
     pub balance: f64,
-    /// What is left of `ḟ + λ̇/N`, as a force, rms.
+    /// Residual of `ḟ + λ̇/N`, as a force, rms.
     pub constraint: f64,
 }
 

@@ -1,21 +1,21 @@
-//! # Which law does the program integrate that made these motions?
+//! # Which law does the program that computed these motions integrate?
 //!
-//! Given: a scene, `L(q, v, t)`, `f(q, v, t) = 0`, `Q`, and samples `(t, q)` or `(t, q, v)` of a motion that
-//! some program made. `A = ∂f/∂v` (h×n), `M = ∂²L/∂v²`, `C = (∂f/∂q)ᵀ − Ȧᵀ`, and at each sample
+//! Given: a scene, `L(q, v, t)`, `f(q, v, t) = 0`, `Q`, and samples `(t, q)` or `(t, q, v)` of a motion
+//! computed by any program. `A = ∂f/∂v` (h×n), `M = ∂²L/∂v²`, `C = (∂f/∂q)ᵀ − Ȧᵀ`, and at each sample
 //!
 //! ```text
 //! E = d/dt ∂L/∂v − ∂L/∂q ,       a from differences of the samples.
 //! ```
 //!
-//! **Chetaev's law with three numbers**, each zero where it is kept to the letter:
+//! **Chetaev's law with three numbers**, each zero where the law holds exactly:
 //!
 //! ```text
 //! E − Q = Aᵀλ − ε C λ − γ M v ,        f = −λ/N .
 //! ```
 //!
-//! `λ` is free at each sample, `ε` (in `T`) and the drag `γ` (in `1/T`) are those that leave least, in the
-//! metric `M⁻¹`; then the slip `1/N` follows from `f`, which is seen. Nothing is integrated, so that nothing
-//! grows, and no start value is asked for.
+//! `λ` is free at each sample, `ε` (in `T`) and the drag `γ` (in `1/T`) minimize the residual in the metric
+//! `M⁻¹`; then the slip `1/N` follows from the observed `f`. Nothing is integrated, so that nothing grows,
+//! and no start value is asked for.
 //!
 //! **Other laws.** Vakonomic: `E − Q = C μ − Aᵀ μ̇` for some `μ₀`; along a motion `μ` is affine in `μ₀`.
 //! The rate of the rows left out: `A a = 0` in the place of `ḟ = 0`. The constraint put into `L`: Lindelöf's

@@ -1,4 +1,4 @@
-//! What is left of Lagrange's equations of `L` with the constraint put into it, which are wrong.
+//! Residual of Lagrange's equations of `L` with the constraint substituted into it, which are wrong.
 
 use mechanics::Removal;
 use nalgebra::{DMatrix, DVector};

@@ -123,7 +123,7 @@ impl<T> SparseMatrix<T> {
 pub struct Candidate {
     /// Its size at the start, in a row scaled to 1; positive.
     pub size: f64,
-    /// What it costs to take it.
+    /// The cost of choosing it.
     pub cost: usize,
     /// Row and column.
     pub place: (usize, usize),

@@ -1,8 +1,9 @@
 //! # Mechanical systems with velocity constraints
 //!
-//! What can be said about a system before any principle of mechanics is chosen. A [`System`] has coordinates
-//! `q ∈ Rⁿ`, a Lagrangian `L(q, v, t)` with `v = q̇`, constraints `f(q, v, t) = 0 ∈ Rʰ` and generalized
-//! forces `Q(q, v, t) ∈ Rⁿ`, on the side of `∂L/∂q`. Write `A = ∂f/∂v` (h×n) and `M = ∂²L/∂v²` (n×n).
+//! Properties of a system that do not depend on the choice of a principle of mechanics. A [`System`] has
+//! coordinates `q ∈ Rⁿ`, a Lagrangian `L(q, v, t)` with `v = q̇`, constraints `f(q, v, t) = 0 ∈ Rʰ` and
+//! generalized forces `Q(q, v, t) ∈ Rⁿ`, on the side of `∂L/∂q`. Write `A = ∂f/∂v` (h×n) and `M = ∂²L/∂v²`
+//! (n×n).
 //!
 //! **The start** ([`complete_start`], [`project_velocity`], [`check_regularity`]). Some velocities are given;
 //! the constraints supply the others, `f(q₀, v, t₀) = 0`, by one Gauss–Newton iteration ([`newton`]).

@@ -1,4 +1,4 @@
-//! What can be wrong with a removal, or with constraints that are to be removed.
+//! Errors of removals, and of constraints that are to be removed.
 
 /// A parametrization that does not remove the constraints.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]

@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-/// What a body looks like.
+/// The shape of a body.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
     /// A small sphere without a mark.

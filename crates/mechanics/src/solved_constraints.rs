@@ -41,7 +41,7 @@ pub(crate) struct SolvedConstraints {
     pub(crate) solution: Matrix,
     /// c, h.
     pub(crate) offset: Vec<Expr>,
-    /// What was divided by the pivots, in `(q, t)`: it grows where one of them becomes small.
+    /// Quotients with the pivots as divisors, in `(q, t)`: they grow where a pivot becomes small.
     pub(crate) quotients: Vec<Expr>,
 }
 

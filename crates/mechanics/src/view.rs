@@ -1,4 +1,4 @@
-//! What is drawn of a system: bodies, each a shape that moves as its place and rotation say.
+//! The drawing of a system: bodies, each a shape with a place and a rotation.
 
 use symbolic::{CompileError, Evaluator, Expr, Graph, Matrix, Symbol};
 
@@ -30,7 +30,7 @@ pub struct Touch {
     pub at: [Expr; 3],
 }
 
-/// What is drawn of a system. No equation depends on it.
+/// The drawing of a system. No equation depends on it.
 #[derive(Clone, Debug, Default)]
 pub struct View {
     /// The expressions, in a graph of their own that knows the symbols of the system's.

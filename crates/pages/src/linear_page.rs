@@ -101,7 +101,7 @@ fn left_open(sweep: &Sweep) -> String {
     text
 }
 
-/// What a chain does to deviations.
+/// The effect of a chain on deviations.
 fn sentence(chain: &Chain) -> String {
     let Chain { value, size, radius, power, is_exact, .. } = chain;
     let power = if *power == 1 { "t".into() } else { format!("t^{power}") };

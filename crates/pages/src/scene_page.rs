@@ -104,7 +104,7 @@ pub fn scene_page(comparison: &mut Comparison, pictures: &[File]) -> Result<Stri
 /// Instants at which the trace is looked at.
 const TRACED: usize = 64;
 
-/// How large the first trace of vakonomic mechanics is in Chetaev's motion.
+/// Size of the first-order vakonomic term along Chetaev's motion.
 fn first_trace(comparison: &mut Comparison) -> Result<String> {
     let Some(run) = comparison.run(CHETAEV) else { return Ok(String::new()) };
     let Comparison { scene, runs, .. } = comparison;

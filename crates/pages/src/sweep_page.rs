@@ -11,7 +11,7 @@ use program::File;
 /// What varies: name, first value, last value, number of values.
 pub type Swept = (String, f64, f64, usize);
 
-/// What is read of a row of the table.
+/// A row of the table, as read.
 struct Point {
     at: Vec<f64>,
     verdict: String,
@@ -20,7 +20,7 @@ struct Point {
     mismatch: Option<f64>,
 }
 
-/// What is drawn of a point.
+/// A point, as drawn.
 type Measure = fn(&Point) -> Option<f64>;
 
 impl Point {

@@ -11,7 +11,7 @@ use super::trace::{Coarseness, Extent, Place, Trace};
 /// What belongs to one motion.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Bodies {
-    /// What the legend says.
+    /// Label in the legend.
     pub label: String,
     /// Colour, and how the path is dashed.
     pub style: Style,

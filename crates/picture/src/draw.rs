@@ -9,7 +9,7 @@ use super::style::{INK, INKS, Stroke, Style};
 use super::text::{decimal, escape, fit, px, width};
 use super::trace::{Coarseness, Extent, Place, Trace};
 
-/// What a file should not pass, in bytes.
+/// Limit of the file size, in bytes.
 pub(super) const BUDGET: usize = 60_000;
 
 impl Picture {
@@ -99,7 +99,7 @@ pub(super) fn headline(out: &mut String, lines: &[String], left: f64) {
     }
 }
 
-/// What the picture shows, for readers who do not see it.
+/// Description of the picture, for readers who do not see it.
 fn description(plots: &Picture, legend: &[Entry]) -> String {
     let vertical: Vec<&str> = plots.panels.iter().map(|panel| panel.y.label.as_str()).collect();
     let curves: Vec<String> = legend.iter().map(Entry::text).collect();

@@ -44,13 +44,13 @@ pub struct HeatMap {
     pub y: Axis,
     /// Cells in a row.
     pub columns: usize,
-    /// What the colours measure; its range is that of the cells.
+    /// Quantity of the colour scale, whose range is that of the cells.
     pub value: Axis,
     /// Row by row, the lowest first.
     pub cells: Vec<Option<f64>>,
     /// Cells with a dot, likewise.
     pub marked: Vec<bool>,
-    /// What a dot says.
+    /// Meaning of a dot.
     pub mark: String,
 }
 

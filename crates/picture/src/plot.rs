@@ -1,11 +1,11 @@
-//! What is drawn: curves over axes, in panels.
+//! Plots: curves over axes, in panels.
 
 use crate::style::Style;
 
 /// One line of a picture.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Curve {
-    /// What the legend says. Curves of one style and label, in different panels, share a line of the legend.
+    /// Label in the legend. Curves of one style and label, in different panels, share a line of the legend.
     pub label: String,
     /// Colour, dash and width. A second label of the same style in one picture gets marks along its line.
     pub style: Style,

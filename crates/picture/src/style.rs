@@ -1,6 +1,6 @@
 //! Colours, dashes and widths.
 
-/// What a curve stands for, which fixes how it is drawn.
+/// The role of a curve, which determines its style.
 ///
 /// Okabe's and Ito's colours of contrast 3 on white and on black; dash and width tell curves apart without
 /// colour. Narrow lines stand on wide ones. A gap between two formulations alternates their colours.
@@ -9,7 +9,7 @@ pub enum Style {
     /// One of a row of motions of the vakonomic family: what lies between neighbours is a band (pale
     /// vermilion).
     Family,
-    /// What is to be passed or kept (grey, thin, dashed; named at its right end).
+    /// A limit or threshold (grey, thin, dashed; named at its right end).
     Threshold,
     /// Motion of the d'Alembert–Lagrange equations (blue, wide, solid).
     Chetaev,
@@ -27,7 +27,7 @@ pub enum Style {
     RemovedConstraint,
     /// One of several of a kind, such as methods: four colours, and four dashes after them.
     Member(u8),
-    /// What was measured: a dot per point (grey).
+    /// A measurement: a dot per point (grey).
     Samples,
 }
 

@@ -10,7 +10,7 @@ use deltaq::Contradicted;
 
 use crate::answer::{Answer, Unwritten, complain, plain, print};
 
-/// What the command line asks for.
+/// Result of parsing the command line.
 ///
 /// # Errors
 /// The exit code, once the help is printed or the fault is said.

@@ -1,5 +1,5 @@
-//! What the programs of this workspace share: threads and progress, files that are written whole, answers on
-//! the terminal, options and exit codes.
+//! The common part of the programs of this workspace: threads and progress, files that are written whole,
+//! answers on the terminal, options and exit codes.
 //!
 //! [`finish`] has the exit codes: 1 where the answer cannot be written, 2 for bad input, 3 for an answer that
 //! cannot be trusted, 4 where results contradict each other, which is a fault of the program.

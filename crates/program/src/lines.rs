@@ -7,7 +7,7 @@ use std::path::Path;
 
 use anyhow::{Context, Error, Result, ensure};
 
-/// What an earlier run has left, read line by line. Nothing of the file changes before [`Lines::go_on`].
+/// The file of an earlier, interrupted run, read line by line. It is not changed before [`Lines::go_on`].
 pub struct Lines {
     reader: BufReader<File>,
     told: String,
@@ -64,7 +64,7 @@ impl Lines {
         self.at
     }
 
-    /// Of the file this many bytes stay, no fewer than those of a whole head.
+    /// Number of bytes of the file that are kept, at least those of a whole head.
     pub fn keep(&mut self, bytes: u64) {
         self.kept = bytes.max(self.kept);
     }

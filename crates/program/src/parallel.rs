@@ -18,7 +18,7 @@ pub fn progress(length: usize, quiet: bool) -> ProgressBar {
     bar
 }
 
-/// What is done and for how long, drawn on a terminal unless `quiet`.
+/// A spinner with the current task and its time, drawn on a terminal unless `quiet`.
 pub fn spinner(quiet: bool) -> ProgressBar {
     let line = if quiet { ProgressBar::hidden() } else { ProgressBar::new_spinner() };
     let style = ProgressStyle::with_template("{spinner} {msg}, {elapsed}");

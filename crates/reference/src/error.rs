@@ -1,4 +1,4 @@
-//! What can go wrong.
+//! Errors of a reference.
 
 use mechanics::StartError;
 use symbolic::CompileError;

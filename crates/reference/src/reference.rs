@@ -213,7 +213,7 @@ impl<'a, T: Wide> Runs<'a, T> {
         self.points(|start, reached| extrapolation::integrate(&mut instant, start, self.times, tolerance, reached))
     }
 
-    /// What a method reaches at each time.
+    /// Results of a method at each time.
     fn points(
         &self,
         method: impl FnOnce((f64, &[T]), Reached<T>) -> Result<(), ReferenceError>,

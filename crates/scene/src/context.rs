@@ -1,4 +1,4 @@
-//! What the parts of the loader share.
+//! Context that the parts of the loader share.
 
 use std::collections::HashMap;
 use std::ops::Range;

@@ -1,4 +1,4 @@
-//! What can be wrong with a scene file, and where.
+//! Errors in scene files, with their places.
 
 use std::fmt;
 use std::ops::Range;
@@ -24,13 +24,13 @@ pub struct SceneError {
     pub source_line: String,
     /// Length of the place in characters, at least 1.
     pub length: usize,
-    /// What is wrong.
+    /// The fault.
     pub kind: Box<SceneErrorKind>,
-    /// What else is wrong, as far as that can be seen, in the order of the file.
+    /// Further faults, as far as the file could be read, in its order.
     pub also: Vec<SceneError>,
 }
 
-/// What is wrong with a scene.
+/// A fault of a scene.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 #[expect(missing_docs, reason = "the messages say what fields are")]

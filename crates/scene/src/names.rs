@@ -9,7 +9,7 @@ use symbolic::{Expr, Graph, ParseError, ParseErrorKind, Scope, Symbol, Value};
 use super::section::{Source, Text};
 use crate::{NameFault, SceneError, SceneErrorKind, Unavailable};
 
-/// What a name stands for.
+/// The meaning of a name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Role {
     Time,

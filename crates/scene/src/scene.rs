@@ -1,4 +1,4 @@
-//! What a scene is.
+//! A scene: system, start, removals, duration.
 
 use mechanics::{Completion, Removal, State, System, View};
 use symbolic::Expr;
@@ -28,11 +28,11 @@ pub struct Scene {
     pub duration: f64,
     /// What columns of films show.
     pub film: Vec<Filmed>,
-    /// What is drawn; without bodies where the file does not say.
+    /// The drawing; without bodies where the file has no `[view]`.
     pub view: View,
 }
 
-/// What a column of a film shows.
+/// The quantity in a column of a film.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Filmed {
     /// Name of the column.

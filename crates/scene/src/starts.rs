@@ -7,7 +7,7 @@ use super::section::suggestion;
 use super::start::rate_names;
 use crate::{Scene, SceneError, SceneErrorKind};
 
-/// What a scene starts from with other numbers in some places.
+/// Starts of a scene with some numbers replaced.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Start {
     /// `(t₀, q₀, v₀)`, on the constraint.

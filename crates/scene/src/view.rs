@@ -8,7 +8,7 @@ use super::names::check_symbols;
 use super::section::{Entry, Section, Value};
 use crate::{SceneError, SceneErrorKind, Unavailable, format};
 
-/// How far `R Rᵀ` may be from the unit matrix at the start.
+/// Tolerance of `R Rᵀ = 1` at the start.
 const LIMIT: f64 = 1e-9;
 
 /// All bodies, in a copy of the system's graph: no equation is to depend on what is drawn.

@@ -30,7 +30,7 @@ use symbolic::CompileError;
 
 /// A motion that is drawn.
 pub struct Drawn<'a, E> {
-    /// What the legend says.
+    /// Label in the legend.
     pub label: String,
     /// Colour, and how the path is dashed.
     pub style: Style,

@@ -1,13 +1,14 @@
-//! The deliberately wrong formulation, a control of the harness itself.
+//! A deliberately wrong formulation, as a negative control of the tests.
 //!
-//! Lindelöf's mistake of 1895: put the constraint into the Lagrangian and take Lagrange's equations of that,
+//! Lindelöf's mistake of 1895: substitute the constraint into the Lagrangian and take Lagrange's equations of
+//! the result,
 //!
 //! ```text
 //! L̃(u̇, u, w, t) = L with q, q̇ replaced by the removal,     d/dt ∂L̃/∂u̇ − ∂L̃/∂u = 0 ,     ẇ = B ,
 //! ```
 //!
 //! as if `w` did not depend on the variation of `u`. It is right for integrable constraints in Chaplygin form
-//! (`w` in neither `L` nor `B`), and wrong nearly everywhere else. A harness that does not notice is broken.
+//! (`w` in neither `L` nor `B`), and wrong nearly everywhere else. A test that does not notice is broken.
 
 use deltaq::{Choice, Run, Settings, setting, solve};
 use equations::{Block, Derivation, DerivationError, Equations, Formulation, Needs, Role, StateVariable, Statement};

@@ -71,7 +71,7 @@ fn observed(mut case: Case, theorem: u8, what: &str) -> Option<f64> {
     case.found.observations.iter().find(|o| o.what == what).map(|o| o.value)
 }
 
-/// Holds what is found, of something that is off by so much, against `limit` from both sides.
+/// Compares findings for errors below and above `limit` with the expected words.
 fn on_both_sides(what: &str, limit: f64, found: impl Fn(f64) -> Finding) {
     for (part, word) in SIDES {
         let f = found(part * limit);

@@ -82,7 +82,7 @@ pub fn found_out(
     let flagged = gap.certain_from.is_some();
     let [looser, kept] = referee;
     let last = kept.end().min(looser.end());
-    // Maggi's motion is another one than the control's; so much that it had to be flagged; and it is not
+    // Maggi's motion is another one than the control's; by enough that it had to be flagged; and it is not
     // another one where it is flagged, though that would be seen
     let (mut apart, mut missed, mut unfounded) = (false, false, false);
     let mut error = 0.0_f64;

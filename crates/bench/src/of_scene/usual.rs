@@ -1,4 +1,4 @@
-//! What one gets who gives nothing but a tolerance.
+//! The default run: only the tolerance is given.
 
 use deltaq::{Choice, Setting, Settings, error_estimate, solve_from};
 use integrate::Method;
@@ -19,7 +19,7 @@ pub struct Usual {
     pub seconds: f64,
     /// Largest distance of the motion from the reference, in the kinetic metric.
     pub error: f64,
-    /// What it gives as its error.
+    /// Its own error estimate.
     pub estimate: f64,
 }
 

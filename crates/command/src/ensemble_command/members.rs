@@ -1,4 +1,4 @@
-//! What the members of an ensemble differ by: a file, ranges, or both.
+//! Members of an ensemble, from a file, from ranges, or from both.
 
 use std::path::Path;
 

@@ -1,4 +1,4 @@
-//! What an earlier call has left of a table of members.
+//! Continuation of an interrupted table of members.
 
 use anyhow::Result;
 use program::Lines;

@@ -1,4 +1,4 @@
-//! What is given of a start, and what was made of it.
+//! Given start data, and the start completed from them.
 
 use std::collections::HashMap;
 
@@ -6,7 +6,7 @@ use symbolic::{Expr, Symbol};
 
 use crate::Removal;
 
-/// What a scene says about the start.
+/// Start data of a scene.
 #[derive(Clone, Debug, Default)]
 pub struct StartData<'a> {
     /// `t₀`.
@@ -25,7 +25,7 @@ pub struct StartData<'a> {
     pub removal: Option<&'a Removal>,
 }
 
-/// What is given of starts that differ by numbers.
+/// Start data of starts that differ by numbers.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct StartShape<'a> {
     /// Symbols of [`StartData::given`].

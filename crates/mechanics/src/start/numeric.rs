@@ -162,7 +162,7 @@ pub(super) struct Residuals {
     count: usize,
 }
 
-/// What is left of a condition at a state.
+/// The residual of a condition at a state.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Residual {
     pub(super) value: f64,

@@ -28,7 +28,7 @@ pub(super) struct VelocityProgram {
     first_own: usize,
 }
 
-/// What was found with some conditions.
+/// Velocities found from some conditions.
 pub(super) struct Attempt {
     /// The first solution, or the nearest to one.
     pub(super) state: State,
