@@ -8,8 +8,8 @@ use crate::metric::subtract;
 
 /// A state below this fraction of the size from the energy is round-off.
 const NO_SIZE: f64 = 1e-14;
-/// A size over 1, and over this fraction of the size from the energy, is not used: runs may be long. This
-/// fraction of the displacement that constant forces would cause within the run counts as energy.
+/// Sizes are limited to 1, or to this fraction of the size from the energy if that is larger: runs may be
+/// long. This fraction of the speed that a constant acceleration gives within the run counts as speed.
 const LARGE: f64 = 1e-5;
 /// States are displaced by this fraction of their size to see what depends on them; states without a size, by
 /// `LEAST` and then by larger and larger amounts until something does.

@@ -10,7 +10,7 @@ use crate::point::{COORDINATES, Point, VELOCITIES, in_quasi_velocities};
 use crate::spectrum::sort;
 use crate::{Block, Chain, Eigenvalue, LinearError, Spectrum};
 
-/// A cyclic coordinate: no rate depends on it.
+/// A coordinate on which no rate depends.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Carried {
     /// Its name.
