@@ -116,7 +116,7 @@ pub struct Question<'a> {
     constants: Vec<f64>,
     /// Names of the coordinates.
     pub(crate) names: Vec<String>,
-    /// What `L`, `f` and `Q` divide by.
+    /// Divisors in `L`, `f` and `Q`.
     pub(crate) denominators: Program,
     pub(crate) divisors: Vec<String>,
 }

@@ -19,7 +19,7 @@ use crate::{CHETAEV, Choice, LeadingTerm, Metric, SolveError, VAKONOMIC, choices
 pub struct Membership {
     /// The set in floating point, with the least mismatch of accelerations ρ and its noise.
     pub decision: Decision,
-    /// What the Taylor coefficients of the mismatch prove.
+    /// The proof by Taylor coefficients of the mismatch.
     pub proof: Proof,
     /// `c = φ(q, v)` for every start, where that was found; it says whether it is proved.
     pub section: Option<Section>,
@@ -28,7 +28,7 @@ pub struct Membership {
     pub implied: Option<f64>,
 }
 
-/// What is known of the set.
+/// The answer on the set of constants.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Answer {
     /// Empty: at this order a Taylor coefficient of the mismatch is not zero, for any constants.
@@ -43,11 +43,11 @@ pub enum Answer {
     },
     /// It is not empty: an identity shows it, checked symbolically.
     SomeProved,
-    /// It is not empty, as far as it was looked at.
+    /// It is not empty, as far as it was checked.
     Some {
         /// Taylor coefficients agree up to this order; `None` where there are none.
         order: Option<usize>,
-        /// Whether ranks of these, modulo two primes, grow no more. That is no proof.
+        /// Whether the ranks of these, modulo two primes, have stopped growing. That is no proof.
         settled: bool,
     },
     /// Round-off hides it, or proof and numbers contradict each other ([`Membership::contradiction`]).

@@ -33,11 +33,11 @@ pub struct Pair {
 
 /// Whether one motion belongs to the family of another formulation.
 pub struct Decided {
-    /// Index of the run whose constants are asked for.
+    /// Index of the run whose constants are unknown.
     pub family: usize,
-    /// Index of the run that is to be met.
+    /// Index of the run whose motion is the curve.
     pub curve: usize,
-    /// What was decided, or why it cannot be.
+    /// The decision, or why it is impossible.
     pub outcome: Result<Membership, SolveError>,
 }
 

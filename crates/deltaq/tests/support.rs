@@ -1,4 +1,4 @@
-//! What several subjects ask: scenes, choices, members, and where motions end by every road.
+//! Common parts of the tests: scenes, choices, members, and ends of motions by every way of integration.
 
 use deltaq::{
     Choice, Comparison, Ensemble, EnsembleOptions, MemberMotion, Settings, choices, compare_unfitted, error_estimate,

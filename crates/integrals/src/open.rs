@@ -55,7 +55,7 @@ pub enum Open {
     /// Coefficients are free at the last weight: what is left bounds nothing.
     #[error("{free} coefficients are free still at order {order}, the highest that was looked at: there is no bound")]
     Free { order: usize, free: usize },
-    /// Two roads do not agree: a fault of the program.
+    /// Two methods do not agree: a fault of the program.
     #[error("a contradiction, please report it: {0}")]
     Contradiction(String),
     /// Something else, in words.

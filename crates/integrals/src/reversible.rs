@@ -75,7 +75,7 @@ impl Found {
     }
 }
 
-/// The answers of the road without an ansatz.
+/// The answers of the method without an ansatz.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Reversed {
     /// Invariant measures.

@@ -76,10 +76,10 @@ const EXPLAINED: [[&str; 4]; 2] = [
     ],
 ];
 
-/// Faults tried on one road, of those of one place; `FAULTS_A_PLACE=N` tries more, or all.
+/// Number of faults per place that are tried on one derivation path; `FAULTS_A_PLACE=N` tries more, or all.
 const A_PLACE: usize = 6;
 
-/// A road that is yet to be taken.
+/// A derivation path that is still to be tried.
 pub struct Way<'a> {
     pub scene: &'a Scene,
     pub guards: Guards,
@@ -119,7 +119,7 @@ fn words((at, what): &Place) -> String {
     format!("{at} {what}: {}", line(at))
 }
 
-/// A fault, on which road it was put, and what became of it.
+/// A fault, its derivation path, and the outcome.
 struct Fault {
     road: String,
     formulation: &'static Formulation,

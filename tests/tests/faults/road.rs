@@ -1,4 +1,4 @@
-//! Roads from a system to what is handed over, and who judges them.
+//! Derivation paths from a system to its equations, and their judges.
 
 use deltaq::FORMS;
 use equations::{Derivation, Formulation, Plan};

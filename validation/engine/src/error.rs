@@ -1,4 +1,4 @@
-//! What can go wrong.
+//! Errors of a run.
 
 use catalogue::NotFound;
 use deltaq::SolveError;

@@ -1,4 +1,4 @@
-//! What the engine's motion tends to as its time step shrinks.
+//! The limit of the engine's motion as its time step shrinks.
 
 use deltaq::{CHETAEV, Ending, Settings, VAKONOMIC_COSTATE, choices, solve_choice};
 use scene::Scene;
@@ -185,7 +185,7 @@ impl Study {
         self.targets.iter().map(|target| distance(poses, &target.poses, gyration) / self.scale).collect()
     }
 
-    /// What the runs show.
+    /// The result of the runs.
     pub fn finding(&self) -> Finding {
         let distances = |levels: &[Level]| levels.iter().map(|level| level.distances[0]).collect::<Vec<f64>>();
         let extrapolated = |levels: &[Level]| {

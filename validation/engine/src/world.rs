@@ -32,7 +32,7 @@ impl Contacts {
     pub const YIELDING: Contacts = Contacts::Stiff { frequency: 1e6 };
 }
 
-/// What is wanted of a run.
+/// Parameters of a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Run {
     /// How contacts are held.

@@ -63,7 +63,7 @@ pub struct Case {
     pub shortened: Option<String>,
     /// Gaps by round-off of data: `10² ε κ`, `κ` the condition of the saddle-point matrix at the start.
     pub floor: f64,
-    /// What was found so far.
+    /// The findings so far.
     pub found: Findings,
     /// The formulation of the motion that is planted in the vakonomic family.
     pub planted: &'static Formulation,

@@ -1,18 +1,18 @@
-//! What is said of a claim on one system.
+//! The finding on a claim for one system.
 
 use std::fmt;
 
 use serde::{Deserialize, Serialize};
 
-/// The word on a claim.
+/// The verdict on a claim.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Word {
-    /// It holds, as far as the error estimates can tell.
+    /// It holds within the error estimates.
     Holds,
     /// It fails by more than the errors explain.
     Fails,
-    /// The errors are too large to tell, or a motion could not be computed.
+    /// The errors are too large to decide, or a motion could not be computed.
     Undecided,
 }
 
@@ -33,11 +33,11 @@ pub struct Finding {
     pub theorem: u8,
     /// The claim.
     pub claim: &'static str,
-    /// The word.
+    /// The verdict.
     pub word: Word,
-    /// What was measured.
+    /// The measured number.
     pub figure: f64,
-    /// What it must not pass.
+    /// Its limit.
     pub limit: f64,
     /// Why it is undecided, or what else to say.
     pub note: String,

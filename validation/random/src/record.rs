@@ -1,4 +1,4 @@
-//! What a bulk run keeps of each system, and what it adds up to.
+//! Records of a bulk run, one per system, and their summary.
 
 use std::collections::BTreeMap;
 use std::time::Instant;
@@ -179,7 +179,7 @@ impl Count {
     }
 }
 
-/// What a bulk run adds up to.
+/// The summary of a bulk run.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Summary {
     /// Number of systems.

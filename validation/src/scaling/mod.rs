@@ -46,7 +46,7 @@ const TOLERANCE: f64 = 1e-10;
 /// Limit on the steps of one run: a motion that runs into a singularity ends there.
 const STEPS: usize = 20_000;
 
-/// How far measurements go.
+/// Limits of the measurements.
 #[derive(Clone, Copy, Debug)]
 pub struct Limits {
     /// Longest train.
@@ -166,7 +166,7 @@ pub fn counts(
     Ok((derived.ready.equations.graph.nodes(), derived.ready.compiled.cost()[1].operations()))
 }
 
-/// What a derivation comes to. The removal's expressions live in the graph of `system`.
+/// The result of a derivation. The removal's expressions live in the graph of `system`.
 struct Derived {
     system: System,
     ready: Prepared,

@@ -79,7 +79,7 @@ impl Verdict {
 /// Part of the run for the first errors: a step of length 10⁻⁶ has no distance of its own worth the name.
 const FIRST_PART: f64 = 0.1;
 
-/// What is known of a motion at one time; lengths in the kinetic metric, or of one coordinate or multiplier.
+/// The reference at one time; lengths in the kinetic metric, or of one coordinate or multiplier.
 struct Sample {
     t: f64,
     error: f64,
@@ -89,7 +89,7 @@ struct Sample {
     distance: f64,
 }
 
-/// What is asked of a motion.
+/// The requirements on a motion.
 #[derive(Clone, Copy, Debug)]
 pub struct Allowance {
     /// Relative errors under this are passed over.

@@ -73,14 +73,14 @@ pub struct Case {
     pub questions: fn() -> Vec<Question>,
 }
 
-/// What the page says of a case.
+/// Texts of a case on the page.
 #[derive(Deserialize)]
 pub struct Texts {
-    /// What is made hard, and what could go wrong.
+    /// The difficulty, and the possible failure.
     pub about: String,
-    /// What the answers are compared with.
+    /// The reference of the answers.
     pub reference: String,
-    /// What the points are values of.
+    /// The quantity that differs from point to point.
     pub variable: String,
 }
 
@@ -111,7 +111,7 @@ pub struct Question {
     pub formulation: String,
     /// The system and its equations, or why there are none.
     pub subject: Box<dyn Fn() -> Result<Subject, String> + Send + Sync>,
-    /// What is known of the motion.
+    /// The reference of the motion.
     pub reference: Reference,
     /// Number of coordinates that are compared, from the first on.
     pub compared: usize,

@@ -1,4 +1,4 @@
-//! What a motion should have been: closed forms, and equations derived by hand in other variables.
+//! References of motions: closed forms, and equations derived by hand in other variables.
 
 use deltaq::{Choice, Ending, Motion, Setting, Settings, derive_at, solve};
 use equations::Formulation;
@@ -18,7 +18,7 @@ pub type Reading = Box<dyn Fn(f64, &[f64]) -> Vec<f64> + Send + Sync>;
 /// A system and its start.
 pub type Posed = Box<dyn Fn() -> Result<(System, State), String> + Send + Sync>;
 
-/// A road to the same motion that does not share the failure of what it judges.
+/// An independent derivation of the same motion, which does not share the failure that it judges.
 pub enum Reference {
     /// The motion in closed form.
     Closed(Road),

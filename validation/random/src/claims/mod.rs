@@ -41,7 +41,7 @@ pub enum CheckError {
 pub struct Check {
     /// Number of the theorem; 0 for what must hold within one formulation.
     pub theorem: u8,
-    /// What it says, in a line.
+    /// The claim in one line.
     pub title: &'static str,
     /// Whether it takes long and is run on a part of the systems only.
     pub thorough: bool,
