@@ -5,7 +5,7 @@ import { execFileSync } from "node:child_process";
 const shown = (page, panel) => page.waitForSelector(`#${panel}[aria-busy=false] table`, { timeout: 60000 });
 const cells = (page, panel) => page.$$eval(`#${panel} details[open] tbody tr, #${panel} .said tr`, (rows) => rows.map((row) => [...row.cells].map(({ textContent }) => textContent)));
 
-// Lines of `deltaq integrals`, of which the last digits of a drift are those of one machine.
+// Lines of `deltaq integrals`; the last digits of a drift depend on the machine.
 function native(deltaq, degree) {
   const lines = execFileSync(deltaq, ["integrals", "sledge", "--degree", String(degree)], { encoding: "utf8" }).trim().split("\n").slice(2);
   return lines.map((line) => [line.slice(0, 14).trim(), line.slice(14)]);

@@ -1,4 +1,5 @@
-// A camera that goes with a body, differences drawn larger, curves of which a part is seen: what is drawn is what was computed.
+// A camera that goes with a body, differences drawn larger, zoomed curves: the drawing shows what was
+// computed.
 
 import { join } from "node:path";
 
@@ -28,7 +29,8 @@ export async function camera({ open, leave, link, must, pictures }) {
   }
 }
 
-// Differences in place and in turn are so many times as large; those of the first motion are none.
+// Differences in position and attitude are magnified by the chosen factor; those of the first motion are
+// zero.
 export async function differences({ open, leave, link, must, pictures }) {
   const page = await open(link({ scene: "three-cylinders", time: 0.5 }));
   const drawn = () => page.evaluate(() => {

@@ -9,7 +9,8 @@ import { join } from "node:path";
 export const STILL = [{ name: "prefers-reduced-motion", value: "reduce" }];
 
 export class Pages {
-  // `complain` takes what a page says that it should not. What Chromium is told about networks and looks, Firefox is not.
+  // `complain` receives messages that a page should not print. Settings of network and appearance go to
+  // Chromium only.
   constructor(browser, isChromium, complain) {
     Object.assign(this, { browser, isChromium, complain, left: new Map(), used: [] });
   }

@@ -25,7 +25,7 @@ import { tasks } from "./tasks.test.mjs";
 import { tour } from "./tour.test.mjs";
 
 const [executablePath, deltaq, file, pictures, what] = process.argv.slice(2);
-// Milliseconds may be BUSY times as many, as other things may run beside; the figures are told.
+// Times may be BUSY times as long, as other programs may be running; the measured times are printed.
 const BUSY = 3;
 // Rounds of slider moves within all checks, and seconds of frames when rounds are asked for.
 const [ROUNDS, SECONDS] = [6, 300];
@@ -49,7 +49,7 @@ const userDataDir = mkdtempSync(join(tmpdir(), "explore-"));
 mkdirSync(pictures, { recursive: true });
 const flags = ["--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-background-networking",
   "--disable-component-update", "--disable-sync"];
-// what Chromium is told about networks, looks and fingers, Firefox is not
+// flags for network, appearance and touch go to Chromium only, not to Firefox
 const isChromium = !/firefox/.test(executablePath);
 const browser = await puppeteer.launch({ executablePath, headless: true, userDataDir, ...(isChromium ? { args: flags } : { browser: "firefox" }) });
 const browserName = browser.version();
@@ -255,7 +255,8 @@ async function looks() {
 const fresh = () => browser.createBrowserContext();
 
 const tools = { open, leave, look, forget, fresh, link, must, after, choose, slide, type, said, OWN, url, pictures, deltaq };
-// what asks for nothing that only Chromium is told; every scene is Chromium's, of which eachBody is a part
+// tests without settings that only Chromium has; all scenes run in Chromium only, and here eachBody for a
+// part of them
 const ELSEWHERE = ["eachBody", "costates", "cleared", "refusals", "overlaps", "wayBack", "badLinks", "table", "tabs", "forces", "down", "camera", "differences",
   "runaway", "logarithms", "hand", "rolling", "halted"];
 // one that breaks off does not hide what the others find
