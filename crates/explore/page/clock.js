@@ -32,7 +32,7 @@ export class Clock {
     this.show(this.t);
   }
 
-  // So many hundredths of the run.
+  // Moves the time by this number of hundredths of the run.
   step(hundredths) {
     this.pause();
     this.go(this.t + ((this.end - this.start) * hundredths) / 100);

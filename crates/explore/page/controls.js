@@ -8,7 +8,7 @@ const HEADINGS = {
 };
 
 export class Controls {
-  // `set` is told every change: numbers by name, or null for that of the text.
+  // `set` is called with every change: numbers by name, or null for the number of the text.
   constructor(element, set) {
     Object.assign(this, { element, set, rows: new Map() });
   }

@@ -6,14 +6,16 @@ import { ink } from "./look.js";
 
 const NAMES = { coordinate: "", velocity: "", multiplier: "multipliers", invariant: "should be constant: ", observable: "" };
 
-// Curves that go over so many times the height of the others are cut, and those that are so much steeper in a small part.
+// Curves over RUNAWAY times as high as the others are cut, and so are those whose range is RUNAWAY times that
+// without the PART of lowest and highest values.
 const RUNAWAY = 8;
 const PART = 0.03;
 // The largest magnification of time.
 const LARGEST = 200;
 
 export class Curves {
-  // `go` is told a time that was pointed at; `note` says what is cut, `whole` is pressed to see all.
+  // `go` is called with a time that was pointed at; `note` shows what is cut off, the button `whole` shows
+  // everything.
   constructor({ place, select, note, whole }, go) {
     Object.assign(this, { place, select, note, whole, go, window: null });
     whole.addEventListener("click", () => {
@@ -150,7 +152,7 @@ export class Curves {
     return [low - room, high + room];
   }
 
-  // So many times as large, about a place of the axis, or about now.
+  // Magnifies time by `factor`, about a point of the axis, or about the current time.
   magnify(factor, at = this.along(this.t)) {
     const [first, last] = this.ends;
     const [from, to] = this.span();

@@ -1,9 +1,9 @@
 // The program in workers: one for motions, one for what takes longer, so that sliders never wait for it.
 
-// After so many milliseconds a question is given up for a newer one of its kind.
+// Milliseconds after which a question is cancelled for a newer one of its kind.
 const PATIENCE = 3000;
 
-// What was zipped into the page, from the base64 of its bytes.
+// Unzips data of the page from the base64 of its bytes.
 async function unzipped(base64, type) {
   const { body } = await fetch(`data:application/octet-stream;base64,${base64.trim()}`);
   return new Response(body.pipeThrough(new DecompressionStream("gzip")), { headers: { "content-type": type } });

@@ -9,9 +9,10 @@ const KINDS = [["place", "place of the body"], ["heading", "where the body point
 const HINT = "At the start, drag the rings – place, heading, velocity – or use arrow keys.";
 // Pixels of an arrow key, and with shift.
 const STEPS = [10, 1];
-// What is not meant to move counts as much less as this.
+// Weight of numbers that should not move.
 const ASIDE = 0.03;
-// Lengths of what is pointed with, as parts of the picture's smaller side, and at least so many pixels: rings lie apart.
+// Length of the handles, as a fraction of the picture's smaller side, and its least value in pixels, so that
+// rings do not overlap.
 const ARM = 0.12;
 const APART = 48;
 // Where each stands in what the program says; what is smaller is no derivative, and no change.

@@ -10,7 +10,7 @@ const OBLIQUE = [0.4, 0.5];
 // A motion widens the frame at most this many times.
 const WIDENED = 2;
 const MARGIN = 18;
-// What goes with a body is so many times as large as that.
+// Size of the frame that follows a body, over the size of the body.
 const ROUND = 2.5;
 
 const still = matchMedia("(prefers-reduced-motion: reduce)");

@@ -1,7 +1,7 @@
 // The text of a scene, with its faults marked.
 
 export class Text {
-  // `changed` is told the text a little after it was typed.
+  // `changed` is called with the text shortly after typing.
   constructor({ area, marks, faults }, changed) {
     Object.assign(this, { area, marks, faults });
     let timer;

@@ -5,7 +5,7 @@ let program;
 function start(module) {
   const imports = {};
   for (const { module: from, name } of WebAssembly.Module.imports(module)) {
-    // what describes the exports to generators of glue, of which none is needed: only numbers pass
+    // imports that describe the exports to generators of glue code; none is needed, as only numbers pass
     (imports[from] ??= {})[name] = () => {
       throw new Error(`${name} is not for this page`);
     };

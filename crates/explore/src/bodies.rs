@@ -1,4 +1,4 @@
-//! What is drawn.
+//! Bodies that are drawn.
 
 use mechanics::{Body, Kind, Pose, Poses, Shape, View};
 use scene::Scene;

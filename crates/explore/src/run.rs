@@ -23,7 +23,7 @@ pub(crate) fn settings(question: &Question) -> Settings {
     }
 }
 
-/// What was integrated.
+/// The result of an integration.
 pub(crate) enum Run {
     /// Twice, from chart to chart.
     Motion(Box<Motion>),
@@ -72,7 +72,7 @@ impl Run {
         }
     }
 
-    /// The last time at which it can be read off.
+    /// The last time at which outputs can be evaluated.
     pub(crate) fn end(&self) -> f64 {
         match self {
             Run::Motion(motion) => motion.end(),
@@ -80,7 +80,7 @@ impl Run {
         }
     }
 
-    /// What is read off at `t`.
+    /// Outputs at `t`.
     pub(crate) fn at(&mut self, t: f64) -> Result<Outputs, SolveError> {
         match self {
             Run::Motion(motion) => motion.at(t),
