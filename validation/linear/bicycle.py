@@ -1,4 +1,4 @@
-"""Eigenvalues of the benchmark bicycle, upright and straight, in 50 digits: writes bicycle.csv beside this file.
+"""Eigenvalues of the benchmark bicycle, upright and straight, in 50 digits: writes bicycle.csv beside this file, or the file that is named.
 
 The linear equations M q'' + v C1 q' + (g K0 + v^2 K2) q = 0, q = (lean, steer), are put together from the 25
 parameters by the formulas of appendix A of Meijaard, Papadopoulos, Ruina and Schwab 2007. Nothing is taken
@@ -6,6 +6,7 @@ from the scene but its numbers: L and the constraints are not read.
 """
 
 import csv
+import sys
 import tomllib
 from pathlib import Path
 
@@ -13,7 +14,7 @@ from mpmath import cos, det, matrix, mp, mpf, polyroots, sin
 
 mp.dps = 50
 HERE = Path(__file__).resolve().parent
-SCENE = HERE.parent / "scenes" / "bicycle.toml"
+SCENE = HERE.parents[1] / "crates/catalogue/scenes/bicycle.toml"
 # as the paper prints them
 PRINTED = {
     "M": (80.81722, 2.31941332208709, 2.31941332208709, 0.29784188199686),
@@ -88,13 +89,13 @@ def hurwitz(a):
     return a[1] * a[2] * a[3] - a[0] * a[3] ** 2 - a[1] ** 2 * a[4]
 
 
-def main():
+def main(file=HERE / "bicycle.csv"):
     p = parameters()
     forms = canonical(p)
     for name, printed in PRINTED.items():
         assert all(abs(x - y) < 1e-12 for x, y in zip(forms[name], printed)), (name, forms[name])
     assert det(forms["M"]) > 0
-    with (HERE / "bicycle.csv").open("w", newline="") as file:
+    with Path(file).open("w", newline="") as file:
         rows = csv.writer(file, lineterminator="\n")
         rows.writerow(["v", "real", "imaginary"])
         for v in range(11):
@@ -108,4 +109,4 @@ def main():
 
 
 if __name__ == "__main__":
-    main()
+    main(*sys.argv[1:])
