@@ -115,7 +115,11 @@ pub fn error_estimates(
             differences.add_terms(motion.terms_of_multipliers(motion.start(), t));
         }
         if place % every == 0 && !multipliers.is_empty() && motion.charts.is_empty() {
-            differences.add_round_off(motion.terms_of_multipliers(t, t));
+            let mut terms = motion.terms_of_multipliers(t, t);
+            if differences.shows(terms.as_deref()) {
+                terms = motion.adjoint_terms_of_multipliers(t);
+            }
+            differences.add_round_off(terms);
         }
         if let Some(i) = asked {
             so_far[i] = differences.estimate(&metric);
@@ -210,6 +214,12 @@ impl<'a> Differences<'a> {
     /// The sum of terms behind each multiplier at an instant.
     pub(crate) fn add_terms(&mut self, terms: Option<Vec<f64>>) {
         self.terms.iter_mut().zip(terms.into_iter().flatten()).for_each(|(most, term)| *most = most.max(term));
+    }
+
+    /// Whether the round-off of these terms is more than the last digits of a multiplier.
+    pub(crate) fn shows(&self, terms: Option<&[f64]>) -> bool {
+        let mut each = terms.into_iter().flatten().zip(&self.sizes_of_multipliers);
+        each.any(|(term, size)| ROUNDED * term > NUMBERS * size)
     }
 
     /// The same, of what is added up at the instant itself: round-off that both runs have.

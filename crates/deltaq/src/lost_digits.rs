@@ -52,6 +52,13 @@ pub(crate) fn look(compiled: &mut Compiled, t: f64, y: &[f64]) -> Option<Looked>
     Some((t, y.to_vec(), terms))
 }
 
+/// The same sums by adjoints, where they can be evaluated: along a chain of bodies paths cancel.
+pub(crate) fn look_closer(compiled: &mut Compiled, (t, y, terms): &mut Looked) {
+    if let Ok(closer) = compiled.adjoint_terms_of_rates(*t, y) {
+        terms.iter_mut().zip(closer).for_each(|(term, closer)| *term = term.min(closer));
+    }
+}
+
 /// `−∂ẏ_i/∂y_i` in the direction of time at an instant, where it is positive and no round-off, or else 0.
 fn decay(rates: &mut Rates, direction: f64, (t, y, terms): &Looked, sizes: &[f64]) -> Option<Vec<f64>> {
     let (mut here, mut there) = (vec![0.0; y.len()], vec![0.0; y.len()]);

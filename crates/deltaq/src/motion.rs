@@ -68,7 +68,7 @@ pub struct Motion {
     /// Where pivots became small and others took over. Outputs stay those of the first chart.
     pub charts: Vec<ChartChange>,
     end: f64,
-    compiled: Compiled,
+    pub(crate) compiled: Compiled,
     pub(crate) kept: Trajectory,
     pub(crate) looser: Trajectory,
     /// The times at which both runs are known, where they are not at all times; besides `end`.

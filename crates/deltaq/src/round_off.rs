@@ -4,7 +4,7 @@ use integrate::Options;
 
 use crate::charts::{self, Course};
 use crate::disturbed::disturbed;
-use crate::lost_digits::{Looked, RoundOff, is_small, largest};
+use crate::lost_digits::{Looked, RoundOff, is_small, largest, look_closer};
 use crate::trajectory::Trajectory;
 use crate::{Motion, Prepared, Setting, Settings, SolveError};
 
@@ -25,11 +25,16 @@ impl Motion {
     /// # Errors
     /// [`SolveError`] where the equations cannot be compiled again.
     pub(crate) fn count_round_off(&mut self, setting: Setting, settings: &Settings) -> Result<(), SolveError> {
-        let (looked, looser, sizes) = self.looked_at(FEW);
+        let (mut looked, looser, sizes) = self.looked_at(FEW);
         if is_small(&looked, &looser, &sizes, BETWEEN) {
             return Ok(());
         }
-        let (looked, looser, sizes) = self.looked_at(STRETCHES);
+        self.look_closer(&mut looked);
+        if is_small(&looked, &looser, &sizes, BETWEEN) {
+            return Ok(());
+        }
+        let (mut looked, looser, sizes) = self.looked_at(STRETCHES);
+        self.look_closer(&mut looked);
         match self.round_off(&looked, &looser, &sizes) {
             RoundOff::Small => {}
             RoundOff::Doubted(doubt) => self.doubt = Some(doubt),
@@ -112,6 +117,22 @@ impl Motion {
         let times = self.grid(stretches).into_iter().map(|t| self.kept_before(start + part * (t - start)));
         let times: Vec<f64> = times.collect();
         times.into_iter().map_while(|t| self.look(t)).collect()
+    }
+
+    /// The sum of terms behind each multiplier at `t` itself, by adjoints.
+    pub(crate) fn adjoint_terms_of_multipliers(&mut self, t: f64) -> Option<Vec<f64>> {
+        let y = self.states_at(t).ok()?;
+        self.compiled.adjoint_terms_of_multipliers(t, t, &y).ok()
+    }
+
+    /// [`look_closer`] at these instants.
+    fn look_closer(&mut self, looked: &mut [Looked]) {
+        for looked in looked {
+            // a state that was read off has the root of the motion behind it
+            if self.states_at(looked.0).is_ok() {
+                look_closer(&mut self.compiled, looked);
+            }
+        }
     }
 
     /// The largest value of each state, or the size by which it was integrated, if that is more.

@@ -58,6 +58,7 @@
 //!
 //! Source of the projection: E. Hairer, C. Lubich, G. Wanner, *Geometric Numerical Integration*, IV.4.
 
+mod adjoint_terms;
 mod blocks;
 mod code;
 mod compiled;

@@ -33,10 +33,11 @@ impl SingularValues {
         }
         let n = matrix.ncols();
         let (mut u, mut v) = (matrix.clone(), DMatrix::identity(n, n));
+        let mut squares: Vec<f64> = u.column_iter().map(|column| column.norm_squared()).collect();
         for _ in 0..SWEEPS {
             let mut turned = false;
             for (i, j) in (0..n).flat_map(|i| (i + 1..n).map(move |j| (i, j))) {
-                let (a, b) = (u.column(i).norm_squared(), u.column(j).norm_squared());
+                let (a, b) = (squares[i], squares[j]);
                 let c = u.column(i).dot(&u.column(j));
                 if c.abs() <= f64::EPSILON * (a * b).sqrt() || c == 0.0 {
                     continue;
@@ -47,10 +48,12 @@ impl SingularValues {
                 let cosine = 1.0 / tangent.hypot(1.0);
                 let sine = cosine * tangent;
                 for m in [&mut u, &mut v] {
-                    let (x, y) = (m.column(i).into_owned(), m.column(j).into_owned());
-                    m.set_column(i, &(&x * cosine - &y * sine));
-                    m.set_column(j, &(x * sine + y * cosine));
+                    let (mut x, mut y) = m.columns_range_pair_mut(i, j);
+                    for (x, y) in x.iter_mut().zip(y.iter_mut()) {
+                        (*x, *y) = (*x * cosine - *y * sine, *x * sine + *y * cosine);
+                    }
                 }
+                (squares[i], squares[j]) = (u.column(i).norm_squared(), u.column(j).norm_squared());
             }
             if !turned {
                 break;

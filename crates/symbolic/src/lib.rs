@@ -102,5 +102,5 @@ pub use series::{
 };
 pub use steep::Steep;
 pub use suggest::nearest;
-pub use tape::{Tape, Workspace};
+pub use tape::{Recorded, Tape, Workspace};
 pub use value::{Scope, Turn, Value};

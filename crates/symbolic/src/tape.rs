@@ -5,6 +5,10 @@ use crate::program::{Id, Program, Value};
 use crate::{Function, Scalar};
 use rustc_hash::FxHashMap;
 
+mod adjoint;
+
+pub use adjoint::Recorded;
+
 /// Index of a register.
 type Register = u32;
 

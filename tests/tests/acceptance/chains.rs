@@ -1,12 +1,16 @@
 //! Chains in few coordinates, by the velocities of their bodies, are the same systems.
 
 use catalogue::trailer::{self, Coordinates};
-use deltaq::{REDUCED_CHETAEV, REDUCED_VAKONOMIC, derive_at};
+use deltaq::{
+    CHETAEV, REDUCED_CHETAEV, REDUCED_VAKONOMIC, Settings, choices, derive_at, error_estimate, setting, solve_choice,
+};
 use equations::Compiled;
 use mechanics::ConstantsRule;
+use reference::{Question, Wide, reference};
 use scene::Scene;
+use symbolic::Scalar;
 
-use super::support::{at, chetaev, choice, common_times, must, some_multipliers};
+use super::support::{at, chetaev, choice, common_times, equations, must, some_multipliers};
 use super::{reduced_form, reduced_vakonomic};
 
 fn train(trailers: usize, coordinates: Coordinates) -> Scene {
@@ -68,4 +72,26 @@ fn a_train_costs_the_same_in_few_coordinates() {
         println!("{form:?}: {many} operations, {few} in few coordinates");
         assert!(2 * few <= 3 * many, "{form:?}: {few} operations over {many}");
     }
+}
+
+/// Of paths from a number to a velocity of the n-th trailer there are 2ⁿ, which cancel.
+#[test]
+fn a_long_train_is_trusted_and_as_good_as_it_says() {
+    let mut scene = train(20, Coordinates::Maximal);
+    scene.duration = 2.0;
+    let mut motion = solve_choice(&scene, &choices(&scene)[0], &Settings::default()).expect("a motion");
+    let estimate = error_estimate(&mut motion, setting(&scene)).expect("its start");
+    assert_eq!((&motion.doubt, estimate.complaint()), (&None, None));
+    let end = at(&mut motion, 2.0);
+    // the form with multipliers, in double-double arithmetic
+    let equations = equations(&scene.system, CHETAEV, None);
+    let question = Question { system: &scene.system, start: &scene.start, equations: &equations, constants: &[] };
+    let truth = reference(&question, &[2.0], 1e-20).expect("in double-double arithmetic");
+    must("20 trailers: estimate", estimate.absolute, 1e-8);
+    must("20 trailers: error over its estimate", truth.distance(0, &end.coordinates) / estimate.absolute, 1.0);
+    let largest = estimate.multipliers.iter().copied().fold(0.0, f64::max);
+    must("20 trailers: largest estimate of a multiplier", largest, 1e-8);
+    let each = end.multipliers.iter().zip(&truth.points[0].multipliers).zip(&estimate.multipliers);
+    let over = each.map(|((now, right), said)| (*right - Scalar::from_f64(*now)).to_f64().abs() / said.max(1e-14));
+    must("20 trailers: errors of multipliers over their estimates", over.fold(0.0, f64::max), 1.0);
 }

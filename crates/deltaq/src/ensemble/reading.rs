@@ -94,7 +94,11 @@ impl Reader<'_> {
                     differences.add_terms(self.compiled.terms_of_multipliers(member.t, t, y).ok());
                 }
                 if !multipliers.is_empty() && i % every == 0 {
-                    differences.add_round_off(self.compiled.terms_of_multipliers(t, t, y).ok());
+                    let mut terms = self.compiled.terms_of_multipliers(t, t, y).ok();
+                    if differences.shows(terms.as_deref()) {
+                        terms = self.compiled.adjoint_terms_of_multipliers(t, t, y).ok();
+                    }
+                    differences.add_round_off(terms);
                 }
             }
             read.push(now);
@@ -148,8 +152,17 @@ impl Reader<'_> {
         places.dedup();
         let looser = places.iter().map(|&i| subtract(&run.states[i], &run.differences[i]));
         let looser: Vec<Vec<f64>> = std::iter::once(member.y.clone()).chain(looser).collect();
-        let looked = self.looked(member, run, places);
-        if lost_digits::is_small(&looked, &looser, &largest(&looked, vec![0.0; member.y.len()]), 1.0) {
+        let mut looked = self.looked(member, run, places.clone());
+        let none = vec![0.0; member.y.len()];
+        if lost_digits::is_small(&looked, &looser, &largest(&looked, none.clone()), 1.0) {
+            return RoundOff::Small;
+        }
+        let roots = std::iter::once(None).chain(places.into_iter().map(Some));
+        for (looked, root) in looked.iter_mut().zip(roots) {
+            set_root(&mut self.compiled, member, run, root);
+            lost_digits::look_closer(&mut self.compiled, looked);
+        }
+        if lost_digits::is_small(&looked, &looser, &largest(&looked, none), 1.0) {
             return RoundOff::Small;
         }
         let sizes = sized(&mut self.compiled, &mut self.metric, member, sizes);

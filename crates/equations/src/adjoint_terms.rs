@@ -1,0 +1,92 @@
+//! Sums of magnitudes behind rates and multipliers by adjoints.
+//!
+//! [`Compiled::terms_of_rates`] adds up magnitudes of paths from numbers to a rate. Through a chain of n
+//! bodies there are 2ⁿ paths, which cancel. [`symbolic::Recorded`] adds up the paths themselves first, at the
+//! cost of one sweep per eight rates; it is for motions that the cheaper measure does not clear.
+
+use symbolic::{Evaluator, Tape};
+
+use crate::blocks::EvaluationFailure;
+use crate::compiled::Compiled;
+use crate::plan::Plan;
+
+/// Outputs of a tape with factors.
+type Combination = Vec<(usize, f64)>;
+
+impl Compiled {
+    /// [`Compiled::terms_of_rates`] by adjoints, of the evaluation in the plan where that is trusted; of each
+    /// rate the lesser of the two.
+    ///
+    /// # Errors
+    /// As [`Compiled::rates`].
+    pub fn adjoint_terms_of_rates(&mut self, t: f64, y: &[f64]) -> Result<Vec<f64>, EvaluationFailure> {
+        let along_paths = self.terms_of_rates(t, y)?;
+        let sizes = self.adjoint_sizes(t, y, y)?;
+        let mut found = None;
+        if let Some(planned) = &self.planned {
+            let inputs: Vec<f64> = planned.places.iter().map(|&i| self.inputs[i]).collect();
+            let sizes: Vec<f64> = planned.places.iter().map(|&i| sizes[i]).collect();
+            let mut program = Evaluator::new(planned.rates.tape().clone());
+            let values = program.evaluate(&inputs);
+            let is_trusted = !planned.watched || values.last().is_some_and(|&condition| condition <= Plan::LIMIT);
+            found = is_trusted.then(|| magnitudes(planned.rates.tape(), &inputs, &sizes, 0..along_paths.len()));
+        }
+        let found = found.unwrap_or_else(|| magnitudes(self.rates.tape(), &self.inputs, &sizes, 0..along_paths.len()));
+        Ok(lesser(along_paths, found))
+    }
+
+    /// [`Compiled::terms_of_multipliers`] by adjoints, of each multiplier the lesser of the two.
+    ///
+    /// # Errors
+    /// As [`Compiled::rates`].
+    pub fn adjoint_terms_of_multipliers(
+        &mut self,
+        begin: f64,
+        t: f64,
+        y: &[f64],
+    ) -> Result<Vec<f64>, EvaluationFailure> {
+        let along_paths = self.terms_of_multipliers(begin, t, y)?;
+        let rates = self.adjoint_terms_of_rates(t, y)?;
+        let states: Vec<f64> = y.iter().zip(rates).map(|(y, term)| y.abs() + term * (t - begin).abs()).collect();
+        let sizes = self.adjoint_sizes(t, y, &states)?;
+        let first = 2 * self.sizes.coordinates;
+        let found = magnitudes(self.outputs.tape(), &self.inputs, &sizes, first..first + along_paths.len());
+        Ok(lesser(along_paths, found))
+    }
+
+    /// Sizes of `t, y, constants, z`: `states` of `y`; for `z` the effect of round-off in its equations is
+    /// added.
+    fn adjoint_sizes(&mut self, t: f64, y: &[f64], states: &[f64]) -> Result<Vec<f64>, EvaluationFailure> {
+        self.solve_instant(t, y)?;
+        let known = self.sizes.known();
+        let mut sizes: Vec<f64> = self.inputs.iter().map(|x| x.abs()).collect();
+        sizes[1..=y.len()].copy_from_slice(states);
+        for block in &mut self.equations_of_instant {
+            let (n, first) = (block.size, known + block.first);
+            let count = if block.linear { known } else { self.inputs.len() };
+            // R, of a linear block that at z = 0 and ∂R/∂z z
+            let row = |i: usize| -> Combination {
+                let products = (0..n).filter(|_| block.linear).map(|j| (i * n + j, self.inputs[first + j]));
+                products.chain([(n * n + i, 1.0)]).collect()
+            };
+            let rows: Vec<Combination> = (0..n).map(row).collect();
+            let tape = block.program.tape();
+            let terms = tape.record(&self.inputs[..count], &mut tape.workspace()).magnitudes(&rows, &sizes[..count]);
+            for (column, term) in block.inverse().iter().zip(terms) {
+                sizes[first..first + n].iter_mut().zip(column).for_each(|(size, x)| *size += x.abs() * term);
+            }
+        }
+        Ok(sizes)
+    }
+}
+
+fn magnitudes(tape: &Tape, inputs: &[f64], sizes: &[f64], outputs: std::ops::Range<usize>) -> Vec<f64> {
+    let each: Vec<Combination> = outputs.map(|k| vec![(k, 1.0)]).collect();
+    tape.record(inputs, &mut tape.workspace()).magnitudes(&each, sizes)
+}
+
+/// Of each the lesser; what is not finite along paths stays so, and what is NaN by adjoints counts as none.
+fn lesser(along_paths: Vec<f64>, by_adjoints: Vec<f64>) -> Vec<f64> {
+    let both = along_paths.into_iter().zip(by_adjoints);
+    both.map(|(paths, adjoint)| if paths.is_finite() { paths.min(adjoint) } else { paths }).collect()
+}
