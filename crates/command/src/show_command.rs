@@ -8,6 +8,7 @@ use deltaq::{
     derive_in_form, equations_text, forms, integrability, prepare, setting, shared_text, system_text,
 };
 use equations::{Cost, Equations};
+use integrate::Method;
 use mechanics::ConstantsRule;
 use scene::Scene;
 use serde_json::json;
@@ -123,10 +124,13 @@ pub(crate) fn run(arguments: &ShowArguments) -> Result<String> {
 
 /// In which form the equations are evaluated, why, and what that costs.
 fn form(scene: &Scene, equations: Equations, choice: &Choice) -> Result<String> {
-    let ready = match started(scene, equations, choice) {
+    let mut ready = match started(scene, equations, choice) {
         Ok(ready) => ready,
         Err(error) => return Ok(format!("\nNot started: {error}\n")),
     };
+    if ready.method.method == Method::Taylor {
+        ready.complete(Method::Taylor)?;
+    }
     let mut text = "\nEvaluated:\n\n".to_string();
     for words in ready.equations.chosen.iter().chain(&ready.form.why) {
         let _ = writeln!(text, "- {words}");
@@ -147,6 +151,10 @@ fn form(scene: &Scene, equations: Equations, choice: &Choice) -> Result<String> 
         );
     }
     text.push('\n');
+    if let Some((products, terms)) = ready.compiled.cost_of_series() {
+        let _ =
+            writeln!(text, "- each order of a Taylor series in {products} products of series and {terms} linear terms");
+    }
     Ok(text)
 }
 

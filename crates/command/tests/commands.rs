@@ -328,6 +328,15 @@ fn show_says_in_which_form_equations_are_evaluated() {
     {
         assert!(shown.contains(words), "`{words}` is not in {shown}");
     }
+    // sine and cosine of a heading, each times its rate; the speed is constant
+    let folder = tempfile::tempdir().expect("a folder");
+    let blade = folder.path().join("blade.toml");
+    let scene = "title = \"blade\"\n[coordinates]\nx = { start = 0 }\ny = { start = 0 }\nphi = { start = 0 }\n[system]\n\
+                 lagrangian = \"(x'^2 + y'^2 + phi'^2 - phi^2)/2\"\nconstraints = [\"y'*cos(phi) - x'*sin(phi)\"]\n\
+                 [start.velocities]\n\"x'\" = 1\n\"phi'\" = 0.5\n[run]\nduration = 1\n";
+    std::fs::write(&blade, scene).expect("a file");
+    let shown = text(&run(&["show", blade.to_str().expect("UTF-8"), "-f", "chetaev-reduced"]).stdout);
+    assert!(shown.contains("each order of a Taylor series in 2 products of series and"), "{shown}");
     // two roots: Newton's method, and one form only
     let shown = text(&run(&["show", "appell-hamel"]).stdout);
     assert!(

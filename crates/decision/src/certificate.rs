@@ -5,12 +5,14 @@ use std::collections::BTreeSet;
 use serde_json::{Map, Value, json};
 
 use crate::exact::{Echelon, Exact, Jet, Modular, PARTS, TRIED, in_any_field, inverse};
-use crate::family::{CostateRate, inputs};
+use crate::family::CostateRate;
+use crate::flow::inputs;
+use crate::order_by_order::order;
 use crate::plain_scene::{PlainScene, named};
 use crate::program::Program;
 use crate::proof::Question;
 use crate::random_start::at_random;
-use crate::series::{SeriesStart, order};
+use crate::series::SeriesStart;
 use crate::start::ExactStart;
 
 /// A proof that no `μ₀` makes a Chetaev motion vakonomic; `validation/proof/verify.py` checks it.

@@ -7,7 +7,7 @@ use symbolic::{Bounded, Expr, Scalar};
 
 use crate::DecisionError;
 use crate::exact::solve;
-use crate::family::{flow, timeless};
+use crate::flow::{flow, timeless};
 use crate::program::{Evaluator, Program};
 use crate::scales;
 

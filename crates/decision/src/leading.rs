@@ -6,8 +6,9 @@ use symbolic::{Bounded, Scalar};
 
 use crate::decide::{NODES, least, legendre};
 use crate::exact::{FIELDS, Jet, Modular, in_field};
+use crate::order_by_order::order as at_order;
 use crate::proof::Question;
-use crate::series::{MismatchSeries, SeriesStart, order as at_order};
+use crate::series::{MismatchSeries, SeriesStart};
 use crate::start::ExactStart;
 use crate::transport::root_of_mass;
 

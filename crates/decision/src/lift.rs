@@ -6,9 +6,9 @@ use symbolic::{Expr, Scalar, Symbol};
 
 use crate::DecisionError;
 use crate::exact::{Coefficient, Exact, Jet};
-use crate::family::inputs;
+use crate::flow::inputs;
+use crate::order_by_order::{NoSeries, SeriesSolve, order, sound};
 use crate::program::Program;
-use crate::series::{NoSeries, SeriesSolve, order, sound};
 
 /// `u`, `w` that are no coordinates, integrated beside the curve; `u̇`, `ü` by `q̇(u̇, u, w, t) = v` and on.
 #[derive(Clone)]

@@ -6,10 +6,12 @@ use mechanics::{State, System};
 use crate::DecisionError;
 use crate::curve::{Dynamics, Flow};
 use crate::exact::{self, Coefficient, Echelon, FIELDS, Jet, Modular, ORDERS};
-use crate::family::{Family, inputs};
+use crate::family::Family;
+use crate::flow::inputs;
+use crate::order_by_order::NoSeries;
 use crate::program::Program;
 use crate::random_start::at_random;
-use crate::series::{CurveSeries, MismatchSeries, NoSeries, SeriesStart};
+use crate::series::{CurveSeries, MismatchSeries, SeriesStart};
 use crate::start::ExactStart;
 
 /// Seeds of the random starts, one per field: a rank that two of them agree on is the generic one, but for an

@@ -7,7 +7,8 @@ use symbolic::{Expr, Symbol};
 
 use crate::DecisionError;
 use crate::exact::{Echelon, Exact, FIELDS, Jet, Modular, in_field};
-use crate::family::{CostateRate, Family, inputs};
+use crate::family::{CostateRate, Family};
+use crate::flow::inputs;
 use crate::identity::is_identity;
 use crate::program::Program;
 use crate::proof::Question;

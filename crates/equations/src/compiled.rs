@@ -239,6 +239,11 @@ impl Compiled {
         [plain, chosen.unwrap_or(plain)]
     }
 
+    /// Products of series and linear terms per order of [`Compiled::taylor`] in the chosen plan.
+    pub fn cost_of_series(&self) -> Option<(usize, usize)> {
+        Some(self.series.as_ref()?.work())
+    }
+
     fn cost_of(&self, solved: &dyn Fn(usize) -> bool, rates: usize) -> Cost {
         let blocks = self.equations_of_instant.iter().enumerate().filter(|(k, _)| solved(*k)).map(|(_, b)| b);
         blocks.fold(Cost { instructions: rates, factorization: 0 }, |cost, block| Cost {

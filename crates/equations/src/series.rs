@@ -86,6 +86,11 @@ impl<T: SeriesScalar> Series<T> {
         });
     }
 
+    /// [`SeriesTape::work`].
+    pub(crate) fn work(&self) -> (usize, usize) {
+        self.tape.work()
+    }
+
     pub(crate) fn give_back(&mut self) {
         self.workspace = None;
     }
