@@ -1,6 +1,6 @@
 //! The error estimate of a whole motion, of its coordinates and of its multipliers.
 
-use equations::Outputs;
+use equations::{Compiled, Outputs};
 
 use crate::lost_digits::{NUMBERS, ROUNDED};
 use crate::metric::{larger, subtract};
@@ -115,11 +115,9 @@ pub fn error_estimates(
             differences.add_terms(motion.terms_of_multipliers(motion.start(), t));
         }
         if place % every == 0 && !multipliers.is_empty() && motion.charts.is_empty() {
-            let mut terms = motion.terms_of_multipliers(t, t);
-            if differences.shows(terms.as_deref()) {
-                terms = motion.adjoint_terms_of_multipliers(t);
+            if let Ok(y) = motion.states_at(t) {
+                differences.add_round_off(&mut motion.compiled, t, &y);
             }
-            differences.add_round_off(terms);
         }
         if let Some(i) = asked {
             so_far[i] = differences.estimate(&metric);
@@ -216,14 +214,14 @@ impl<'a> Differences<'a> {
         self.terms.iter_mut().zip(terms.into_iter().flatten()).for_each(|(most, term)| *most = most.max(term));
     }
 
-    /// Whether the round-off of these terms is more than the last digits of a multiplier.
-    pub(crate) fn shows(&self, terms: Option<&[f64]>) -> bool {
-        let mut each = terms.into_iter().flatten().zip(&self.sizes_of_multipliers);
-        each.any(|(term, size)| ROUNDED * term > NUMBERS * size)
-    }
-
-    /// The same, of what is added up at the instant itself: round-off that both runs have.
-    pub(crate) fn add_round_off(&mut self, terms: Option<Vec<f64>>) {
+    /// The round-off of each multiplier at an instant, which both runs have: by adjoints where magnitudes
+    /// along paths are more than its last digits.
+    pub(crate) fn add_round_off(&mut self, compiled: &mut Compiled, t: f64, y: &[f64]) {
+        let mut terms = compiled.terms_of_multipliers(t, t, y).ok();
+        let mut each = terms.iter().flatten().zip(&self.sizes_of_multipliers);
+        if each.any(|(term, size)| ROUNDED * term > NUMBERS * size) {
+            terms = compiled.adjoint_terms_of_multipliers(t, y).ok();
+        }
         let round_off = terms.into_iter().flatten().map(|term| ROUNDED * term);
         self.round_off.iter_mut().zip(round_off).for_each(|(most, now)| *most = larger(*most, now));
     }

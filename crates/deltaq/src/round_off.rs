@@ -119,12 +119,6 @@ impl Motion {
         times.into_iter().map_while(|t| self.look(t)).collect()
     }
 
-    /// The sum of terms behind each multiplier at `t` itself, by adjoints.
-    pub(crate) fn adjoint_terms_of_multipliers(&mut self, t: f64) -> Option<Vec<f64>> {
-        let y = self.states_at(t).ok()?;
-        self.compiled.adjoint_terms_of_multipliers(t, t, &y).ok()
-    }
-
     /// [`look_closer`] at these instants.
     fn look_closer(&mut self, looked: &mut [Looked]) {
         for looked in looked {

@@ -4,11 +4,10 @@
 //! bodies there are 2ⁿ paths, which cancel. [`symbolic::Recorded`] adds up the paths themselves first, at the
 //! cost of one sweep per eight rates; it is for motions that the cheaper measure does not clear.
 
-use symbolic::{Evaluator, Tape};
+use symbolic::Tape;
 
 use crate::blocks::EvaluationFailure;
 use crate::compiled::Compiled;
-use crate::plan::Plan;
 
 /// Outputs of a tape with factors.
 type Combination = Vec<(usize, f64)>;
@@ -21,46 +20,37 @@ impl Compiled {
     /// As [`Compiled::rates`].
     pub fn adjoint_terms_of_rates(&mut self, t: f64, y: &[f64]) -> Result<Vec<f64>, EvaluationFailure> {
         let along_paths = self.terms_of_rates(t, y)?;
-        let sizes = self.adjoint_sizes(t, y, y)?;
-        let mut found = None;
-        if let Some(planned) = &self.planned {
-            let inputs: Vec<f64> = planned.places.iter().map(|&i| self.inputs[i]).collect();
-            let sizes: Vec<f64> = planned.places.iter().map(|&i| sizes[i]).collect();
-            let mut program = Evaluator::new(planned.rates.tape().clone());
-            let values = program.evaluate(&inputs);
-            let is_trusted = !planned.watched || values.last().is_some_and(|&condition| condition <= Plan::LIMIT);
-            found = is_trusted.then(|| magnitudes(planned.rates.tape(), &inputs, &sizes, 0..along_paths.len()));
-        }
-        let found = found.unwrap_or_else(|| magnitudes(self.rates.tape(), &self.inputs, &sizes, 0..along_paths.len()));
+        let sizes = self.adjoint_sizes(t, y)?;
+        let (inputs, rates) = (&self.inputs, 0..along_paths.len());
+        let is_trusted = self.planned.as_mut().is_some_and(|planned| planned.is_trusted(inputs));
+        let found = match &self.planned {
+            Some(planned) if is_trusted => {
+                let of_plan = |x: &[f64]| planned.places.iter().map(|&i| x[i]).collect::<Vec<f64>>();
+                magnitudes(planned.rates.tape(), &of_plan(inputs), &of_plan(&sizes), rates)
+            }
+            _ => magnitudes(self.rates.tape(), inputs, &sizes, rates),
+        };
         Ok(lesser(along_paths, found))
     }
 
-    /// [`Compiled::terms_of_multipliers`] by adjoints, of each multiplier the lesser of the two.
+    /// [`Compiled::terms_of_multipliers`] at the instant itself by adjoints, of each multiplier the lesser of
+    /// the two.
     ///
     /// # Errors
     /// As [`Compiled::rates`].
-    pub fn adjoint_terms_of_multipliers(
-        &mut self,
-        begin: f64,
-        t: f64,
-        y: &[f64],
-    ) -> Result<Vec<f64>, EvaluationFailure> {
-        let along_paths = self.terms_of_multipliers(begin, t, y)?;
-        let rates = self.adjoint_terms_of_rates(t, y)?;
-        let states: Vec<f64> = y.iter().zip(rates).map(|(y, term)| y.abs() + term * (t - begin).abs()).collect();
-        let sizes = self.adjoint_sizes(t, y, &states)?;
+    pub fn adjoint_terms_of_multipliers(&mut self, t: f64, y: &[f64]) -> Result<Vec<f64>, EvaluationFailure> {
+        let along_paths = self.terms_of_multipliers(t, t, y)?;
+        let sizes = self.adjoint_sizes(t, y)?;
         let first = 2 * self.sizes.coordinates;
         let found = magnitudes(self.outputs.tape(), &self.inputs, &sizes, first..first + along_paths.len());
         Ok(lesser(along_paths, found))
     }
 
-    /// Sizes of `t, y, constants, z`: `states` of `y`; for `z` the effect of round-off in its equations is
-    /// added.
-    fn adjoint_sizes(&mut self, t: f64, y: &[f64], states: &[f64]) -> Result<Vec<f64>, EvaluationFailure> {
+    /// Sizes of `t, y, constants, z`; for `z` the effect of round-off in its equations is added.
+    fn adjoint_sizes(&mut self, t: f64, y: &[f64]) -> Result<Vec<f64>, EvaluationFailure> {
         self.solve_instant(t, y)?;
         let known = self.sizes.known();
         let mut sizes: Vec<f64> = self.inputs.iter().map(|x| x.abs()).collect();
-        sizes[1..=y.len()].copy_from_slice(states);
         for block in &mut self.equations_of_instant {
             let (n, first) = (block.size, known + block.first);
             let count = if block.linear { known } else { self.inputs.len() };

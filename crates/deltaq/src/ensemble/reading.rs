@@ -94,11 +94,7 @@ impl Reader<'_> {
                     differences.add_terms(self.compiled.terms_of_multipliers(member.t, t, y).ok());
                 }
                 if !multipliers.is_empty() && i % every == 0 {
-                    let mut terms = self.compiled.terms_of_multipliers(t, t, y).ok();
-                    if differences.shows(terms.as_deref()) {
-                        terms = self.compiled.adjoint_terms_of_multipliers(t, t, y).ok();
-                    }
-                    differences.add_round_off(terms);
+                    differences.add_round_off(&mut self.compiled, t, y);
                 }
             }
             read.push(now);
