@@ -114,10 +114,12 @@ pub fn error_estimates(
         if differences.has_doubtful_multipliers() {
             differences.add_terms(motion.terms_of_multipliers(motion.start(), t));
         }
-        if place % every == 0 && !multipliers.is_empty() && motion.charts.is_empty() {
-            if let Ok(y) = motion.states_at(t) {
-                differences.add_round_off(&mut motion.compiled, t, &y);
-            }
+        if place % every == 0
+            && !multipliers.is_empty()
+            && motion.charts.is_empty()
+            && let Ok(y) = motion.states_at(t)
+        {
+            differences.add_round_off(&mut motion.compiled, t, &y);
         }
         if let Some(i) = asked {
             so_far[i] = differences.estimate(&metric);
