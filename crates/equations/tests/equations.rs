@@ -287,3 +287,19 @@ fn a_return_that_does_not_converge_is_a_failure() {
     let moved = lanes.project(&[0.0; LANES], &mut [[0.0; LANES], speeds]);
     assert!((0..LANES).all(|l| moved[l].is_nan() == (l == 3)), "{moved:?}");
 }
+
+/// `x' = x + 3 y`, `y' = a` with `2 a = x³ − x²y`, at `(x, y)` and where both have the other sign: magnitudes
+/// have no sign.
+#[test]
+fn terms_by_adjoints_are_those_of_the_mirrored_states() {
+    let states = [("x", Role::Position, "x + 3*y"), ("y", Role::Position, "a")];
+    let whole = equations(&[], &states, &[(&["a"], &["2*a - x^3 + x^2*y"])], &["x", "y"], &["x + 3*y", "a"]);
+    let mut compiled = Compiled::new(&whole).unwrap();
+    for y in [[0.5, 0.25], [0.5, -0.25]] {
+        let mut of = |y: [f64; 2]| compiled.adjoint_terms_of_rates(0.0, &y).unwrap_or_else(|e| panic!("{e}"));
+        let (here, there) = (of(y), of(y.map(|x| -x)));
+        assert_eq!(here, there);
+        let bounds = [y[0].abs() + 3.0 * y[1].abs(), 0.5 * (y[0].abs().powi(3) + y[0].powi(2) * y[1].abs())];
+        assert!(here.iter().zip(bounds).all(|(term, bound)| *term >= bound), "{here:?} {bounds:?}");
+    }
+}
