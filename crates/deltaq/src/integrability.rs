@@ -8,7 +8,8 @@ use scene::Scene;
 
 use crate::SolveError;
 
-/// [`mechanics::integrability`], with [`integrals_by_ranks`] where brackets cannot tell.
+/// [`mechanics::integrability`], with [`integrals_by_ranks`] where brackets cannot tell: of what
+/// [`System::without_exact_constraints`] leaves.
 ///
 /// # Errors
 /// [`SolveError`] for dependent constraints.
@@ -17,11 +18,14 @@ pub fn integrability(scene: &Scene) -> Result<Integrability, SolveError> {
     let (system, state) = (&scene.system.clone(), &scene.start);
     let verdict = mechanics::integrability(system, state, state.t + scene.duration)?;
     let Integrability::Undecided { at_most, constraints, .. } = verdict else { return Ok(verdict) };
-    Ok(match integrals_by_ranks(system, state)?.filter(|(integrals, _)| *integrals <= at_most) {
-        None => verdict,
-        Some((0, depth)) => Integrability::Nonintegrable { depth },
-        Some((integrals, _)) if integrals == constraints => Integrability::Integrable { exact: false },
-        Some((integrals, _)) => Integrability::PartlyIntegrable { integrals, constraints, exact: false },
+    let (rest, state) = system.without_exact_constraints(state)?;
+    let exact = constraints - rest.constraints.len();
+    let Some((left, depth)) = integrals_by_ranks(&rest, &state)? else { return Ok(verdict) };
+    Ok(match exact + left {
+        more if more > at_most => verdict,
+        0 => Integrability::Nonintegrable { depth },
+        all if all == constraints => Integrability::Integrable { exact: false },
+        integrals => Integrability::PartlyIntegrable { integrals, constraints, exact: false },
     })
 }
 

@@ -13,7 +13,7 @@ pub enum Integrability {
     Unconstrained,
     /// Every constraint is (a combination of) total time derivatives: `f = 0` confines the configuration.
     Integrable {
-        /// Whether the brackets vanish by simplification; else ranks over a finite field say so.
+        /// Whether derivatives and brackets vanish by simplification; else ranks over a finite field say so.
         exact: bool,
     },
     /// Some independent combinations of the constraints are total time derivatives, and no more are.
@@ -22,7 +22,7 @@ pub enum Integrability {
         integrals: usize,
         /// Number of constraints.
         constraints: usize,
-        /// Whether all further brackets vanish by simplification; else ranks over a finite field say so.
+        /// Whether this is so by simplification and by ranks at points; else ranks over a finite field say so.
         exact: bool,
     },
     /// No combination of the constraints is integrable: every configuration can be reached.
@@ -73,7 +73,7 @@ impl std::fmt::Display for Integrability {
             Integrability::Integrable { exact: true } => write!(f, "integrable (brackets vanish identically)"),
             Integrability::Integrable { exact: false } => write!(f, "integrable (by ranks over a finite field)"),
             Integrability::PartlyIntegrable { integrals, constraints, exact } => {
-                let by = if *exact { "further brackets vanish identically" } else { "by ranks over a finite field" };
+                let by = if *exact { "exactly" } else { "by ranks over a finite field" };
                 write!(
                     f,
                     "partly integrable: {integrals} of {constraints} constraints are integrable combinations ({by})"
@@ -102,8 +102,8 @@ impl std::fmt::Display for Integrability {
 /// Frobenius' test for constraints `A(q,t) v + b(q,t) = 0`.
 ///
 /// Fields `X₁ … X_m` span the admissible directions in `(q, t)` (with `T = c ∂_q + ∂_t` where anything
-/// depends on time or `b ≠ 0`). Brackets `[X, Y] = Y_x X − X_x Y` are added until the rank stays; what it
-/// lacks is the number of integrals. Fields are differentiated exactly. Ranks are taken at points round
+/// depends on time or `b ≠ 0`), after [`System::without_exact_constraints`]. Brackets `[X, Y] = Y_x X − X_x Y`
+/// are added until the rank stays; what it lacks is the number of integrals. Fields are differentiated exactly. Ranks are taken at points round
 /// `state` and the way up to `end`, in the scene's own sizes: a rank there is certain, and what adds none may
 /// do so elsewhere, or be lost in round-off. So *integrable*, and *partly*, are said only where every further
 /// bracket vanishes by simplification.
@@ -129,7 +129,13 @@ pub fn integrability(system: &System, state: &State, end: f64) -> Result<Integra
     if !system.constraints_linear_in_velocity() {
         return Ok(Integrability::NonlinearInVelocity);
     }
+    let (constants, surroundings) = (system.parameter_values(), Surroundings::of_start(system, state, end));
+    let (system, state) = &system.without_exact_constraints(state)?;
     let g = &system.graph;
+    let exact = h - system.constraints.len();
+    if exact == h {
+        return Ok(Integrability::Integrable { exact: true });
+    }
     let solved = SolvedConstraints::new(system, state)?;
     let with_time = solved.offset.iter().any(|&e| !g.is_zero(e))
         || system.constraints.iter().any(|&f| g.depends_on(f, system.time));
@@ -139,11 +145,11 @@ pub fn integrability(system: &System, state: &State, end: f64) -> Result<Integra
     }
     let admissible = solved.fields(system, with_time);
     let mut depth = 0;
-    let undecided = |why, depth, at_most| Ok(Integrability::Undecided { why, depth, at_most, constraints: h });
+    let undecided =
+        |why, depth, left| Ok(Integrability::Undecided { why, depth, at_most: exact + left, constraints: h });
     if g.size(&admissible.concat()) > LONGEST {
-        return undecided(Undecided::TooLong, depth, h);
+        return undecided(Undecided::TooLong, depth, system.constraints.len());
     }
-    let (constants, surroundings) = (system.parameter_values(), Surroundings::of_start(system, state, end));
     let rank_of =
         |fields: &[Vec<Expr>]| generic_rank(g, &Matrix::new(fields.len(), space.len(), fields.concat()), &surroundings);
     let bracket = |x: &[Expr], y: &[Expr]| -> Vec<Expr> {
@@ -190,11 +196,12 @@ pub fn integrability(system: &System, state: &State, end: f64) -> Result<Integra
         depth += 1;
         newest = added;
     }
-    let integrals = space.len() - rank;
+    let left = space.len() - rank;
+    let integrals = exact + left;
     Ok(match open {
         _ if integrals == 0 => Integrability::Nonintegrable { depth },
-        None if integrals == h => Integrability::Integrable { exact: true },
-        None => Integrability::PartlyIntegrable { integrals, constraints: h, exact: true },
-        Some(why) => return undecided(why, depth, integrals),
+        Some(why) if left > 0 => return undecided(why, depth, left),
+        _ if integrals == h => Integrability::Integrable { exact: true },
+        _ => Integrability::PartlyIntegrable { integrals, constraints: h, exact: true },
     })
 }

@@ -55,6 +55,7 @@
 
 mod automatic_removal;
 pub mod elimination;
+mod exact_constraints;
 mod integrability;
 pub mod linear;
 pub mod newton;

@@ -116,16 +116,20 @@ fn dependent_constraints_are_refused() {
     assert!(matches!(error, RemovalError::Dependent { pivot, limit } if pivot < limit), "{error}");
 }
 
-/// A car with `n` trailers, each with place and heading: 2n hitches are integrable, n + 1 axles are not.
-fn train(n: usize) -> Integrability {
+/// A car with `n` trailers, each with place and heading: 2n hitches are integrable, n + 1 axles are not. To
+/// each hitch its own axle can be added.
+fn train(n: usize, with_axles: bool) -> Integrability {
     let coordinates: Vec<String> = (0..=n).flat_map(|i| ["x", "y", "theta"].map(|name| format!("{name}{i}"))).collect();
-    let axles = (0..=n).map(|i| format!("y{i}'*cos(theta{i}) - x{i}'*sin(theta{i})"));
+    let axle = |i: usize| format!("y{i}'*cos(theta{i}) - x{i}'*sin(theta{i})");
     let hitches = (1..=n).flat_map(|i| {
         let front = i - 1;
         let hitch = [("x", "-", "sin"), ("y", "+", "cos")];
-        hitch.map(|(c, sign, f)| format!("{c}{i}' - {c}{front}' {sign} a*theta{i}'*{f}(theta{i})"))
+        hitch.map(|(c, sign, f)| {
+            let hitch = format!("{c}{i}' - {c}{front}' {sign} a*theta{i}'*{f}(theta{i})");
+            if with_axles { format!("{hitch} + {}", axle(i)) } else { hitch }
+        })
     });
-    let constraints: Vec<String> = axles.chain(hitches).collect();
+    let constraints: Vec<String> = (0..=n).map(axle).chain(hitches).collect();
     verdict(
         &coordinates.iter().map(|c| &c[..]).collect::<Vec<_>>(),
         &constraints.iter().map(|f| &f[..]).collect::<Vec<_>>(),
@@ -133,10 +137,18 @@ fn train(n: usize) -> Integrability {
 }
 
 #[test]
+fn hitches_of_a_train_are_integrable_and_axles_are_not() {
+    for n in 1..=4 {
+        let partly = Integrability::PartlyIntegrable { integrals: 2 * n, constraints: 3 * n + 1, exact: true };
+        assert_eq!(train(n, false), partly);
+    }
+}
+
+#[test]
 fn long_brackets_in_which_much_cancels_do_not_raise_the_rank() {
     for n in 1..=2 {
-        let Integrability::Undecided { why: Undecided::AtPoints, at_most, constraints, .. } = train(n) else {
-            panic!("{}", train(n))
+        let Integrability::Undecided { why: Undecided::AtPoints, at_most, constraints, .. } = train(n, true) else {
+            panic!("{}", train(n, true))
         };
         assert_eq!([at_most, constraints], [2 * n, 3 * n + 1]);
     }
@@ -144,11 +156,72 @@ fn long_brackets_in_which_much_cancels_do_not_raise_the_rank() {
 
 #[test]
 fn brackets_that_are_too_long_leave_it_undecided() {
-    let Integrability::Undecided { why: Undecided::TooLong, depth, at_most, constraints } = train(3) else {
-        panic!("decided")
+    let found = train(5, false);
+    let Integrability::Undecided { why: Undecided::TooLong, depth, at_most, constraints } = found else {
+        panic!("{found}")
     };
-    assert!(depth >= 3 && at_most >= 6 && constraints == 10, "{depth}, {at_most}, {constraints}");
-    assert!(!train(3).is_integrable());
+    assert!(depth >= 3 && at_most >= 10 && constraints == 16, "{depth}, {at_most}, {constraints}");
+    assert!(!found.is_integrable());
+}
+
+/// What is left without exact constraints of `q = 1, 2, …`, `v = 0.1, 0.2, …`: names, constraints, places.
+#[track_caller]
+fn left(coordinates: &[&str], constraints: &[&str]) -> (Vec<String>, Vec<String>, Vec<f64>) {
+    let (system, mut state) = systems::kinetic(coordinates, &[("a", 0.7), ("zero", 0.0)], constraints);
+    state.q.iter_mut().zip(1..).for_each(|(q, i)| *q = f64::from(i));
+    let (rest, state) = system.without_exact_constraints(&state).unwrap_or_else(|e| panic!("{constraints:?}: {e}"));
+    assert_eq!(rest.forces.len(), rest.coordinates.len());
+    assert_eq!(state.v.len(), rest.coordinates.len());
+    let names = rest.coordinates.iter().map(|c| c.name.clone()).collect();
+    (names, rest.constraints.iter().map(|&f| rest.graph.plain(f)).collect(), state.q)
+}
+
+#[test]
+fn an_exact_constraint_goes_with_a_coordinate_that_stands_nowhere() {
+    let xyz = ["x", "y", "z"];
+    let found = left(&xyz, &["a*x' - cos(t)*z' + z*sin(t)", "y' - z*x'"]);
+    assert_eq!(found.0, ["y", "z"]);
+    assert_eq!(found.2, [2.0, 3.0]);
+    assert_eq!(found.1.len(), 1);
+    // the second is exact once the first is in it
+    assert_eq!(left(&xyz, &["x' - y*y'", "z' + y*x' - y^2*y'"]).1, Vec::<String>::new());
+}
+
+#[test]
+fn what_is_not_exact_for_certain_stays() {
+    for stays in [
+        // no total derivative
+        "x' - y*z'",
+        "x' - y*cos(t)",
+        "x' - cos(t)*z'",
+        // its coordinates stand in it
+        "x*y' + y*x' + cos(z)*z'",
+        "x' + x",
+        // its coefficient is zero, or may be
+        "zero*x' - y*y'",
+        "a*cos(y)*x' - y*z'",
+    ] {
+        let found = left(&["x", "y", "z"], &[stays]);
+        assert_eq!((found.0.len(), found.1.len()), (3, 1), "{stays}: {found:?}");
+    }
+    // x stands in the other one
+    assert_eq!(left(&["x", "y", "z", "w"], &["x' - y*y'", "z' - x*w'"]).1.len(), 2);
+}
+
+/// Integrals that exact constraints hide behind `y`: without `x' = y y'` the other is `z' = y² y'`.
+#[test]
+fn exact_constraints_are_counted_with_the_others() {
+    must_be_integrable(&["x", "y", "z"], &["x' - y*y'", "z' - y*x'"]);
+    must_be_integrable(&["x", "y", "z"], &["x' - y*y' - cos(t)", "z' - t"]);
+    let partly = Integrability::PartlyIntegrable { integrals: 1, constraints: 2, exact: true };
+    assert_eq!(verdict(&["x", "y", "z"], &["x' - y*y' - cos(t)", "z' - sin(y)"]), partly);
+}
+
+#[test]
+fn dependent_exact_constraints_are_refused() {
+    let (system, state) = systems::kinetic(&["x", "y", "z"], &[], &["z' - x'", "2*z' - 2*x'"]);
+    let error = integrability(&system, &state, 3.0).unwrap_err();
+    assert!(matches!(error, RemovalError::Dependent { pivot, limit } if pivot < limit), "{error}");
 }
 
 #[test]
