@@ -17,6 +17,10 @@ pub struct Metric {
     program: Evaluator<f64>,
     dimension: usize,
     inputs: Vec<f64>,
+    /// `M`, row-major, and `f` at `inputs`; empty where they are not known.
+    values: Vec<f64>,
+    /// Whether this `M` is positive definite, where that is known.
+    is_definite: Option<bool>,
 }
 
 impl Metric {
@@ -43,12 +47,15 @@ impl Metric {
         let names: Vec<String> = system.coordinates.iter().map(|c| c.name.clone()).collect();
         let unit = |i: usize| &system.coordinates[i].unit;
         let units = (0..names.len()).map(|i| (0..i).find(|&j| unit(j) == unit(i)).unwrap_or(i)).collect();
-        Ok(Metric { names, units, program, dimension: system.dimension(), inputs: vec![0.0; inputs.len()] })
+        let (dimension, inputs) = (system.dimension(), vec![0.0; inputs.len()]);
+        Ok(Metric { names, units, program, dimension, inputs, values: Vec::new(), is_definite: None })
     }
 
     /// Values of the parameters that vary.
     pub(crate) fn set_parameters(&mut self, values: &[f64]) {
         self.inputs[1 + 2 * self.dimension..].copy_from_slice(values);
+        self.values.clear();
+        self.is_definite = None;
     }
 
     /// Number of the parameters that vary.
@@ -56,13 +63,22 @@ impl Metric {
         self.inputs.len() - 1 - 2 * self.dimension
     }
 
-    /// `M`, row-major, and `f`.
+    /// `M`, row-major, and `f`; at the point of the last question as they were then.
     fn at(&mut self, t: f64, q: &[f64], v: &[f64]) -> (&[f64], &[f64]) {
         let n = self.dimension;
-        self.inputs[0] = t;
-        self.inputs[1..=n].copy_from_slice(q);
-        self.inputs[1 + n..=2 * n].copy_from_slice(v);
-        self.program.evaluate(&self.inputs).split_at(n * n)
+        let is_here = self.inputs[0] == t && self.inputs[1..=n] == *q && self.inputs[1 + n..=2 * n] == *v;
+        if self.values.is_empty() || !is_here {
+            self.inputs[0] = t;
+            self.inputs[1..=n].copy_from_slice(q);
+            self.inputs[1 + n..=2 * n].copy_from_slice(v);
+            let values = self.program.evaluate(&self.inputs);
+            if self.values.get(..n * n) != Some(&values[..n * n]) {
+                self.is_definite = None;
+            }
+            self.values.clear();
+            self.values.extend(values);
+        }
+        self.values.split_at(n * n)
     }
 
     /// `sqrt(Δqᵀ |M| Δq)` with `M` at `(t, q, v)`.
@@ -71,11 +87,11 @@ impl Metric {
         let mass = self.at(t, q, v).0;
         let rows = mass.chunks_exact(n).zip(difference);
         let square: f64 = rows.map(|(row, d)| d * row.iter().zip(difference).map(|(m, e)| m * e).sum::<f64>()).sum();
-        let mass = DMatrix::from_row_slice(n, n, mass);
-        match mass.clone().cholesky() {
-            Some(_) => square.sqrt(),
-            None => (absolute_root(&mass) * DVector::from_column_slice(difference)).norm(),
+        let mass = || DMatrix::from_row_slice(n, n, &self.values[..n * n]);
+        if *self.is_definite.get_or_insert_with(|| mass().cholesky().is_some()) {
+            return square.sqrt();
         }
+        (absolute_root(&mass()) * DVector::from_column_slice(difference)).norm()
     }
 
     /// [`Metric::length`] of `q − other`.
@@ -160,4 +176,33 @@ pub(crate) fn larger(a: f64, b: f64) -> f64 {
 
 pub(crate) fn subtract(a: &[f64], b: &[f64]) -> Vec<f64> {
     a.iter().zip(b).map(|(x, y)| x - y).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use mechanics::Parameter;
+    use symbolic::Graph;
+
+    use super::*;
+
+    /// `L = (m q + s t) q̇²/2`: a mass that changes with place, time and parameter, and is negative somewhere.
+    #[test]
+    fn what_was_asked_before_changes_no_length() {
+        let mut system = System::new(Graph::new(), &[("q", "m")]);
+        let [m, s] = ["m", "s"].map(|name| system.graph.symbol(name));
+        system.parameters = vec![Parameter { symbol: m, value: 1.0 }, Parameter { symbol: s, value: 0.5 }];
+        system.lagrangian = system.expression("(m*q + s*t)*q'^2/2").expect("a Lagrangian");
+        let mut metric = Metric::varying(&system, &[m]).expect("a metric");
+        for m in [1.0, -1.0, 4.0] {
+            metric.set_parameters(&[m]);
+            for (t, q) in [(0.0, 2.0), (0.0, 2.0), (0.0, -2.0), (2.0, -2.0), (2.0, 2.0), (0.0, 2.0)] {
+                let length = f64::sqrt(f64::abs(m * q + 0.5 * t));
+                for difference in [1.0, -3.0] {
+                    let found = metric.length(t, &[q], &[0.0], &[difference]);
+                    assert!((found - length * f64::abs(difference)).abs() < 1e-14, "{m}, {t}, {q}: {found}");
+                }
+                assert!((metric.distance(t, &[q], &[0.0], &[q + 2.0]) - 2.0 * length).abs() < 1e-14);
+            }
+        }
+    }
 }
