@@ -185,7 +185,7 @@ mod tests {
 
     use super::*;
 
-    /// `L = (m q + s t) q̇²/2`: a mass that changes with place, time and parameter, and is negative somewhere.
+    /// `L = (m q + s t) q̇²/2`: a mass that changes with place, time and parameter, and its sign.
     #[test]
     fn what_was_asked_before_changes_no_length() {
         let mut system = System::new(Graph::new(), &[("q", "m")]);

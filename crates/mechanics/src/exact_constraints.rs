@@ -20,7 +20,8 @@ impl System {
     /// [`RemovalError::NotLinear`]
     ///
     /// ```
-    /// # let mut system = mechanics::System::new(Default::default(), &[("x", "m"), ("y", "m"), ("z", "m"), ("w", "m")]);
+    /// # let names = ["x", "y", "z", "w"].map(|name| (name, "m"));
+    /// # let mut system = mechanics::System::new(Default::default(), &names);
     /// system.constraints = vec![system.expression("w' - x*x'")?, system.expression("z' - y*w'")?];
     /// let start = mechanics::State { t: 0.0, q: vec![0.0; 4], v: vec![0.0; 4] };
     /// let (rest, _) = system.without_exact_constraints(&start)?;

@@ -22,7 +22,7 @@ pub enum Integrability {
         integrals: usize,
         /// Number of constraints.
         constraints: usize,
-        /// Whether this is so by simplification and by ranks at points; else ranks over a finite field say so.
+        /// Whether simplification and ranks at points say so; else ranks over a finite field do.
         exact: bool,
     },
     /// No combination of the constraints is integrable: every configuration can be reached.
@@ -102,11 +102,12 @@ impl std::fmt::Display for Integrability {
 /// Frobenius' test for constraints `A(q,t) v + b(q,t) = 0`.
 ///
 /// Fields `X₁ … X_m` span the admissible directions in `(q, t)` (with `T = c ∂_q + ∂_t` where anything
-/// depends on time or `b ≠ 0`), after [`System::without_exact_constraints`]. Brackets `[X, Y] = Y_x X − X_x Y`
-/// are added until the rank stays; what it lacks is the number of integrals. Fields are differentiated exactly. Ranks are taken at points round
-/// `state` and the way up to `end`, in the scene's own sizes: a rank there is certain, and what adds none may
-/// do so elsewhere, or be lost in round-off. So *integrable*, and *partly*, are said only where every further
-/// bracket vanishes by simplification.
+/// depends on time or `b ≠ 0`), after [`System::without_exact_constraints`]. Brackets
+/// `[X, Y] = Y_x X − X_x Y` are added until the rank stays; what it lacks is the number of integrals. Fields
+/// are differentiated exactly. Ranks are taken at points round `state` and the way up to `end`, in the
+/// scene's own sizes: a rank there is certain, and what adds none may do so elsewhere, or be lost in
+/// round-off. So *integrable*, and *partly*, are said only where every further bracket vanishes by
+/// simplification, or none is needed.
 ///
 /// # Errors
 /// [`RemovalError::Dependent`] where `A` has no full row rank at `state`.
