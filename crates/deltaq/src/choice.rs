@@ -117,7 +117,8 @@ fn gives_constant_costates(equations: &Equations, values: &[f64]) -> bool {
     values.len() == memory && values.iter().enumerate().any(|(i, &x)| x != 0.0 && !kept(i))
 }
 
-/// [`derive()`], from constraints made independent at `start` where they nearly are not ([`Recombination`]).
+/// [`derive()`], from constraints made independent at `start` where they nearly are not
+/// ([`Recombination`]), but for quasi-velocities without a pivot that may vanish.
 ///
 /// # Errors
 /// As [`derive()`]; [`SolveError::Start`] where the constraints are dependent.
@@ -166,18 +167,19 @@ fn derive_combined(system: &System, start: &State, choice: &Choice) -> Result<Eq
         equations.lost_digits = combined.ok().flatten().map_or(1.0, |combined| combined.ratio.recip());
         return Ok(equations);
     }
-    match combined? {
-        None => derive_from(system, Some(start), choice),
-        // multipliers belong to the rows prescribed, which stay as they are
-        Some(combined) if prescribed => {
-            let mut equations = derive_from(&combined.system(system), Some(start), choice)?;
-            equations.lost_digits = combined.ratio.recip();
-            Ok(equations)
-        }
-        Some(combined) => {
-            Ok(derive_from(&combined.system(system), Some(start), choice)?.with_multipliers_restored(&combined))
-        }
+    let Some(combined) = combined? else { return derive_from(system, Some(start), choice) };
+    let lost_digits = combined.ratio.recip();
+    // at any angle constant pivots eliminate the rows as they are, which may be sparse
+    if FORMS.contains(&choice.formulation)
+        && let Ok(equations) = derive_from(system, Some(start), choice)
+        && equations.chart.is_none()
+    {
+        return Ok(Equations { lost_digits, ..equations });
     }
+    let equations = derive_from(&combined.system(system), Some(start), choice)?;
+    // multipliers belong to the rows prescribed, which stay as they are
+    let restored = if prescribed { equations } else { equations.with_multipliers_restored(&combined) };
+    Ok(Equations { lost_digits, ..restored })
 }
 
 type Automatic = fn(&System, &mechanics::State) -> Result<Removal, RemovalError>;

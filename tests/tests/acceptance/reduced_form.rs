@@ -142,3 +142,25 @@ fn constraints_that_are_not_linear_are_refused() {
     let error = derived(&scene("appell-hamel", &[]), REDUCED_CHETAEV, None, None).err().expect("refused").to_string();
     assert!(error.contains("not linear in the velocities"), "{error}");
 }
+
+/// What is constant cannot vanish along the way; of constant coefficients small ones lose digits.
+#[test]
+fn pivots_are_constant_where_they_can_be_and_then_large() {
+    let of = |constraint: &str| {
+        let text = format!(
+            "title = \"pivots\"\n[coordinates]\nx = {{ start = 0 }}\ny = {{ start = 0 }}\nz = {{ start = 1 }}\n\
+             [system]\nlagrangian = \"(x'^2 + y'^2 + z'^2)/2\"\nconstraints = [\"{constraint}\"]\n\
+             [start.velocities]\n\"y'\" = 0\n\"z'\" = 0\n[run]\nduration = 1\n"
+        );
+        let scene = Scene::parse("pivots", &text).unwrap_or_else(|e| panic!("{e}"));
+        let equations = reduced(&scene);
+        let names: Vec<String> = equations.states.iter().map(|y| equations.graph.name(y.symbol)).collect();
+        (equations.chart.is_none(), ["x'", "y'", "z'"].map(|name| names.iter().any(|known| known == name)))
+    };
+    for small in ["1", "1e-4", "1e-8"] {
+        assert_eq!(of(&format!("{small}*x' + sin(z)*y'")), (true, [false, true, true]), "{small}");
+    }
+    assert!(!of("1e-12*x' + sin(z)*y'").0);
+    assert_eq!(of("x' + 1e-9*y' + sin(z)*z'"), (true, [false, true, true]));
+    assert_eq!(of("1e-9*x' + y' + sin(z)*z'"), (true, [true, false, true]));
+}

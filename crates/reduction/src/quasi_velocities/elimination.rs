@@ -12,8 +12,10 @@ use equations::Definitions;
 use mechanics::elimination::{Candidate, LinearForms, SparseMatrix, choose_pivot};
 use mechanics::{Coordinate, RemovalError, State, System, fresh_symbol};
 
-/// A constant pivot under this part of the row's largest coefficient is treated as not constant.
+/// A constant pivot under this part of the row's largest constant coefficient is treated as not constant.
 const CONSTANT_CHOICE: f64 = 1e-4;
+/// So is one under this part of any coefficient: what is constant cannot vanish along the way, however small.
+const FAINT: f64 = 1e-10;
 /// What is left of a difference under this part of its terms is tested for being zero.
 const CANCELLED: f64 = 1e-9;
 /// Nodes of a coefficient that gets no name of its own.
@@ -264,12 +266,13 @@ impl<'a> Elimination<'a> {
             self.queue.remove(&candidate);
         }
         let terms = &self.matrix.rows()[row];
-        let largest = largest(terms);
-        let queued: Vec<ConstantPivot> = terms
-            .iter()
-            .filter(|(_, (e, x))| x.abs() >= CONSTANT_CHOICE * largest && *x != 0.0 && self.is_constant(*e))
-            .map(|(&column, _)| (self.fill(row, column), Reverse(column), row))
-            .collect();
+        let faint = FAINT * largest(terms);
+        let constants = terms.iter().filter(|(_, (e, x))| x.abs() >= faint && *x != 0.0 && self.is_constant(*e));
+        let constants: Vec<(usize, f64)> = constants.map(|(&column, (_, x))| (column, x.abs())).collect();
+        let limit = constants.iter().fold(0.0, |limit: f64, (_, x)| limit.max(CONSTANT_CHOICE * x));
+        let large = constants.into_iter().filter(|(_, x)| *x >= limit);
+        let queued: Vec<ConstantPivot> =
+            large.map(|(column, _)| (self.fill(row, column), Reverse(column), row)).collect();
         self.queue.extend(&queued);
         self.rows[row].queued = queued;
         self.rows[row].searched = false;
