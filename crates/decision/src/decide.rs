@@ -16,7 +16,7 @@ const PANELS: usize = 40;
 /// The question is judged up to these parts of the time.
 const PARTS: [f64; 12] = [0.025, 0.05, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0];
 /// Noise above this fraction of the curve's own acceleration leaves the result undecided: a mismatch below it
-/// may be real.
+/// may be real. After a part `x` of the time, with `r` constants determined, it is `x^r` of that.
 const TOO_LOUD: f64 = 1e-5;
 
 /// Where round-off shortens steps: factors of the tolerances, with steps for each; the last attempt uses the
@@ -129,7 +129,7 @@ impl Decision {
     /// The verdict on the constants `c` alone: for large constants the noise may be too large to decide.
     pub fn verdict_at(&self, constants: &[f64]) -> Verdict {
         let reach = (1.0 + self.scaled(constants).norm_squared()).sqrt();
-        verdict_on(self.mismatch_at(constants), reach, &self.sizes)
+        verdict_on(self.mismatch_at(constants), reach, &self.sizes, TOO_LOUD)
     }
 }
 
@@ -218,7 +218,7 @@ fn judged(fine: &mut Transport, coarse: &mut Transport, paths: &[Path; 2]) -> Re
             columns.iter_mut().zip(&scales).for_each(|(column, scale)| column.scale *= scale);
             let whole = panel + 1 == panels && way == (end - start).abs();
             let until = (!whole).then_some(bounds[panel + 1]);
-            found.push(judge(scaled, sizes, until, constants.to_vec(), columns));
+            found.push(judge(scaled, sizes, (until, past / (end - start)), constants.to_vec(), columns));
         }
         Ok(())
     };
@@ -256,7 +256,7 @@ pub fn decide_flow(family: &Family, flow: &Flow, settings: &DecisionSettings) ->
 fn judge(
     triangle: DMatrix<f64>,
     sizes: Sizes,
-    until: Option<f64>,
+    (until, part): (Option<f64>, f64),
     constants: Vec<String>,
     known: Vec<Column>,
 ) -> Decision {
@@ -288,9 +288,11 @@ fn judge(
         c.iter().zip(&known).map(|(c, column)| (c * of(column)).powi(2)).sum::<f64>().sqrt()
     };
     let loud = free.iter().any(|c| CERTAIN * length(c, |k| k.noise) > TOO_LOUD * length(c, |k| k.size));
+    // constants are chosen so that as many derivatives of the mismatch are zero: early on, the rest is smaller
+    let loudest = TOO_LOUD * part.powi((last - free.len()) as i32);
     let own = |c: DVector<f64>| DVector::from_iterator(last, c.iter().zip(&known).map(|(c, k)| c * k.scale));
     let directions = orthonormal(free.into_iter().map(own).collect());
-    let verdict = match verdict_on(least, reach, &sizes) {
+    let verdict = match verdict_on(least, reach, &sizes, loudest) {
         // a mismatch this much larger than the motion is amplified round-off
         Verdict::NotContained if ROUND_OFF * least > sizes.scale(reach) => Verdict::Undecided,
         Verdict::Contained if loud => Verdict::Undecided,
@@ -311,12 +313,13 @@ fn judge(
     }
 }
 
-/// What a mismatch says that constants of a size `reach` leave.
-fn verdict_on(mismatch: f64, reach: f64, sizes: &Sizes) -> Verdict {
+/// What a mismatch says that constants of a size `reach` leave, if noise may be up to a part `loudest` of the
+/// motion.
+fn verdict_on(mismatch: f64, reach: f64, sizes: &Sizes, loudest: f64) -> Verdict {
     let noise = CERTAIN * sizes.noise * reach;
     if mismatch > noise {
         Verdict::NotContained
-    } else if noise <= TOO_LOUD * sizes.scale(reach) {
+    } else if noise <= loudest * sizes.scale(reach) {
         Verdict::Contained
     } else {
         Verdict::Undecided
@@ -343,7 +346,7 @@ pub(crate) fn least(mut rows: DMatrix<f64>) -> f64 {
     judge(
         compressed(rows),
         Sizes::default(),
-        None,
+        (None, 1.0),
         Vec::new(),
         vec![Column { scale: 1.0, noise: 0.0, size: 0.0 }; last],
     )
