@@ -288,7 +288,7 @@ fn judge(
         c.iter().zip(&known).map(|(c, column)| (c * of(column)).powi(2)).sum::<f64>().sqrt()
     };
     let loud = free.iter().any(|c| CERTAIN * length(c, |k| k.noise) > TOO_LOUD * length(c, |k| k.size));
-    // constants are chosen so that as many derivatives of the mismatch are zero: early on, the rest is smaller
+    // as many derivatives of the mismatch may be zero by choice: early on, the rest is smaller
     let loudest = TOO_LOUD * part.powi((last - free.len()) as i32);
     let own = |c: DVector<f64>| DVector::from_iterator(last, c.iter().zip(&known).map(|(c, k)| c * k.scale));
     let directions = orthonormal(free.into_iter().map(own).collect());

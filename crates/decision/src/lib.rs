@@ -37,8 +37,8 @@
 //! *undecided* if the noise is over 1e-6 of the curve's own acceleration, unless that is round-off of what
 //! balances at rest. This is judged up to several times within the run: if no constants fit up to one of
 //! these, none fit at all; otherwise the longest time with low enough noise counts ([`Decision::until`]).
-//! `r` constants can make `r` derivatives of the mismatch zero, so that after a part `x` of the run it may have
-//! grown to `x^r` of its size at the end: there, *contained* needs noise that much lower. The least-norm
+//! `r` constants can make `r` derivatives of the mismatch zero, so that after a part `x` of the run it may
+//! have grown to `x^r` of its size at the end: there, *contained* needs noise that much lower. The least-norm
 //! element is the first guess for fits.
 //!
 //! **Proved over a finite field** ([`Question::prove`]). Taylor coefficients `y_k = O_k c + y₀_k` at the
