@@ -64,7 +64,11 @@ pub(crate) fn run(arguments: &ShowArguments) -> Result<String> {
         return Ok(code(&scene, &started(&scene, equations, &all[0])?, language.into())?);
     }
     for choice in all {
-        let derived = match derive_at(&scene.system, &scene.start, &choice) {
+        let (derived, integrated) = match derive_in_form(&scene.system, &scene.start, &choice, Form::Suited) {
+            Ok((equations, form)) if form.name == choice.formulation.name => (Ok(equations), Some(form)),
+            suited => (derive_at(&scene.system, &scene.start, &choice), suited.ok().map(|(_, form)| form)),
+        };
+        let derived = match derived {
             Ok(equations) => {
                 let text = equations_text(&equations, style);
                 if asked.is_empty() && text.len() > LONG {
@@ -79,8 +83,7 @@ pub(crate) fn run(arguments: &ShowArguments) -> Result<String> {
             }
             Err(error) => Err(error.to_string()),
         };
-        let integrated = derive_in_form(&scene.system, &scene.start, &choice, Form::Suited);
-        equations.push((choice, derived, integrated.ok().map(|(_, chosen)| chosen)));
+        equations.push((choice, derived, integrated));
     }
     if arguments.format == TextOrJson::Json {
         let g = &scene.system.graph;

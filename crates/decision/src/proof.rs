@@ -180,7 +180,7 @@ impl<'a> Question<'a> {
 
     /// Proves what can be proved about `start` and about almost every start.
     pub fn prove(&self, start: &ExactStart) -> Proof {
-        let almost_every_start = self.generic(start);
+        let almost_every_start = self.prove_almost_every(start);
         let mut completed = Vec::new();
         let ranks = agreed(|_| {
             let (exact, names) = start.series().map_err(|fault| fault.to_string())?;
@@ -223,7 +223,8 @@ impl<'a> Question<'a> {
         }
     }
 
-    fn generic(&self, start: &ExactStart) -> Finding {
+    /// What can be proved about almost every start on the branch of `start`.
+    pub fn prove_almost_every(&self, start: &ExactStart) -> Finding {
         let ranks =
             agreed(|seed| at_random(start, seed, |exact| self.ranks(&exact, |ranks| ranks.settled().is_some())));
         match ranks.map(|ranks| (ranks.refuted(), ranks.settled(), ranks)) {

@@ -194,16 +194,15 @@ const AUTOMATIC: [(&str, Automatic); 2] =
 /// [`RemovalError`] where no removal was written by hand and none can be found automatically.
 pub fn removals(scene: &Scene) -> Result<Vec<Removal>, RemovalError> {
     let mut removals = scene.removals.clone();
-    for (_, automatic) in AUTOMATIC {
-        match automatic(&scene.system, &scene.start) {
-            Ok(removal) => {
-                let known = removals.iter().any(|r| same_parameters(&scene.system, r, &removal));
-                if !known {
+    match Removal::automatic(&scene.system, &scene.start) {
+        Err(error) if removals.is_empty() => return Err(error),
+        Err(_) => {}
+        Ok(automatic) => {
+            for removal in automatic {
+                if !removals.iter().any(|r| same_parameters(&scene.system, r, &removal)) {
                     removals.push(removal);
                 }
             }
-            Err(error) if removals.is_empty() => return Err(error),
-            Err(_) => {}
         }
     }
     Ok(removals)

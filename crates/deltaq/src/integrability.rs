@@ -60,7 +60,7 @@ pub fn integrals_by_ranks(system: &System, state: &State) -> Result<Option<(usiz
     let multipliers: Vec<f64> = (0..h).map(|j| (2 * j + 3) as f64).collect();
     let question = Question::new(&driven, &equations, &multipliers, &family)?;
     let start = ExactStart::new(&driven, state, &Completion::default(), None)?;
-    Ok(match question.prove(&start).almost_every_start {
+    Ok(match question.prove_almost_every(&start) {
         Finding::Contained { rank, order } => Some((h - rank, order)),
         _ => None,
     })

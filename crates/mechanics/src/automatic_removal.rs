@@ -37,21 +37,33 @@ impl Removal {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn by_coordinates(system: &System, state: &State) -> Result<Removal, RemovalError> {
+        Ok(Removal::of_coordinates(system, &SolvedConstraints::new(system, state)?))
+    }
+
+    /// [`Removal::by_coordinates`] and [`Removal::by_quasi_velocities`] from one elimination.
+    ///
+    /// # Errors
+    /// As [`Removal::by_coordinates`].
+    pub fn automatic(system: &System, state: &State) -> Result<[Removal; 2], RemovalError> {
         let split = SolvedConstraints::new(system, state)?;
+        Ok([Removal::of_coordinates(system, &split), Removal::of_quasi_velocities(system, &split)])
+    }
+
+    fn of_coordinates(system: &System, split: &SolvedConstraints) -> Removal {
         let memory = split.dependent.iter().enumerate().map(|(row, &i)| MemoryVariable {
             symbol: system.coordinates[i].position,
             rate: split.rate(system, row, &system.graph.variables(&split.independent_rates(system))),
             coordinate: Some(i),
         });
-        Ok(Removal {
+        Removal {
             name: "coordinates".into(),
             parameters: split.independent.iter().map(|&i| coordinate_parameter(system, i)).collect(),
             memory: memory.collect(),
             coordinates: system.graph.variables(&system.positions()),
             start: BTreeMap::new(),
             constants: ConstantsRule::Zero,
-            chart: split.quotients,
-        })
+            chart: split.quotients.clone(),
+        }
     }
 
     /// *Quasi-velocity removal.* `q̇ = N(q) u̇ + c(q)`, `N` a basis of ker `A`, cleared of denominators.
@@ -75,8 +87,11 @@ impl Removal {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn by_quasi_velocities(system: &System, state: &State) -> Result<Removal, RemovalError> {
+        Ok(Removal::of_quasi_velocities(system, &SolvedConstraints::new(system, state)?))
+    }
+
+    fn of_quasi_velocities(system: &System, split: &SolvedConstraints) -> Removal {
         let g = &system.graph;
-        let split = SolvedConstraints::new(system, state)?;
         let mut parameters = Vec::new();
         let mut memory = Vec::new();
         let mut start = BTreeMap::new();
@@ -110,15 +125,15 @@ impl Removal {
             memory.push(MemoryVariable { symbol: system.coordinates[i].position, rate, coordinate: Some(i) });
         }
         memory.sort_by_key(|w| w.coordinate);
-        Ok(Removal {
+        Removal {
             name: "quasi-velocities".into(),
             parameters,
             memory,
             coordinates: g.variables(&system.positions()),
-            chart: if start.is_empty() { split.quotients } else { Vec::new() },
+            chart: if start.is_empty() { split.quotients.clone() } else { Vec::new() },
             start,
             constants: ConstantsRule::Zero,
-        })
+        }
     }
 }
 

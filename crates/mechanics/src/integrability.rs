@@ -13,7 +13,7 @@ pub enum Integrability {
     Unconstrained,
     /// Every constraint is (a combination of) total time derivatives: `f = 0` confines the configuration.
     Integrable {
-        /// Whether derivatives and brackets vanish by simplification; else ranks over a finite field say so.
+        /// Whether derivatives and brackets vanish identically; else ranks over a finite field say so.
         exact: bool,
     },
     /// Some independent combinations of the constraints are total time derivatives, and no more are.
@@ -50,7 +50,7 @@ pub enum Integrability {
 pub enum Undecided {
     /// The next brackets are too long for it.
     TooLong,
-    /// They vanish at the points that were tried, and not by simplification: they may begin elsewhere.
+    /// They vanish at the points that were tried, and are not zero identically: they may begin elsewhere.
     AtPoints,
     /// They have no value at any point that was tried.
     NoPoint,
@@ -89,7 +89,7 @@ impl std::fmt::Display for Integrability {
                 match why {
                     Undecided::TooLong => "are too long",
                     Undecided::NoPoint => "have no value at the points tried",
-                    Undecided::AtPoints => "vanish at the points tried, but not by simplification",
+                    Undecided::AtPoints => "vanish at the points tried, but not identically",
                 }
             ),
             Integrability::NonlinearInVelocity => {
@@ -106,8 +106,8 @@ impl std::fmt::Display for Integrability {
 /// `[X, Y] = Y_x X − X_x Y` are added until the rank stays; what it lacks is the number of integrals. Fields
 /// are differentiated exactly. Ranks are taken at points round `state` and the way up to `end`, in the
 /// scene's own sizes: a rank there is certain, and what adds none may do so elsewhere, or be lost in
-/// round-off. So *integrable*, and *partly*, are said only where every further bracket vanishes by
-/// simplification, or none is needed.
+/// round-off. So *integrable*, and *partly*, are said only where every further bracket vanishes
+/// identically, or none is needed.
 ///
 /// # Errors
 /// [`RemovalError::Dependent`] where `A` has no full row rank at `state`.

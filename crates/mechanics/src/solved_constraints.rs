@@ -11,6 +11,9 @@ use crate::{RemovalError, State, System};
 /// cancels in them.
 const TERMS: usize = 5_000;
 
+/// Nodes of a coefficient that is not multiplied out: how many terms it would have is not even counted.
+const LONG: usize = 1_000;
+
 /// Terms of a coefficient that is multiplied out to clear it of denominators.
 const CLEARED: usize = 10_000;
 
@@ -59,7 +62,9 @@ impl SolvedConstraints {
         for (row, &offset) in rows.iter_mut().zip(&offsets).filter(|(_, b)| !g.is_zero(**b)) {
             row.insert(n, offset);
         }
-        let known = |e: Expr| Entry { e, number: g.evaluate(e, &values).unwrap_or(f64::NAN), size: g.size(&[e]) };
+        let number = |e: Expr| g.evaluate(e, &values).unwrap_or(f64::NAN);
+        let sized = |e: Expr, number: f64| Entry { e, number, size: g.size(&[e]) };
+        let known = |e: Expr| sized(e, number(e));
         let all_known = |row: BTreeMap<usize, Expr>| row.into_iter().map(|(j, e)| (j, known(e))).collect();
         let mut matrix: SparseMatrix<Entry> = SparseMatrix::new(rows.into_iter().map(all_known).collect());
         let beside: HashMap<Symbol, f64> = values.iter().map(|(&s, x)| (s, (1.0 + BESIDE) * x)).collect();
@@ -67,50 +72,69 @@ impl SolvedConstraints {
             let value = g.bounded(entry.e, &beside).filter(|value| value.is_finite());
             value.map_or(f64::INFINITY, |value| value.magnitude)
         };
-        let mut pivots: BTreeMap<usize, usize> = BTreeMap::new();
-        let mut quotients = Vec::new();
         let mut terms_left = TERMS;
+        // before − factor · entry, with the pivot that divides entry
+        let mut difference = |before: Entry, factor: Entry, entry: Entry, pivot: Expr| -> Option<Entry> {
+            let was_zero = before.number == 0.0 && (factor.number == 0.0 || entry.number == 0.0);
+            let e = g.sub(before.e, g.mul(factor.e, entry.e));
+            let subtracted = factor.number * entry.number;
+            // where nothing cancels, the numbers are as good as the expression
+            let same = (before.number - subtracted).abs() > CANCELLED * (before.number.abs() + subtracted.abs());
+            let mut rest = sized(e, if same { before.number - subtracted } else { number(e) });
+            // sin²/cos + cos is 1/cos
+            let over_pivot = g.sub(g.mul(before.e, pivot), g.mul(factor.e, g.mul(entry.e, pivot)));
+            let terms = if rest.size > LONG { usize::MAX } else { g.expanded_terms(over_pivot) };
+            if terms <= terms_left {
+                terms_left -= terms;
+                let over_pivot = known(cleared(g, g.div(g.expand(over_pivot), pivot)));
+                let is_short = 3 * over_pivot.size <= 4 * rest.size;
+                let better = is_short && added_up(over_pivot) <= ADDED_UP * added_up(rest);
+                rest = if better { over_pivot } else { rest };
+            }
+            // what cancels unsimplified would be taken for a pivot, or for a dependence that is none
+            let terms = before.number.abs() + subtracted.abs();
+            let cancels = was_zero || rest.number.abs() <= CANCELLED * terms;
+            let stays = !(g.is_zero(rest.e) || cancels && g.vanishes_exactly(rest.e));
+            if was_zero || cancels && g.is_round_off(rest.e, &values) {
+                rest.number = 0.0;
+            }
+            stays.then_some(rest)
+        };
+        let mut quotients = Vec::new();
+        // columns, pivots and rows over them, in the order of elimination
+        let mut eliminated: Vec<(usize, Expr, BTreeMap<usize, Entry>)> = Vec::with_capacity(h);
         for _ in 0..h {
-            let (p, c) = choose_pivot(candidates(&matrix, &pivots, &speeds))?;
-            let Some(Pivot { entry: pivot, row: undivided, column }) = matrix.take(p, c) else { break };
-            let divided =
-                |entry: &Entry| Entry { number: entry.number / pivot.number, ..known(g.div(entry.e, pivot.e)) };
-            let row: BTreeMap<usize, Entry> = undivided.iter().map(|(&j, entry)| (j, divided(entry))).collect();
+            let (p, c) = choose_pivot(candidates(&matrix, &speeds))?;
+            let Some(Pivot { entry: pivot, row, column }) = matrix.take(p, c) else { break };
+            let divided = |entry: Entry| sized(g.div(entry.e, pivot.e), entry.number / pivot.number);
+            let row: BTreeMap<usize, Entry> = row.into_iter().map(|(j, entry)| (j, divided(entry))).collect();
             quotients.extend(row.range(..n).map(|(_, entry)| entry.e));
             for (i, factor) in column {
-                for (&j, entry) in &row {
+                for (&j, &entry) in &row {
                     let before = matrix.rows()[i].get(&j).copied().unwrap_or_else(|| known(g.zero()));
-                    let was_zero = before.number == 0.0 && (factor.number == 0.0 || entry.number == 0.0);
-                    let mut rest = known(g.sub(before.e, g.mul(factor.e, entry.e)));
-                    // sin²/cos + cos is 1/cos
-                    let over_pivot = g.sub(g.mul(before.e, pivot.e), g.mul(factor.e, undivided[&j].e));
-                    let terms = g.expanded_terms(over_pivot);
-                    if terms <= terms_left {
-                        terms_left -= terms;
-                        let over_pivot = known(cleared(g, g.div(g.expand(over_pivot), pivot.e)));
-                        let is_short = 3 * over_pivot.size <= 4 * rest.size;
-                        let better = is_short && added_up(over_pivot) <= ADDED_UP * added_up(rest);
-                        rest = if better { over_pivot } else { rest };
-                    }
-                    // what cancels unsimplified would be taken for a pivot, or for a dependence that is none
-                    let terms = before.number.abs() + (factor.number * entry.number).abs();
-                    let cancels = was_zero || rest.number.abs() <= CANCELLED * terms;
-                    let stays = !(g.is_zero(rest.e) || cancels && g.vanishes_exactly(rest.e));
-                    if was_zero || cancels && g.is_round_off(rest.e, &values) {
-                        rest.number = 0.0;
-                    }
-                    matrix.set(i, j, stays.then_some(rest));
+                    matrix.set(i, j, difference(before, factor, entry, pivot.e));
                 }
             }
-            matrix.put_row(p, row);
-            pivots.insert(c, p);
+            eliminated.push((c, pivot.e, row));
         }
-        let dependent: Vec<usize> = pivots.keys().copied().collect();
-        let independent: Vec<usize> = (0..n).filter(|j| !pivots.contains_key(j)).collect();
-        let rows: Vec<&BTreeMap<usize, Entry>> = pivots.values().map(|&p| &matrix.rows()[p]).collect();
+        // of later columns the earlier rows contain few: each is replaced once
+        let mut solved: BTreeMap<usize, (Expr, BTreeMap<usize, Entry>)> = BTreeMap::new();
+        for (c, pivot, mut row) in eliminated.into_iter().rev() {
+            for (later, (divisor, entries)) in &solved {
+                let Some(factor) = row.remove(later) else { continue };
+                for (&j, &entry) in entries {
+                    let before = row.remove(&j).unwrap_or_else(|| known(g.zero()));
+                    row.extend(difference(before, factor, entry, *divisor).map(|rest| (j, rest)));
+                }
+            }
+            solved.insert(c, (pivot, row));
+        }
+        let dependent: Vec<usize> = solved.keys().copied().collect();
+        let independent: Vec<usize> = (0..n).filter(|j| !solved.contains_key(j)).collect();
         let entry = |row: &BTreeMap<usize, Entry>, j: usize| row.get(&j).map_or(g.zero(), |entry| g.neg(entry.e));
-        let solution = Matrix::from_fn(h, independent.len(), |i, j| entry(rows[i], independent[j]));
-        let offset = rows.iter().map(|row| entry(row, n)).collect();
+        let row = |i: usize| &solved[&dependent[i]].1;
+        let solution = Matrix::from_fn(h, independent.len(), |i, j| entry(row(i), independent[j]));
+        let offset = (0..h).map(|i| entry(row(i), n)).collect();
         Ok(SolvedConstraints { dependent, independent, solution, offset, quotients })
     }
 
@@ -146,11 +170,11 @@ impl SolvedConstraints {
     }
 }
 
-/// What is no pivot yet, with its part in its row, all coordinates as fast as each other, and the length of
+/// What may be a pivot, with its part in its row, all coordinates as fast as each other, and the length of
 /// its expression.
-fn candidates(matrix: &SparseMatrix<Entry>, taken: &BTreeMap<usize, usize>, speeds: &[f64]) -> Vec<Candidate> {
+fn candidates(matrix: &SparseMatrix<Entry>, speeds: &[f64]) -> Vec<Candidate> {
     let mut candidates = Vec::new();
-    for (i, row) in matrix.rows().iter().enumerate().filter(|(i, _)| !taken.values().any(|p| p == i)) {
+    for (i, row) in matrix.rows().iter().enumerate() {
         let size = |(&j, entry): (&usize, &Entry)| entry.number.abs() * speeds[j];
         let scale = row.range(..speeds.len()).map(size).fold(0.0, f64::max);
         for (&j, entry) in row.range(..speeds.len()) {

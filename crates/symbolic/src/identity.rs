@@ -14,7 +14,8 @@ const TRIES: usize = 20 * POINTS;
 #[derive(Clone, Copy, PartialEq, Debug)]
 #[non_exhaustive]
 pub enum Vanishing {
-    /// Its normal form is the number zero. Only this allows to take it out of an equation.
+    /// Zero for all values of its symbols: its normal form is the number zero, or it is zero as a rational
+    /// function of symbols, sines, roots and other functions. Only this allows to take it out of an equation.
     Exactly,
     /// Zero within round-off at `points` random points; it may differ from zero elsewhere.
     Numerically {
@@ -47,8 +48,8 @@ impl Vanishing {
 }
 
 impl Graph {
-    /// Is `e` identically zero? Exact by expansion where that succeeds, else by evaluation at random points
-    /// (fixed seed; both signs, sizes from 0.01 to 100) against the round-off bound of the evaluation itself.
+    /// Is `e` identically zero? Exact in a finite field or by expansion where that succeeds, else at random
+    /// points (fixed seed; both signs, sizes from 0.01 to 100) against the round-off bound of the evaluation.
     /// `constants` are numbers to put in first; where they do not stay exact, what they cancel to is
     /// round-off as well.
     ///
@@ -83,17 +84,8 @@ impl Graph {
     /// ```
     #[track_caller]
     pub fn vanishes_exactly(&self, e: Expr) -> bool {
-        let split = || {
-            let mut arena = self.arena.borrow_mut();
-            let e = arena.with_split_angles(e);
-            arena.is_zero_rational(e)
-        };
-        let zero = self.arena.borrow().is_zero_rational(e)
-            || match self.vanishes_in_truth(e, &HashMap::new()) {
-                Vanishing::Exactly => true,
-                Vanishing::No { .. } => false,
-                _ => split(),
-            };
+        let zero =
+            self.arena.borrow().is_zero_rational(e) || self.vanishes_in_truth(e, &HashMap::new()) == Vanishing::Exactly;
         zero != faults::goes_wrong("answer turned")
     }
 
@@ -129,8 +121,10 @@ impl Graph {
         if matches!(sampled, Vanishing::No { .. }) {
             return sampled;
         }
-        let normal = self.arena.borrow_mut().normal_numerator(e, TERM_LIMIT);
-        if normal == Some(Arena::ZERO) { Vanishing::Exactly } else { sampled }
+        let mut arena = self.arena.borrow_mut();
+        let by_normal_form = |arena: &mut Arena| arena.normal_numerator(e, TERM_LIMIT) == Some(Arena::ZERO);
+        let zero = arena.is_zero_split(e).unwrap_or_else(|| by_normal_form(&mut arena));
+        if zero { Vanishing::Exactly } else { sampled }
     }
 
     /// The numerical test, at these values of the constants.

@@ -23,6 +23,32 @@ impl Arena {
         e == Arena::ZERO || (1..=POINTS).all(|seed| self.in_field(e, seed) == Some(0))
     }
 
+    /// Whether `e` is zero, sines and cosines of sums taken apart; `None` where it is not as a rational
+    /// function, and has roots, other functions or rounded numbers that may obey more.
+    pub(crate) fn is_zero_split(&mut self, e: Expr) -> Option<bool> {
+        let e = self.with_split_angles(e);
+        let zero = (1..=POINTS).try_fold(true, |zero, seed| Some(zero && self.in_field(e, seed)? == 0))?;
+        (zero || self.is_free(e)).then_some(zero)
+    }
+
+    /// Whether symbols, sines, cosines and hyperbolic ones are all that `e` is a rational function of.
+    fn is_free(&self, e: Expr) -> bool {
+        let whole = |exponent: &Rational| exponent.as_integer().is_some();
+        self.reachable(&[e], |_| true).into_iter().all(|n| match self.node(n) {
+            Node::Number(x) => !matches!(x, Number::Float(_)),
+            Node::Symbol(_) => true,
+            Node::Sum(constant, terms) => {
+                let numbers = terms.iter().map(|(_, c)| c).chain([constant]);
+                numbers.into_iter().all(|x| !matches!(x, Number::Float(_)))
+            }
+            Node::Product(factors) => factors.iter().all(|(_, exponent)| whole(exponent)),
+            Node::Call(function, _) => {
+                matches!(function, Function::Sin | Function::Cos | Function::Sinh | Function::Cosh)
+            }
+            Node::Power(..) | Node::Atan2(..) => false,
+        })
+    }
+
     /// The value at the point `seed`; `None` where something is divided by zero.
     fn in_field(&self, e: Expr, seed: u64) -> Option<u64> {
         let mut values: FxHashMap<Expr, u64> = FxHashMap::default();
@@ -89,8 +115,11 @@ fn power(base: u64, exponent: Rational, root: u64) -> Option<u64> {
     Some(times(whole, root))
 }
 
+/// `a b` modulo `P`: `2⁶¹` is 1.
 fn times(a: u64, b: u64) -> u64 {
-    (u128::from(a) * u128::from(b) % u128::from(P)) as u64
+    let product = u128::from(a) * u128::from(b);
+    let sum = (product as u64 & P) + (product >> 61) as u64;
+    if sum >= P { sum - P } else { sum }
 }
 
 fn raised(mut base: u64, mut exponent: u64) -> u64 {

@@ -266,3 +266,21 @@ fn what_switches_on_far_away_does_not_vanish_exactly() {
         assert!(g.vanishes_exactly(read(&g, text)), "{text}");
     }
 }
+
+/// Its normal form has more terms than are written; and a value at random points, less than its round-off.
+#[test]
+fn what_is_too_long_to_multiply_out_is_decided_as_a_rational_function() {
+    let g = Graph::new();
+    let sum = |i: usize| format!("(a{i}*cos(x{i}) + b{i}*sin(y) + c{i} - d{i}/z)");
+    let product = (0..6).map(sum).collect::<Vec<_>>().join("*");
+    let zero = format!("({product})*(sin(x0 + y) + w) - ({product})*(sin(x0)*cos(y) + cos(x0)*sin(y)) - ({product})*w");
+    let none = HashMap::new();
+    assert_eq!(g.vanishes(read(&g, &zero), &none), Vanishing::Exactly);
+    assert!(g.vanishes_exactly(read(&g, &zero)));
+    let small = read(&g, &format!("{zero} + w*z/10^30"));
+    assert!(matches!(g.vanishes(small, &none), Vanishing::Numerically { .. }));
+    assert!(!g.vanishes_exactly(small));
+    // roots that are no independent numbers
+    let roots = read(&g, "(1 + sqrt(x))*(1 - sqrt(x)) - 1 + x");
+    assert_eq!(g.vanishes(roots, &none), Vanishing::Exactly);
+}

@@ -245,9 +245,9 @@ fn checked(f: &Finding) -> &'static str {
     let all = || f.printed.lines.iter().chain(&f.corrected.lines);
     match (f.verdict, f.along.is_some()) {
         (Verdict::Definition, _) => "–",
-        (_, true) => "simplified; along a motion",
+        (_, true) => "identically; along a motion",
         _ if all().any(|l| matches!(l.residual, Vanishing::Numerically { .. })) => "at random points",
-        _ => "simplified",
+        _ => "identically",
     }
 }
 

@@ -50,17 +50,14 @@ fn subtract_row<E: Entry>(matrix: &mut [E], width: usize, begin: usize, from: us
     into.iter_mut().zip(of).for_each(|(x, y)| *x = *x - factor * *y);
 }
 
-/// `matrix · columns`, of sizes rows×inner and inner×width, added to `into` with a sign.
+/// Subtracts `matrix · columns`, of sizes rows×inner and inner×width, from `into`.
 pub(crate) fn subtract_product<E: Entry>(into: &mut [E], matrix: &[E], columns: &[E], inner: usize, width: usize) {
-    for (row, into) in into.chunks_exact_mut(width).enumerate() {
-        for j in 0..inner {
-            let factor = matrix[row * inner + j];
-            if factor.weight() != 0.0 {
-                for (x, &c) in into.iter_mut().zip(&columns[j * width..(j + 1) * width]) {
-                    *x = *x - factor * c;
-                }
-            }
-        }
+    let mut multiples: Vec<(E, &[E])> = Vec::with_capacity(inner);
+    for (factors, into) in matrix.chunks_exact(inner.max(1)).zip(into.chunks_exact_mut(width)) {
+        multiples.clear();
+        let all = factors.iter().zip(columns.chunks_exact(width)).filter(|(factor, _)| factor.weight() != 0.0);
+        multiples.extend(all.map(|(&factor, row)| (factor, row)));
+        E::subtract_multiples(into, &multiples);
     }
 }
 

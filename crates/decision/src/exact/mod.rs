@@ -4,6 +4,7 @@
 mod dual;
 mod field;
 mod jet;
+mod kept;
 mod linear;
 mod modular;
 mod rational;
@@ -69,6 +70,12 @@ pub trait Entry:
     fn inverse(self) -> Option<Self>;
     /// What a pivot is chosen by; 0 for 0.
     fn weight(self) -> f64;
+    /// Subtracts each factor times its row.
+    fn subtract_multiples(into: &mut [Self], multiples: &[(Self, &[Self])]) {
+        for (factor, row) in multiples {
+            into.iter_mut().zip(*row).for_each(|(x, &y)| *x = *x - *factor * y);
+        }
+    }
 }
 
 /// Coefficients of a power series.
@@ -118,6 +125,10 @@ impl Entry for Modular {
 
     fn weight(self) -> f64 {
         if self.is_zero() { 0.0 } else { 1.0 }
+    }
+
+    fn subtract_multiples(into: &mut [Self], multiples: &[(Self, &[Self])]) {
+        Modular::subtract_multiples(into, multiples);
     }
 }
 

@@ -11,16 +11,16 @@
 //! and what is zero is looked at in a second one. [`in_field`] says in which field a computation is.
 
 use std::ops::{Add, Mul, Neg, Sub};
-use std::sync::LazyLock;
 
 use symbolic::Fraction;
 
 use super::Flaw;
-use super::field::{FIELDS, field, in_field};
+use super::field::field;
+use super::kept::{KEPT, kept};
 use super::rational::{Exact, PARTS, inverse};
 
 /// The image of `e` is this power of that of `e^i`.
-const NEPER: u64 = 271_828_182_845;
+pub(super) const NEPER: u64 = 271_828_182_845;
 /// `p − 1 = 2^5 · odd`.
 const TWOS: u32 = 5;
 /// Primes whose roots are sums of roots of unity.
@@ -40,66 +40,8 @@ fn reduce(x: u128) -> u64 {
     if t >= field.prime { t - field.prime } else { t }
 }
 
-/// Small numbers whose images and inverses are kept.
-const KEPT: usize = 64;
-
-/// Images that are asked for again and again, of one field.
-struct Kept {
-    whole: [Modular; KEPT],
-    over: [Modular; KEPT],
-    half_over_i: Modular,
-    circle: Powers,
-    neper: Powers,
-    root: Powers,
-}
-
-static KEPT_IMAGES: LazyLock<[Kept; FIELDS.len()]> = LazyLock::new(|| {
-    FIELDS.each_ref().map(|field| {
-        in_field(field, || {
-            let whole: [Modular; KEPT] = std::array::from_fn(|x| Modular::new(x as u64));
-            let over = whole.map(|x| x.inverse().unwrap_or(Modular::ZERO));
-            let (circle, root) = (Modular::new(field.circle), Modular::new(field.root));
-            // 1/i = −i
-            let half_over_i = -(over[2] * root.power(PARTS as u64 / 2));
-            let powers = Powers::new;
-            Kept {
-                whole,
-                over,
-                half_over_i,
-                circle: powers(circle),
-                neper: powers(circle.power(NEPER)),
-                root: powers(root),
-            }
-        })
-    })
-});
-
-fn kept() -> &'static Kept {
-    &KEPT_IMAGES[field().number]
-}
-
-/// `b^{j 256^i}`, by which a power of `b` takes one product per byte of its exponent.
-struct Powers(Vec<[Modular; 256]>);
-
-impl Powers {
-    /// For exponents under `2^48`.
-    fn new(base: Modular) -> Self {
-        let mut base = base;
-        let table = |_| {
-            let mut table = [Modular::one(); 256];
-            (1..256).for_each(|j| table[j] = table[j - 1] * base);
-            base = table[255] * base;
-            table
-        };
-        Powers((0..6).map(table).collect())
-    }
-
-    fn power(&self, exponent: u64) -> Modular {
-        let bytes = exponent.to_le_bytes();
-        let factors = self.0.iter().zip(bytes).filter(|(_, byte)| *byte != 0);
-        factors.fold(Modular::one(), |product, (table, byte)| product * table[usize::from(byte)])
-    }
-}
+/// So many products of elements add up to less than `p 2^64`.
+const PRODUCTS: usize = 8;
 
 impl Modular {
     /// 0.
@@ -186,12 +128,21 @@ impl Modular {
     /// `Σ a_i b_{m−1−i}` of two slices of the length m.
     pub(crate) fn convolution(a: &[Self], b: &[Self]) -> Self {
         let mut total = Self::ZERO;
-        // eight products stay below p 2^64
-        for (a, b) in a.chunks(8).zip(b.rchunks(8)) {
+        for (a, b) in a.chunks(PRODUCTS).zip(b.rchunks(PRODUCTS)) {
             let sum: u128 = a.iter().zip(b.iter().rev()).map(|(a, b)| u128::from(a.0) * u128::from(b.0)).sum();
             total = total + Modular(reduce(sum));
         }
         total
+    }
+
+    /// Subtracts each factor times its row.
+    pub(crate) fn subtract_multiples(into: &mut [Self], multiples: &[(Self, &[Self])]) {
+        for multiples in multiples.chunks(PRODUCTS) {
+            for (j, x) in into.iter_mut().enumerate() {
+                let sum = multiples.iter().map(|(factor, row)| u128::from(factor.0) * u128::from(row[j].0)).sum();
+                *x = *x - Modular(reduce(sum));
+            }
+        }
     }
 
     /// The exponent of the image of `b^x`, for `b` of order `r`.
@@ -341,6 +292,7 @@ impl Mul for Modular {
 
 #[cfg(test)]
 mod tests {
+    use super::super::field::{FIELDS, in_field};
     use super::*;
 
     fn ratio(n: i128, d: i128) -> Exact {
@@ -384,6 +336,21 @@ mod tests {
         assert_eq!(Modular::root(ratio(16, 25)).unwrap().1, Some(ratio(4, 5)));
         let exponential = |n, d| Modular::exponential(ratio(n, d)).unwrap();
         assert_eq!(exponential(1, 2) * exponential(1, 3), exponential(5, 6));
+    }
+
+    #[test]
+    fn multiples_of_rows_are_subtracted_one_as_the_other() {
+        let element = |i: u64| Modular::new(Modular::prime() - 1 - i * i);
+        let rows: Vec<Vec<Modular>> = (0..19).map(|i| (0..5).map(|j| element(7 * i + j)).collect()).collect();
+        let multiples: Vec<(Modular, &[Modular])> =
+            rows.iter().map(|row| (element(row.len() as u64), &row[..])).collect();
+        let mut into: Vec<Modular> = (0..5).map(|j| Modular::new(3 * j)).collect();
+        let mut plain = into.clone();
+        for (factor, row) in &multiples {
+            plain.iter_mut().zip(*row).for_each(|(x, y)| *x = *x - *factor * *y);
+        }
+        Modular::subtract_multiples(&mut into, &multiples);
+        assert_eq!(into, plain);
     }
 
     #[test]

@@ -177,7 +177,7 @@ pub fn integrals_put_in(recipe: &Recipe, scene: &Scene, findings: &mut Findings)
         findings.require(11, "ranks over a finite field count the integrals", right, note);
     }
     if let Integrability::Integrable { exact } = found {
-        findings.count(11, "integrable, and the brackets vanish by simplification", exact);
+        findings.count(11, "integrable, and the brackets vanish identically", exact);
     }
     Ok(())
 }
