@@ -1,9 +1,8 @@
 //! How cost grows: counts that do not depend on the machine.
 
-use catalogue::trailer::{self, Coordinates};
+use catalogue::trailer::Coordinates;
 use deltaq::{CHETAEV, REDUCED_CHETAEV, REDUCED_VAKONOMIC};
 use equations::Formulation;
-use mechanics::Removal;
 use validation::scaling::{FROM, Limits, TRAILERS, counts, exponent, line};
 
 #[test]
@@ -41,15 +40,4 @@ fn a_line_has_a_point_for_every_length_and_says_where_it_ends() {
         .expect("has equations");
     assert_eq!(cut.points.len(), 1);
     assert!(cut.ended.is_some(), "its derivation takes longer than no time at all");
-}
-
-/// Rows are replaced once, when all later ones are solved: 13,801 expressions; after every pivot: 91,259.
-#[test]
-fn a_removal_replaces_every_row_once() {
-    let scene = trailer::scene(28, Coordinates::Maximal).expect("a train");
-    let before = scene.system.graph.nodes();
-    let removal = Removal::by_coordinates(&scene.system, &scene.start).expect("a removal");
-    let made = scene.system.graph.nodes() - before;
-    assert!(made < 30_000, "{made} expressions");
-    assert_eq!(removal.verify(&scene.system), Ok(true), "the constraints vanish at random points only");
 }

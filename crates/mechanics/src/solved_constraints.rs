@@ -73,8 +73,8 @@ impl SolvedConstraints {
             value.map_or(f64::INFINITY, |value| value.magnitude)
         };
         let mut terms_left = TERMS;
-        // before − factor · entry, with the pivot that divides entry
-        let mut difference = |before: Entry, factor: Entry, entry: Entry, pivot: Expr| -> Option<Entry> {
+        // before − factor · entry, where entry is undivided/pivot
+        let mut difference = |before: Entry, factor: Entry, entry: Entry, (undivided, pivot): (Expr, Expr)| {
             let was_zero = before.number == 0.0 && (factor.number == 0.0 || entry.number == 0.0);
             let e = g.sub(before.e, g.mul(factor.e, entry.e));
             let subtracted = factor.number * entry.number;
@@ -82,7 +82,7 @@ impl SolvedConstraints {
             let same = (before.number - subtracted).abs() > CANCELLED * (before.number.abs() + subtracted.abs());
             let mut rest = sized(e, if same { before.number - subtracted } else { number(e) });
             // sin²/cos + cos is 1/cos
-            let over_pivot = g.sub(g.mul(before.e, pivot), g.mul(factor.e, g.mul(entry.e, pivot)));
+            let over_pivot = g.sub(g.mul(before.e, pivot), g.mul(factor.e, undivided));
             let terms = if rest.size > LONG { usize::MAX } else { g.expanded_terms(over_pivot) };
             if terms <= terms_left {
                 terms_left -= terms;
@@ -100,41 +100,29 @@ impl SolvedConstraints {
             }
             stays.then_some(rest)
         };
+        let mut pivots: BTreeMap<usize, usize> = BTreeMap::new();
         let mut quotients = Vec::new();
-        // columns, pivots and rows over them, in the order of elimination
-        let mut eliminated: Vec<(usize, Expr, BTreeMap<usize, Entry>)> = Vec::with_capacity(h);
         for _ in 0..h {
-            let (p, c) = choose_pivot(candidates(&matrix, &speeds))?;
-            let Some(Pivot { entry: pivot, row, column }) = matrix.take(p, c) else { break };
-            let divided = |entry: Entry| sized(g.div(entry.e, pivot.e), entry.number / pivot.number);
-            let row: BTreeMap<usize, Entry> = row.into_iter().map(|(j, entry)| (j, divided(entry))).collect();
+            let (p, c) = choose_pivot(candidates(&matrix, &pivots, &speeds))?;
+            let Some(Pivot { entry: pivot, row: undivided, column }) = matrix.take(p, c) else { break };
+            let divided = |entry: &Entry| sized(g.div(entry.e, pivot.e), entry.number / pivot.number);
+            let row: BTreeMap<usize, Entry> = undivided.iter().map(|(&j, entry)| (j, divided(entry))).collect();
             quotients.extend(row.range(..n).map(|(_, entry)| entry.e));
             for (i, factor) in column {
                 for (&j, &entry) in &row {
-                    let before = matrix.rows()[i].get(&j).copied().unwrap_or_else(|| known(g.zero()));
-                    matrix.set(i, j, difference(before, factor, entry, pivot.e));
+                    let before = matrix.rows()[i].get(&j).copied().unwrap_or_else(|| sized(g.zero(), 0.0));
+                    matrix.set(i, j, difference(before, factor, entry, (undivided[&j].e, pivot.e)));
                 }
             }
-            eliminated.push((c, pivot.e, row));
+            matrix.put_row(p, row);
+            pivots.insert(c, p);
         }
-        // of later columns the earlier rows contain few: each is replaced once
-        let mut solved: BTreeMap<usize, (Expr, BTreeMap<usize, Entry>)> = BTreeMap::new();
-        for (c, pivot, mut row) in eliminated.into_iter().rev() {
-            for (later, (divisor, entries)) in &solved {
-                let Some(factor) = row.remove(later) else { continue };
-                for (&j, &entry) in entries {
-                    let before = row.remove(&j).unwrap_or_else(|| known(g.zero()));
-                    row.extend(difference(before, factor, entry, *divisor).map(|rest| (j, rest)));
-                }
-            }
-            solved.insert(c, (pivot, row));
-        }
-        let dependent: Vec<usize> = solved.keys().copied().collect();
-        let independent: Vec<usize> = (0..n).filter(|j| !solved.contains_key(j)).collect();
+        let dependent: Vec<usize> = pivots.keys().copied().collect();
+        let independent: Vec<usize> = (0..n).filter(|j| !pivots.contains_key(j)).collect();
+        let rows: Vec<&BTreeMap<usize, Entry>> = pivots.values().map(|&p| &matrix.rows()[p]).collect();
         let entry = |row: &BTreeMap<usize, Entry>, j: usize| row.get(&j).map_or(g.zero(), |entry| g.neg(entry.e));
-        let row = |i: usize| &solved[&dependent[i]].1;
-        let solution = Matrix::from_fn(h, independent.len(), |i, j| entry(row(i), independent[j]));
-        let offset = (0..h).map(|i| entry(row(i), n)).collect();
+        let solution = Matrix::from_fn(h, independent.len(), |i, j| entry(rows[i], independent[j]));
+        let offset = rows.iter().map(|row| entry(row, n)).collect();
         Ok(SolvedConstraints { dependent, independent, solution, offset, quotients })
     }
 
@@ -170,11 +158,11 @@ impl SolvedConstraints {
     }
 }
 
-/// What may be a pivot, with its part in its row, all coordinates as fast as each other, and the length of
+/// What is no pivot yet, with its part in its row, all coordinates as fast as each other, and the length of
 /// its expression.
-fn candidates(matrix: &SparseMatrix<Entry>, speeds: &[f64]) -> Vec<Candidate> {
+fn candidates(matrix: &SparseMatrix<Entry>, taken: &BTreeMap<usize, usize>, speeds: &[f64]) -> Vec<Candidate> {
     let mut candidates = Vec::new();
-    for (i, row) in matrix.rows().iter().enumerate() {
+    for (i, row) in matrix.rows().iter().enumerate().filter(|(i, _)| !taken.values().any(|p| p == i)) {
         let size = |(&j, entry): (&usize, &Entry)| entry.number.abs() * speeds[j];
         let scale = row.range(..speeds.len()).map(size).fold(0.0, f64::max);
         for (&j, entry) in row.range(..speeds.len()) {
