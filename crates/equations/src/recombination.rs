@@ -38,7 +38,6 @@ impl Equations {
             recombination.ratio
         );
         self.left_out.push(LeftOut { variables: Vec::new(), words });
-        self.lost_digits = recombination.ratio.recip();
         self
     }
 }

@@ -2,9 +2,9 @@
 //! of the graph evaluated on them.
 
 mod dual;
+mod element;
 mod field;
 mod jet;
-mod kept;
 mod linear;
 mod modular;
 mod rational;
@@ -13,11 +13,11 @@ mod small_fraction;
 use symbolic::{Bounded, Scalar};
 
 pub use dual::Dual;
+pub use element::Modular;
 pub use field::{FIELDS, Field, agreed, in_any_field, in_field};
 pub use jet::{Jet, ORDERS};
 pub use linear::{Echelon, inverse, nullspace};
 pub(crate) use linear::{solve, subtract_product};
-pub use modular::Modular;
 pub(crate) use modular::TRIED;
 pub use rational::Exact;
 pub(crate) use rational::PARTS;

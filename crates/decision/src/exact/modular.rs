@@ -10,17 +10,15 @@
 //! Coefficients may be multiples of a prime, or alike modulo it: what is not zero in one field is not zero,
 //! and what is zero is looked at in a second one. [`in_field`] says in which field a computation is.
 
-use std::ops::{Add, Mul, Neg, Sub};
+use std::sync::LazyLock;
 
 use symbolic::Fraction;
 
 use super::Flaw;
-use super::field::field;
-use super::kept::{KEPT, kept};
+use super::element::Modular;
+use super::field::{FIELDS, field, in_field};
 use super::rational::{Exact, PARTS, inverse};
 
-/// The image of `e` is this power of that of `e^i`.
-pub(super) const NEPER: u64 = 271_828_182_845;
 /// `p − 1 = 2^5 · odd`.
 const TWOS: u32 = 5;
 /// Primes whose roots are sums of roots of unity.
@@ -28,44 +26,70 @@ const CYCLOTOMIC: [i128; 6] = [2, 3, 5, 7, 11, 13];
 /// Prime factors under this are looked for under roots.
 pub(crate) const TRIED: i128 = 4096;
 
-/// An element of the field, as `x 2^64` modulo `p` (Montgomery).
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Modular(u64);
+/// The image of `e` is this power of that of `e^i`.
+const NEPER: u64 = 271_828_182_845;
+/// Small numbers whose images and inverses are kept.
+const KEPT: usize = 64;
 
-/// `x / 2^64` modulo `p`, for `x < p 2^64`.
-fn reduce(x: u128) -> u64 {
-    let field = field();
-    let m = (x as u64).wrapping_mul(field.inverse);
-    let t = ((x + u128::from(m) * u128::from(field.prime)) >> 64) as u64;
-    if t >= field.prime { t - field.prime } else { t }
+/// Images that are asked for again and again, of one field.
+struct Kept {
+    whole: [Modular; KEPT],
+    over: [Modular; KEPT],
+    half_over_i: Modular,
+    circle: Powers,
+    neper: Powers,
+    root: Powers,
 }
 
-/// So many products of elements add up to less than `p 2^64`.
-const PRODUCTS: usize = 8;
+static KEPT_IMAGES: LazyLock<[Kept; FIELDS.len()]> = LazyLock::new(|| {
+    FIELDS.each_ref().map(|field| {
+        in_field(field, || {
+            let whole: [Modular; KEPT] = std::array::from_fn(|x| Modular::new(x as u64));
+            let over = whole.map(|x| x.inverse().unwrap_or(Modular::ZERO));
+            let (circle, root) = (Modular::new(field.circle), Modular::new(field.root));
+            // 1/i = −i
+            let half_over_i = -(over[2] * root.power(PARTS as u64 / 2));
+            let powers = Powers::new;
+            Kept {
+                whole,
+                over,
+                half_over_i,
+                circle: powers(circle),
+                neper: powers(circle.power(NEPER)),
+                root: powers(root),
+            }
+        })
+    })
+});
+
+fn kept() -> &'static Kept {
+    &KEPT_IMAGES[field().number]
+}
+
+/// `b^{j 256^i}`, by which a power of `b` takes one product per byte of its exponent.
+struct Powers(Vec<[Modular; 256]>);
+
+impl Powers {
+    /// For exponents under `2^48`.
+    fn new(base: Modular) -> Self {
+        let mut base = base;
+        let table = |_| {
+            let mut table = [Modular::one(); 256];
+            (1..256).for_each(|j| table[j] = table[j - 1] * base);
+            base = table[255] * base;
+            table
+        };
+        Powers((0..6).map(table).collect())
+    }
+
+    fn power(&self, exponent: u64) -> Modular {
+        let bytes = exponent.to_le_bytes();
+        let factors = self.0.iter().zip(bytes).filter(|(_, byte)| *byte != 0);
+        factors.fold(Modular::one(), |product, (table, byte)| product * table[usize::from(byte)])
+    }
+}
 
 impl Modular {
-    /// 0.
-    pub const ZERO: Modular = Modular(0);
-
-    /// The image of an integer.
-    pub fn new(x: u64) -> Self {
-        Modular(reduce(u128::from(x % field().prime) * u128::from(field().square)))
-    }
-
-    /// The representative in `0..p`.
-    pub fn value(self) -> u64 {
-        reduce(u128::from(self.0))
-    }
-
-    /// 1.
-    pub fn one() -> Self {
-        Modular(field().one)
-    }
-
-    pub(crate) fn prime() -> u64 {
-        field().prime
-    }
-
     /// The image of `e^{iπ turns/720720}`.
     pub(crate) fn root_of_unity(turns: i64) -> Self {
         kept().root.power(turns.rem_euclid(2 * PARTS) as u64)
@@ -75,11 +99,6 @@ impl Modular {
     pub(crate) fn exponents() -> (u64, u64, u64) {
         let circle = Self::new(field().circle);
         (field().order, circle.value(), circle.power(NEPER).value())
-    }
-
-    /// Whether it is 0.
-    pub fn is_zero(self) -> bool {
-        self.0 == 0
     }
 
     fn integer(x: i128) -> Self {
@@ -106,43 +125,6 @@ impl Modular {
             Some(base.power(exponent.unsigned_abs().into()))
         };
         Some(Self::integer(n) * over(d)? * power(2, twos)? * power(5, fives)?)
-    }
-
-    pub(crate) fn power(self, mut exponent: u64) -> Self {
-        let (mut base, mut result) = (self, Self::one());
-        while exponent > 0 {
-            if exponent & 1 == 1 {
-                result = result * base;
-            }
-            base = base * base;
-            exponent >>= 1;
-        }
-        result
-    }
-
-    /// `None` for 0.
-    pub fn inverse(self) -> Option<Self> {
-        (!self.is_zero()).then(|| self.power(field().prime - 2))
-    }
-
-    /// `Σ a_i b_{m−1−i}` of two slices of the length m.
-    pub(crate) fn convolution(a: &[Self], b: &[Self]) -> Self {
-        let mut total = Self::ZERO;
-        for (a, b) in a.chunks(PRODUCTS).zip(b.rchunks(PRODUCTS)) {
-            let sum: u128 = a.iter().zip(b.iter().rev()).map(|(a, b)| u128::from(a.0) * u128::from(b.0)).sum();
-            total = total + Modular(reduce(sum));
-        }
-        total
-    }
-
-    /// Subtracts each factor times its row.
-    pub(crate) fn subtract_multiples(into: &mut [Self], multiples: &[(Self, &[Self])]) {
-        for multiples in multiples.chunks(PRODUCTS) {
-            for (j, x) in into.iter_mut().enumerate() {
-                let sum = multiples.iter().map(|(factor, row)| u128::from(factor.0) * u128::from(row[j].0)).sum();
-                *x = *x - Modular(reduce(sum));
-            }
-        }
     }
 
     /// The exponent of the image of `b^x`, for `b` of order `r`.
@@ -261,38 +243,8 @@ impl Modular {
     }
 }
 
-impl Add for Modular {
-    type Output = Self;
-    fn add(self, other: Self) -> Self {
-        let sum = self.0 + other.0;
-        Modular(if sum >= field().prime { sum - field().prime } else { sum })
-    }
-}
-
-impl Sub for Modular {
-    type Output = Self;
-    fn sub(self, other: Self) -> Self {
-        Modular(if self.0 >= other.0 { self.0 - other.0 } else { self.0 + field().prime - other.0 })
-    }
-}
-
-impl Neg for Modular {
-    type Output = Self;
-    fn neg(self) -> Self {
-        Self::ZERO - self
-    }
-}
-
-impl Mul for Modular {
-    type Output = Self;
-    fn mul(self, other: Self) -> Self {
-        Modular(reduce(u128::from(self.0) * u128::from(other.0)))
-    }
-}
-
 #[cfg(test)]
 mod tests {
-    use super::super::field::{FIELDS, in_field};
     use super::*;
 
     fn ratio(n: i128, d: i128) -> Exact {
@@ -336,28 +288,5 @@ mod tests {
         assert_eq!(Modular::root(ratio(16, 25)).unwrap().1, Some(ratio(4, 5)));
         let exponential = |n, d| Modular::exponential(ratio(n, d)).unwrap();
         assert_eq!(exponential(1, 2) * exponential(1, 3), exponential(5, 6));
-    }
-
-    #[test]
-    fn multiples_of_rows_are_subtracted_one_as_the_other() {
-        let element = |i: u64| Modular::new(Modular::prime() - 1 - i * i);
-        let rows: Vec<Vec<Modular>> = (0..19).map(|i| (0..5).map(|j| element(7 * i + j)).collect()).collect();
-        let multiples: Vec<(Modular, &[Modular])> =
-            rows.iter().map(|row| (element(row.len() as u64), &row[..])).collect();
-        let mut into: Vec<Modular> = (0..5).map(|j| Modular::new(3 * j)).collect();
-        let mut plain = into.clone();
-        for (factor, row) in &multiples {
-            plain.iter_mut().zip(*row).for_each(|(x, y)| *x = *x - *factor * *y);
-        }
-        Modular::subtract_multiples(&mut into, &multiples);
-        assert_eq!(into, plain);
-    }
-
-    #[test]
-    fn convolutions_are_sums_of_products() {
-        let a: Vec<Modular> = (0..19).map(|i| Modular::new(Modular::prime() - 1 - i)).collect();
-        let b: Vec<Modular> = (0..19).map(|i| Modular::new(Modular::prime() - 7 - i * i)).collect();
-        let plain = (0..19).fold(Modular::ZERO, |sum, i| sum + a[i] * b[18 - i]);
-        assert_eq!(Modular::convolution(&a, &b), plain);
     }
 }

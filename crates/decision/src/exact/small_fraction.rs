@@ -2,7 +2,7 @@
 
 use symbolic::Fraction;
 
-use super::modular::Modular;
+use super::element::Modular;
 use super::rational::Exact;
 
 /// Numerators and denominators of small fractions are at most this.
