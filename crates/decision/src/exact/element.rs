@@ -122,8 +122,7 @@ mod tests {
     fn multiples_of_rows_are_subtracted_one_as_the_other() {
         let element = |i: u64| Modular::new(Modular::prime() - 1 - i * i);
         let rows: Vec<Vec<Modular>> = (0..19).map(|i| (0..5).map(|j| element(7 * i + j)).collect()).collect();
-        let multiples: Vec<(Modular, &[Modular])> =
-            rows.iter().map(|row| (element(row.len() as u64), &row[..])).collect();
+        let multiples: Vec<(Modular, &[Modular])> = (40..).zip(&rows).map(|(i, row)| (element(i), &row[..])).collect();
         let mut into: Vec<Modular> = (0..5).map(|j| Modular::new(3 * j)).collect();
         let mut plain = into.clone();
         for (factor, row) in &multiples {
