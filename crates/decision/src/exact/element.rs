@@ -74,12 +74,17 @@ impl Modular {
         total
     }
 
-    /// Subtracts each factor times its row.
-    pub(crate) fn subtract_multiples(into: &mut [Self], multiples: &[(Self, &[Self])]) {
-        for multiples in multiples.chunks(PRODUCTS) {
+    /// Subtracts each factor times its row, rows as long as `into`.
+    pub(crate) fn subtract_multiples(into: &mut [Self], factors: &[Self], rows: &[Self]) {
+        let mut multiples = factors.iter().zip(rows.chunks_exact(into.len())).filter(|(factor, _)| !factor.is_zero());
+        loop {
+            let few: [Option<(&Self, &[Self])>; PRODUCTS] = std::array::from_fn(|_| multiples.next());
+            if few[0].is_none() {
+                return;
+            }
             for (j, x) in into.iter_mut().enumerate() {
-                let sum = multiples.iter().map(|(factor, row)| u128::from(factor.0) * u128::from(row[j].0)).sum();
-                *x = *x - Modular(reduce(sum));
+                let products = few.iter().flatten().map(|(factor, row)| u128::from(factor.0) * u128::from(row[j].0));
+                *x = *x - Modular(reduce(products.sum()));
             }
         }
     }
@@ -121,14 +126,14 @@ mod tests {
     #[test]
     fn multiples_of_rows_are_subtracted_one_as_the_other() {
         let element = |i: u64| Modular::new(Modular::prime() - 1 - i * i);
-        let rows: Vec<Vec<Modular>> = (0..19).map(|i| (0..5).map(|j| element(7 * i + j)).collect()).collect();
-        let multiples: Vec<(Modular, &[Modular])> = (40..).zip(&rows).map(|(i, row)| (element(i), &row[..])).collect();
+        let rows: Vec<Modular> = (0..19 * 5).map(element).collect();
+        let factors: Vec<Modular> = (0..19).map(|i| if i % 4 == 3 { Modular::ZERO } else { element(40 + i) }).collect();
         let mut into: Vec<Modular> = (0..5).map(|j| Modular::new(3 * j)).collect();
         let mut plain = into.clone();
-        for (factor, row) in &multiples {
-            plain.iter_mut().zip(*row).for_each(|(x, y)| *x = *x - *factor * *y);
+        for (factor, row) in factors.iter().zip(rows.chunks_exact(5)) {
+            plain.iter_mut().zip(row).for_each(|(x, y)| *x = *x - *factor * *y);
         }
-        Modular::subtract_multiples(&mut into, &multiples);
+        Modular::subtract_multiples(&mut into, &factors, &rows);
         assert_eq!(into, plain);
     }
 

@@ -52,12 +52,8 @@ fn subtract_row<E: Entry>(matrix: &mut [E], width: usize, begin: usize, from: us
 
 /// Subtracts `matrix · columns`, of sizes rows×inner and inner×width, from `into`.
 pub(crate) fn subtract_product<E: Entry>(into: &mut [E], matrix: &[E], columns: &[E], inner: usize, width: usize) {
-    let mut multiples: Vec<(E, &[E])> = Vec::with_capacity(inner);
     for (factors, into) in matrix.chunks_exact(inner.max(1)).zip(into.chunks_exact_mut(width)) {
-        multiples.clear();
-        let all = factors.iter().zip(columns.chunks_exact(width)).filter(|(factor, _)| factor.weight() != 0.0);
-        multiples.extend(all.map(|(&factor, row)| (factor, row)));
-        E::subtract_multiples(into, &multiples);
+        E::subtract_multiples(into, factors, columns);
     }
 }
 

@@ -70,10 +70,11 @@ pub trait Entry:
     fn inverse(self) -> Option<Self>;
     /// What a pivot is chosen by; 0 for 0.
     fn weight(self) -> f64;
-    /// Subtracts each factor times its row.
-    fn subtract_multiples(into: &mut [Self], multiples: &[(Self, &[Self])]) {
-        for (factor, row) in multiples {
-            into.iter_mut().zip(*row).for_each(|(x, &y)| *x = *x - *factor * y);
+    /// Subtracts each factor times its row, rows as long as `into`.
+    fn subtract_multiples(into: &mut [Self], factors: &[Self], rows: &[Self]) {
+        let multiples = factors.iter().zip(rows.chunks_exact(into.len()));
+        for (&factor, row) in multiples.filter(|(factor, _)| factor.weight() != 0.0) {
+            into.iter_mut().zip(row).for_each(|(x, &y)| *x = *x - factor * y);
         }
     }
 }
@@ -127,8 +128,8 @@ impl Entry for Modular {
         if self.is_zero() { 0.0 } else { 1.0 }
     }
 
-    fn subtract_multiples(into: &mut [Self], multiples: &[(Self, &[Self])]) {
-        Modular::subtract_multiples(into, multiples);
+    fn subtract_multiples(into: &mut [Self], factors: &[Self], rows: &[Self]) {
+        Modular::subtract_multiples(into, factors, rows);
     }
 }
 
