@@ -142,6 +142,9 @@ pub struct Equations {
     /// Intermediate quantities in `(t, y, z)` and earlier ones, see [`crate::Definitions`]. Blocks and guards
     /// need only those without `z`.
     pub definitions: Vec<(Symbol, Expr)>,
+    /// Definitions that are time derivatives along the motion, with what they are derivatives of: where the
+    /// Taylor series of the latter is known one order ahead, it gives that of the former.
+    pub derivatives: Vec<(Symbol, Expr)>,
     /// `y` with rates and start.
     pub states: Vec<StateVariable>,
     /// The equations of one instant.
@@ -193,6 +196,7 @@ impl Equations {
             parameters: system.parameter_values(),
             given: system.written(),
             definitions: Vec::new(),
+            derivatives: Vec::new(),
             states: Vec::new(),
             blocks: Vec::new(),
             free_constants: Vec::new(),

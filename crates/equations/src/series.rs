@@ -1,5 +1,7 @@
 //! Taylor coefficients of a motion, from its equations.
 
+use std::collections::BTreeSet;
+
 use symbolic::{CompileError, Expr, SeriesInput, SeriesScalar, SeriesTape, SeriesWorkspace, Symbol};
 
 use crate::blocks::CompiledBlock;
@@ -48,8 +50,13 @@ impl Series {
                 residuals.push(block.residuals.clone());
             }
         }
-        let (rates, definitions) = (plan.rates(equations), plan.all_definitions(equations));
-        equations.graph.compile_series(&inputs, &definitions, &rates, &residuals, &equations.parameters)
+        let (g, rates, definitions) = (&equations.graph, plan.rates(equations), plan.all_definitions(equations));
+        let known = inputs.iter().map(|i| i.0).chain(definitions.iter().map(|d| d.0));
+        let known: BTreeSet<Symbol> = known.chain(equations.parameters.keys().copied()).collect();
+        // of what the rates do not need, some may be left out
+        let mut derivatives = equations.derivatives.clone();
+        derivatives.retain(|(symbol, of)| known.contains(symbol) && g.symbols_of(*of).is_subset(&known));
+        g.compile_series(&inputs, &definitions, &rates, &residuals, &derivatives, &equations.parameters)
     }
 
     /// The same in another number type.

@@ -113,6 +113,7 @@ impl Chain {
             block.guess = g.substitute_all(&block.guess, &starts);
         }
         equations.definitions.iter_mut().for_each(|(_, e)| put_in(e));
+        equations.derivatives.iter_mut().for_each(|(_, e)| put_in(e));
         equations.statements.iter_mut().for_each(|s| [&mut s.left, &mut s.right].into_iter().for_each(put_in));
         equations.statements.retain(|s| s.meaning != "costate" || !g.is_zero(s.right));
         equations.invariants.iter_mut().for_each(|i| put_in(&mut i.expression));

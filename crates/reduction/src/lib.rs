@@ -23,6 +23,7 @@
 mod backwards;
 mod chain;
 mod cost;
+mod drift;
 mod expressions;
 mod frame;
 mod quasi_velocities;
@@ -31,6 +32,6 @@ mod reduced_vakonomic;
 
 pub use cost::{cheapest, matrix_moves};
 pub use frame::{Frame, FrameConstraint, FrameVelocity, Turning};
-pub use quasi_velocities::{Columns, DependentVelocity, EliminatedConstraint, QuasiVelocities, QuasiVelocity};
+pub use quasi_velocities::{Columns, DependentVelocity, EliminatedConstraint, QuasiVelocities, QuasiVelocity, Single};
 pub use reduced_chetaev::{REDUCED_CHETAEV, derive_chetaev};
 pub use reduced_vakonomic::{REDUCED_VAKONOMIC, derive_vakonomic};

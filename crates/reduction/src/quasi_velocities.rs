@@ -16,5 +16,5 @@ mod columns;
 mod elimination;
 mod recursion;
 
-pub use columns::Columns;
+pub use columns::{Columns, Single};
 pub use recursion::{DependentVelocity, EliminatedConstraint, QuasiVelocities, QuasiVelocity};

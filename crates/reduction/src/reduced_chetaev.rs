@@ -29,8 +29,9 @@ use std::collections::{BTreeSet, HashMap};
 
 use crate::backwards::{adjoints, multipliers};
 use crate::chain::Chain;
+use crate::drift::{Carried, Drift};
 use crate::expressions::{SHORT, Sparse, products, sparse_rows};
-use crate::{Frame, QuasiVelocities, cheapest, matrix_moves};
+use crate::{DependentVelocity, Frame, QuasiVelocities, Single, cheapest, matrix_moves};
 use equations::{
     Block, Definitions, Derivation, DerivationError, Equations, Formulation, Named, Needs, Role, StateVariable,
     Statement,
@@ -88,20 +89,42 @@ fn in_velocities(system: System, frame: Option<Frame>, derivation: &Derivation) 
         .map_err(|error| DerivationError::Reduction { formulation: REDUCED_CHETAEV.name, error })?;
     let mut equations = Equations::new(REDUCED_CHETAEV.name, &system);
     let mut definitions = quasi.coefficients.clone();
-    quasi.hand_over(g, frame.as_ref(), &mut equations, &mut definitions);
     let columns = quasi.columns(g, &mut definitions);
-    let gamma = drift(&system, &quasi, &mut definitions);
-    let momenta = g.gradient(system.lagrangian, &system.velocities());
-    let Balance { mass, force } = match &frame {
-        None => balance(&system, &momenta, &gamma, &mut definitions),
-        Some(frame) => {
-            balance_in_frame(&system, (frame, &quasi.multiples(&system)), &momenta, &gamma, &mut definitions)
-        }
+    let value = |d: &DependentVelocity| match columns.single(d.symbol) {
+        Some(Single { column, coefficient, .. }) => g.mul(coefficient, g.variable(quasi.free[column].symbol)),
+        None => d.value(g),
     };
+    quasi.hand_over(g, value, frame.as_ref(), &mut equations, &mut definitions);
+    let drift = Drift::new(&system, &quasi, &columns, &mut equations, &mut definitions);
+    let momenta = g.gradient(system.lagrangian, &system.velocities());
+    let mass = match &frame {
+        None => sparse_rows(g, &momenta, &system.velocities()),
+        Some(frame) => frame.inertia.iter().enumerate().map(|(k, &e)| Sparse::from([(k, e)])).collect(),
+    };
+    let carried = Carried::new(&system, &drift, &mass, &mut equations, &mut definitions);
+    let multiples = quasi.multiples(&system);
+    let balance = |gamma: &[Expr]| match &frame {
+        None => balance(&system, &momenta, gamma),
+        Some(frame) => balance_in_frame(&system, (frame, &multiples), &momenta, gamma),
+    };
+    let named = |definitions: &mut Definitions, e: Expr| definitions.short(g, "r", SHORT, e);
+    let force: Vec<Expr> = balance(&drift.gamma).into_iter().map(|e| named(&mut definitions, e)).collect();
+    let mut applied = force.clone();
+    if !carried.coordinates.is_empty() {
+        let mut gamma = drift.gamma.clone();
+        carried.coordinates.iter().for_each(|&i| gamma[i] = g.zero());
+        let rest = balance(&gamma);
+        carried.coordinates.iter().for_each(|&i| applied[i] = rest[i]);
+    }
 
     // SᵀMS ẇ + Sᵀ force = 0
-    let reduced = columns.reduced(g, &mass, &mut definitions);
-    let applied = columns.projected(g, &force, &mut definitions);
+    let mut reduced = columns.without(&carried.coordinates).reduced(g, &mass, &mut definitions);
+    let mut applied = columns.projected(g, &applied, &mut definitions);
+    for (&a, &(m, rate)) in &carried.inertia {
+        let w = g.variable(quasi.free[a].symbol);
+        reduced[a][a] = g.add(reduced[a][a], m);
+        applied[a] = g.add(applied[a], g.product(&[g.ratio(1, 2), rate, w]));
+    }
     let rates: Vec<Expr> = quasi.free.iter().map(|w| g.variable(w.rate)).collect();
     let residuals: Vec<Expr> =
         reduced.iter().zip(applied).map(|(row, applied)| g.add(g.dot(row, &rates), applied)).collect();
@@ -115,7 +138,7 @@ fn in_velocities(system: System, frame: Option<Frame>, derivation: &Derivation) 
         guess: Vec::new(),
         regular: "mass matrix regular on the admissible velocities",
     }];
-    reactions(&system, &quasi, &Balance { mass, force }, &mut equations, &mut definitions);
+    reactions(&system, &quasi, (&mass, &force), &mut equations, &mut definitions);
     equations.chosen.extend(frame.map(|frame| frame.words(g)));
     hand_over(&mut equations, &system, &quasi, &momenta);
     equations.definitions = definitions.into_list();
@@ -123,47 +146,8 @@ fn in_velocities(system: System, frame: Option<Frame>, derivation: &Derivation) 
     Ok(equations)
 }
 
-/// `γ`, the accelerations at `ẇ = 0`, by coordinate.
-fn drift(system: &System, quasi: &QuasiVelocities, definitions: &mut Definitions) -> Vec<Expr> {
-    let g = &system.graph;
-    let mut flow: Vec<(Symbol, Expr)> =
-        system.coordinates.iter().map(|c| (c.position, g.variable(c.velocity))).collect();
-    flow.push((system.time, g.one()));
-    let mut rates: HashMap<Symbol, Expr> = flow.into_iter().collect();
-    let along = |rates: &HashMap<Symbol, Expr>, e: Expr| {
-        let symbols = g.symbols_of(e).into_iter().filter_map(|s| Some((s, *rates.get(&s)?)));
-        g.total_derivative(e, &symbols.collect::<Vec<(Symbol, Expr)>>())
-    };
-    for &(symbol, e) in quasi.coefficients.list() {
-        let rate = definitions.short(g, "dc", SHORT, along(&rates, e));
-        rates.insert(symbol, rate);
-    }
-    let mut gamma = vec![g.zero(); system.dimension()];
-    let mut by_symbol: HashMap<Symbol, Expr> = HashMap::new();
-    for d in &quasi.dependent {
-        let mut terms = vec![along(&rates, d.offset)];
-        for &(s, coefficient) in &d.terms {
-            terms.push(g.mul(along(&rates, coefficient), g.variable(s)));
-            terms.extend(by_symbol.get(&s).map(|&rate| g.mul(coefficient, rate)));
-        }
-        let rate = definitions.short(g, "a", SHORT, g.sum(&terms));
-        by_symbol.insert(d.symbol, rate);
-        if let Some(i) = d.coordinate {
-            gamma[i] = rate;
-        }
-    }
-    gamma
-}
-
-/// The unreduced balance at `ẇ = 0`.
-struct Balance {
-    /// Rows of `M`.
-    mass: Vec<Sparse>,
-    /// `d/dt L_v − L_q − Q` with `v̇ = γ`, by coordinate.
-    force: Vec<Expr>,
-}
-
-fn balance(system: &System, momenta: &[Expr], gamma: &[Expr], definitions: &mut Definitions) -> Balance {
+/// `d/dt L_v − L_q − Q` with `v̇ = γ`, by coordinate.
+fn balance(system: &System, momenta: &[Expr], gamma: &[Expr]) -> Vec<Expr> {
     let g = &system.graph;
     let (q, v) = (system.positions(), system.velocities());
     let gradient = g.gradient(system.lagrangian, &q);
@@ -171,13 +155,7 @@ fn balance(system: &System, momenta: &[Expr], gamma: &[Expr], definitions: &mut 
     flow.extend(v.iter().copied().zip(gamma.iter().copied()));
     flow.push((system.time, g.one()));
     let inertia = g.total_derivatives(momenta, &flow);
-    let force = (0..q.len()).map(|i| {
-        let rest = g.sub(inertia[i], g.add(gradient[i], system.forces[i]));
-        definitions.short(g, "r", SHORT, rest)
-    });
-    let force = force.collect();
-    let mass = sparse_rows(g, momenta, &v);
-    Balance { mass, force }
+    (0..q.len()).map(|i| g.sub(inertia[i], g.add(gradient[i], system.forces[i]))).collect()
 }
 
 /// The balance in a frame: its mass matrix is diagonal and constant, and
@@ -190,8 +168,7 @@ fn balance_in_frame(
     (frame, multiples): (&Frame, &HashMap<Symbol, Expr>),
     momenta: &[Expr],
     gamma: &[Expr],
-    definitions: &mut Definitions,
-) -> Balance {
+) -> Vec<Expr> {
     let g = &system.graph;
     let (q, v) = (system.positions(), system.velocities());
     let at_rest: HashMap<Symbol, Expr> = v.iter().map(|&v| (v, g.zero())).collect();
@@ -205,20 +182,14 @@ fn balance_in_frame(
     let own: Vec<Expr> = frame.inertia.iter().zip(u).map(|(&c, u)| g.mul(c, u)).collect();
     let turned = g.substitute_all(&frame.turned(g, &own), multiples);
     let applied = frame.along(g, &applied);
-    let force = (0..q.len()).map(|k| {
-        let whole = g.sum(&[g.mul(frame.inertia[k], gamma[k]), turned[k], applied[k]]);
-        definitions.short(g, "r", SHORT, whole)
-    });
-    let force = force.collect();
-    let mass = frame.inertia.iter().enumerate().map(|(k, &e)| Sparse::from([(k, e)])).collect();
-    Balance { mass, force }
+    (0..q.len()).map(|k| g.sum(&[g.mul(frame.inertia[k], gamma[k]), turned[k], applied[k]])).collect()
 }
 
 /// Defines `λ` by `Aᵀ λ = M S ẇ + force`.
 fn reactions(
     system: &System,
     quasi: &QuasiVelocities,
-    Balance { mass, force }: &Balance,
+    (mass, force): (&[Sparse], &[Expr]),
     equations: &mut Equations,
     definitions: &mut Definitions,
 ) {

@@ -180,7 +180,7 @@ impl Problem {
             Some(whole) => whole.balance.clone(),
             None => stationarity(g, quasi, (&own, p), &momenta, &mut definitions),
         };
-        quasi.hand_over(g, frame.as_ref(), &mut equations, &mut definitions);
+        quasi.hand_over(g, |d| d.value(g), frame.as_ref(), &mut equations, &mut definitions);
         for (w, &residual) in quasi.free.iter().zip(&residuals) {
             let meaning = format!("stationary in {}", g.name(w.symbol));
             equations.statements.push(Statement { meaning, left: residual, right: g.zero() });

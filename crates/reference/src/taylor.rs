@@ -34,7 +34,7 @@ impl<T: Wide> Taylor<T> {
         let inputs: Vec<_> = layout.symbols.iter().copied().zip(kinds).collect();
         let rates: Vec<Expr> = equations.states.iter().map(|y| y.rate).collect();
         let residuals: Vec<Vec<Expr>> = equations.blocks.iter().map(|b| b.residuals.clone()).collect();
-        let tape = equations.graph.compile_series(&inputs, &[], &rates, &residuals, &Default::default())?;
+        let tape = equations.graph.compile_series(&inputs, &[], &rates, &residuals, &[], &Default::default())?;
         // −½ ln ε + 1, the order with the least work per unit of time
         let order = (2.0 - 0.5 * tolerance.ln()).ceil() as usize + 1;
         Ok(Taylor { workspace: tape.workspace(order), tape, tolerance, y: Vec::new() })

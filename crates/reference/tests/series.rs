@@ -15,7 +15,7 @@ fn misses(formula: &str, a0: &str) -> f64 {
     let parse = |formula: &str| g.parse(formula, &scope, &[]).unwrap();
     let definitions: [(Symbol, _); 2] = [(a, parse(&format!("{a0} + t - t^2/2"))), (b, parse("3/4 + t/3"))];
     let (none, outputs) = (HashMap::new(), [parse(formula)]);
-    let series = g.compile_series(&[(t, SeriesInput::Time)], &definitions, &outputs, &[], &none).unwrap();
+    let series = g.compile_series(&[(t, SeriesInput::Time)], &definitions, &outputs, &[], &[], &none).unwrap();
     let tape = g.compile_with(&[t], &definitions, &outputs, &none).unwrap();
 
     let (h, mut value) = (DoubleDouble::from_ratio(1, 100), [DoubleDouble::ZERO]);

@@ -83,7 +83,8 @@ impl Graph {
     /// Taylor coefficients of `outputs`, and residuals of implicit equations (`blocks`), along a motion.
     ///
     /// `inputs` says what each symbol is as a function of time; states are integrated by the way. Definitions
-    /// and constants are as in [`Graph::compile_with`].
+    /// and constants are as in [`Graph::compile_with`]. `derivatives`: definitions that are time derivatives
+    /// along the motion, with what they are derivatives of.
     ///
     /// ```
     /// use std::collections::HashMap;
@@ -91,7 +92,7 @@ impl Graph {
     /// let g = Graph::new();
     /// let x = g.symbol("x");
     /// let rate = g.powi(g.variable(x), 2); // x' = x², x(0) = 1: x = 1/(1 − t)
-    /// let tape = g.compile_series(&[(x, SeriesInput::State(0))], &[], &[rate], &[], &HashMap::new())?;
+    /// let tape = g.compile_series(&[(x, SeriesInput::State(0))], &[], &[rate], &[], &[], &HashMap::new())?;
     /// let mut workspace = tape.workspace::<f64>(5);
     /// tape.expand(&[1.0], 1.0, &mut workspace, 0, &mut |_, _| {});
     /// assert_eq!(tape.input(0, &workspace), Some(&[1.0; 6][..]));
@@ -109,14 +110,19 @@ impl Graph {
         definitions: &[(Symbol, Expr)],
         outputs: &[Expr],
         blocks: &[Vec<Expr>],
+        derivatives: &[(Symbol, Expr)],
         constants: &HashMap<Symbol, f64>,
     ) -> Result<SeriesTape, CompileError> {
         let (symbols, kinds): (Vec<Symbol>, Vec<SeriesInput>) = inputs.iter().copied().unzip();
         let sizes: Vec<usize> = blocks.iter().map(Vec::len).collect();
-        let all: Vec<Expr> = outputs.iter().chain(blocks.iter().flatten()).copied().collect();
+        let mut all: Vec<Expr> = outputs.iter().chain(blocks.iter().flatten()).copied().collect();
+        let count = all.len();
+        all.extend(derivatives.iter().flat_map(|&(symbol, of)| [self.variable(symbol), of]));
         let mut series = None;
         self.lowered(&symbols, definitions, &all, constants, |program, ids| {
-            let tape = series.insert(build::build(program, &kinds, ids, outputs.len(), &sizes));
+            let (ids, declared) = ids.split_at(count);
+            let declared = declared.as_chunks().0.iter().map(|&[derivative, of]| (derivative, of));
+            let tape = series.insert(build::build(program, &kinds, ids, outputs.len(), &sizes, declared));
             tape.first.clone()
         })?;
         Ok(series.expect("made where the program was lowered"))

@@ -72,6 +72,16 @@ pub(crate) struct State {
     pub(crate) factor: Slot,
 }
 
+/// Series whose coefficients of one order are computed one after the other.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Group {
+    pub(crate) states: Vec<State>,
+    /// Pairs without and with the factor 1/k.
+    pub(crate) products: [Vec<Bilinear>; 2],
+    /// (τ x', x)
+    pub(crate) slopes: Vec<(Row, Row)>,
+}
+
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Implicit {
     pub(crate) unknowns: Vec<Row>,
@@ -101,6 +111,17 @@ pub(crate) struct Implicit {
 /// high-order Taylor methods*, Exp. Math. 14 (2005), section 2; A. Griewank, A. Walther, *Evaluating
 /// Derivatives*, 2nd ed., SIAM 2008, chapter 13.
 ///
+/// # Time derivatives
+/// A value may be declared to be the time derivative of another one, `d = x'`, as `S'` in the acceleration of
+/// a velocity `S(q) w`: then `d_k = (k + 1) x_{k+1}`, over the unit of time, takes no product. For this, x is
+/// computed one order ahead, as are the states in it, those whose rates need no such value and no unknown:
+///
+/// ```text
+/// w_k → (rates of q)_k → q_{k+1} → x_{k+1} → d_k → unknowns and other rates.
+/// ```
+///
+/// Order 0 of d comes from its own formula, as do all where x cannot be known in time.
+///
 /// # Implicit equations
 /// Inputs may be unknowns `z` of blocks `R(z; …) = 0`. Order 0 is given; at order `k` the caller takes
 /// `z_k = −(∂R/∂z)⁻¹ R_k` from the residual `R_k` at `z_k = 0` and `∂R/∂z` of order 0: it is linear in `z_k`.
@@ -111,16 +132,16 @@ pub struct SeriesTape {
     pub(crate) rows: usize,
     pub(crate) inputs: Vec<Option<Row>>,
     pub(crate) time: Option<Row>,
-    pub(crate) states: Vec<State>,
     pub(crate) outputs: Vec<Source>,
     pub(crate) blocks: Vec<Implicit>,
-    /// Pairs without and with the factor 1/k.
-    pub(crate) products: [Vec<Bilinear>; 2],
+    /// One order ahead; all others.
+    pub(crate) groups: [Group; 2],
     pub(crate) additions: Vec<Addition>,
-    /// Ends of the additions that depend on no unknown, on those of block 0, of block 1 …
+    /// Ends of the additions one order ahead, without time derivatives, without unknowns, with those of block
+    /// 0, of block 1 …
     pub(crate) stages: Vec<usize>,
-    /// (τ x', x)
-    pub(crate) slopes: Vec<(Row, Row)>,
+    /// (x', x)
+    pub(crate) derivatives: Vec<(Row, Row)>,
 }
 
 /// The series of one thread that works with one [`SeriesTape`].
@@ -141,16 +162,24 @@ struct Plan<T> {
     registers: Workspace<T>,
     /// Outputs of order 0.
     values: Vec<T>,
-    products: [Vec<Product<T>>; 2],
+    groups: [PlacedGroup<T>; 2],
     additions: Vec<Placed<T>>,
-    /// State, rate, and the factor of the latter over the unit of time.
-    states: Vec<(Place, Place, T)>,
-    slopes: Vec<(Place, Place)>,
+    derivatives: Vec<(Place, Place)>,
+    /// 1/unit
+    frequency: T,
     /// Weights of pairs, `stride` a newest order, without and with 1/k.
     halves: [Vec<T>; 2],
     /// k and 1/k
     orders: Vec<(T, T)>,
     residual: Vec<T>,
+}
+
+#[derive(Clone, Debug)]
+struct PlacedGroup<T> {
+    /// State, rate, and the factor of the latter over the unit of time.
+    states: Vec<(Place, Place, T)>,
+    products: [Vec<Product<T>>; 2],
+    slopes: Vec<(Place, Place)>,
 }
 
 /// An [`Addition`] with places of coefficients of order 1, or 0 where a term is late.
@@ -222,7 +251,8 @@ impl SeriesTape {
 
     /// What one order costs: products of series, and linear terms (an odd one in a sum counts as two).
     pub fn work(&self) -> (usize, usize) {
-        (self.products[0].len() + self.products[1].len(), 2 * self.additions.len())
+        let products = self.groups.iter().flat_map(|group| &group.products);
+        (products.map(Vec::len).sum(), 2 * self.additions.len())
     }
 
     /// Room for states up to `order ≥ 1` (other values: one less).
@@ -263,19 +293,25 @@ impl SeriesTape {
             let terms = a.terms.map(|t| (zero, at(t.row) + Place::from(!t.late)));
             Placed { target: at(a.target) + 1, start: at(a.start) + 1, terms }
         };
-        let moving = self.states.iter().filter_map(|state| match state.rate {
+        let pair = |&(a, b): &(Row, Row)| (at(a), at(b));
+        let moving = |state: &State| match state.rate {
             Source::Row(rate) => Some((at(state.row), at(rate), zero)),
             Source::Steady(_) => None,
-        });
+        };
+        let group = |group: &Group| PlacedGroup {
+            states: group.states.iter().filter_map(moving).collect(),
+            products: group.products.each_ref().map(|products| products.iter().map(place).collect()),
+            slopes: group.slopes.iter().map(pair).collect(),
+        };
         Plan {
             order,
             stride,
             registers: self.first.workspace(),
             values: vec![zero; self.first.outputs()],
-            products: [0, 1].map(|i: usize| self.products[i].iter().map(place).collect()),
+            groups: self.groups.each_ref().map(group),
             additions: self.additions.iter().map(placed).collect(),
-            states: moving.collect(),
-            slopes: self.slopes.iter().map(|(slope, of)| (at(*slope), at(*of))).collect(),
+            derivatives: self.derivatives.iter().map(pair).collect(),
+            frequency: zero,
             halves,
             orders: (0..=order).map(|k| T::from_f64(k as f64)).map(|k| (k, T::from_f64(1.0) / k)).collect(),
             residual: vec![zero; self.blocks.iter().map(|b| b.residuals.len()).max().unwrap_or(0)],
@@ -334,15 +370,17 @@ impl SeriesTape {
         if let Some(time) = self.time {
             rows[time as usize * plan.stride + 1] = unit;
         }
-        let mut moving = plan.states.iter_mut();
-        for State { row, rate, factor } in &self.states {
-            match rate {
-                Source::Steady(slot) => rows[*row as usize * plan.stride + 1] = values[*slot as usize] * unit,
-                Source::Row(_) => moving.next().expect("a place for each").2 = values[*factor as usize] * unit,
+        plan.frequency = T::from_f64(1.0) / unit;
+        for (placed, group) in plan.groups.iter_mut().zip(&self.groups) {
+            let mut moving = placed.states.iter_mut();
+            for State { row, rate, factor } in &group.states {
+                match rate {
+                    Source::Steady(slot) => rows[*row as usize * plan.stride + 1] = values[*slot as usize] * unit,
+                    Source::Row(_) => moving.next().expect("a place for each").2 = values[*factor as usize] * unit,
+                }
             }
-        }
-        for (placed, products) in plan.products.iter_mut().zip(&self.products) {
-            for (placed, product) in placed.iter_mut().zip(products) {
+            let products = placed.products.iter_mut().flatten();
+            for (placed, product) in products.zip(group.products.iter().flatten()) {
                 placed.scale = values[product.scale as usize];
             }
         }

@@ -1,6 +1,7 @@
 //! Expressions as a user of the crate meets them: one program, one module per subject.
 
 mod algebra;
+mod derivatives;
 mod evaluation;
 mod properties;
 mod ranges;

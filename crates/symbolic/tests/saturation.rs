@@ -118,7 +118,7 @@ fn series_are_finite_everywhere_and_those_of_repeated_differentiation() {
         for path in ["t", "t + 0.1*t^2"] {
             let e = g.substitute(read(&g, text), &HashMap::from([(u, read(&g, path))]));
             let inputs = [(t, SeriesInput::Time), (k, SeriesInput::Steady)];
-            let tape = g.compile_series(&inputs, &[], &[e], &[], &HashMap::new()).unwrap();
+            let tape = g.compile_series(&inputs, &[], &[e], &[], &[], &HashMap::new()).unwrap();
             let mut workspace = tape.workspace::<f64>(9);
             for at in [-1e4, -900.0, -1.3, 0.4, 6.99, 7.004, 900.0, 1e6] {
                 tape.expand(&[at, 0.5], 1e-3, &mut workspace, 1, &mut |_, _| {});

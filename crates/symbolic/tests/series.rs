@@ -10,7 +10,7 @@ use symbolic::{Expr, Graph, Scalar, SeriesInput, SeriesScalar, SeriesTape, Symbo
 /// Coefficients of `e` in time, to `order`, at `t = 0.3` with `k = 0.7`.
 fn coefficients(g: &Graph, t: Symbol, k: Symbol, e: Expr, order: usize) -> Vec<f64> {
     let inputs = [(t, SeriesInput::Time), (k, SeriesInput::Steady)];
-    let tape = g.compile_series(&inputs, &[], &[e], &[], &HashMap::new()).unwrap();
+    let tape = g.compile_series(&inputs, &[], &[e], &[], &[], &HashMap::new()).unwrap();
     let mut workspace = tape.workspace::<f64>(order + 1);
     tape.expand(&[0.3, 0.7], 1.0, &mut workspace, 1, &mut |_, _| {});
     (0..=order).map(|i| tape.output(0, i, &workspace)).collect()
@@ -145,7 +145,7 @@ proptest! {
         }
         let mut inputs = vec![(t, SeriesInput::Time)];
         inputs.extend(symbols.iter().map(|s| (*s, SeriesInput::Steady)));
-        let tape = g.compile_series(&inputs, &[(u, polynomial)], &outputs, &[], &HashMap::new()).unwrap();
+        let tape = g.compile_series(&inputs, &[(u, polynomial)], &outputs, &[], &[], &HashMap::new()).unwrap();
         let mut workspace = tape.workspace::<f64>(order + 1);
         tape.expand(&[vec![0.0], c].concat(), 0.5, &mut workspace, 0, &mut |_, _| {});
         for (i, identity) in IDENTITIES.iter().enumerate() {
@@ -218,7 +218,7 @@ fn ring(n: usize) -> SeriesTape {
         })
         .collect();
     let inputs: Vec<(Symbol, SeriesInput)> = x.iter().enumerate().map(|(i, s)| (*s, SeriesInput::State(i))).collect();
-    g.compile_series(&inputs, &[], &rates, &[], &HashMap::new()).unwrap()
+    g.compile_series(&inputs, &[], &rates, &[], &[], &HashMap::new()).unwrap()
 }
 
 #[test]
@@ -255,7 +255,7 @@ fn unknowns_of_implicit_equations_are_series() {
     ];
     let blocks = [vec![parse("z^2 - 1 - t")], vec![parse("2*w + v - z"), parse("w - v - t")]];
     let outputs = [parse("z*w"), parse("w + 2*v")];
-    let tape = g.compile_series(&inputs, &[], &outputs, &blocks, &HashMap::new()).unwrap();
+    let tape = g.compile_series(&inputs, &[], &outputs, &blocks, &[], &HashMap::new()).unwrap();
     let order = 20;
     let mut workspace = tape.workspace::<f64>(order);
     let start = [0.0, 0.5, 1.0, 1.0 / 3.0, 1.0 / 3.0];
@@ -265,7 +265,7 @@ fn unknowns_of_implicit_equations_are_series() {
             _ => (r[0], r[1]) = (-(r[0] + r[1]) / 3.0, -(r[0] - 2.0 * r[1]) / 3.0),
         });
         let expected = |formula: &str| {
-            let tape = g.compile_series(&inputs[..1], &[], &[parse(formula)], &[], &HashMap::new()).unwrap();
+            let tape = g.compile_series(&inputs[..1], &[], &[parse(formula)], &[], &[], &HashMap::new()).unwrap();
             let mut workspace = tape.workspace::<f64>(order);
             tape.expand(&[0.0], 1.0, &mut workspace, 0, &mut |_, _| {});
             (0..order).map(|k| tape.output(0, k, &workspace)).collect::<Vec<f64>>()
@@ -299,7 +299,7 @@ fn functions_of_states_are_integrated_and_lines_are_no_series() {
     for formula in formulas {
         let e = parse(&formula);
         let outputs = [parse("1/2"), g.variable(y), e];
-        let tape = g.compile_series(&inputs, &[], &outputs, &[], &HashMap::new()).unwrap();
+        let tape = g.compile_series(&inputs, &[], &outputs, &[], &[], &HashMap::new()).unwrap();
         let mut workspace = tape.workspace::<f64>(9);
         let start = [0.3, 0.7, 0.2 + 0.3 / 2.0, 0.3 * 0.3_f64.exp()];
         tape.expand(&start, 1.0, &mut workspace, 0, &mut |_, _| {});
@@ -308,7 +308,7 @@ fn functions_of_states_are_integrated_and_lines_are_no_series() {
     }
     let work = |formula: &str| {
         let outputs = [parse("1/2"), g.variable(y), parse(formula)];
-        g.compile_series(&inputs, &[], &outputs, &[], &HashMap::new()).unwrap().work().0
+        g.compile_series(&inputs, &[], &outputs, &[], &[], &HashMap::new()).unwrap().work().0
     };
     assert_eq!((work("x*y"), work("sin(x)*cos(x)"), work("sin(y)*y")), (0, 1, 2));
 }
@@ -319,7 +319,7 @@ fn states_that_do_not_move_are_no_series() {
     let [x, y, c] = ["x", "y", "c"].map(|name| g.symbol(name));
     let inputs = [(x, SeriesInput::State(0)), (y, SeriesInput::State(1)), (c, SeriesInput::Steady)];
     let rates = [g.zero(), g.mul(g.variable(x), g.variable(c))];
-    let tape = g.compile_series(&inputs, &[], &rates, &[], &HashMap::new()).unwrap();
+    let tape = g.compile_series(&inputs, &[], &rates, &[], &[], &HashMap::new()).unwrap();
     assert_eq!(tape.work(), (0, 0));
     let mut workspace = tape.workspace::<f64>(3);
     tape.expand(&[2.0, 1.0, 5.0], 1.0, &mut workspace, 0, &mut |_, _| {});

@@ -45,6 +45,11 @@ fn states_and_rates(scene: &Scene, equations: &Equations, state: &State, a: &[f6
     (values, rates)
 }
 
+/// The states at the scene's start.
+pub fn states(scene: &Scene, equations: &Equations) -> Vec<f64> {
+    states_and_rates(scene, equations, &scene.start, &vec![0.0; scene.system.dimension()]).0
+}
+
 /// Largest difference of rates from Maggi's accelerations, relative to the largest; the same of velocities.
 pub fn differences(scene: &Scene, equations: &Equations, state: &State) -> (f64, f64) {
     let mut maggi = Maggi::new(&scene.system).expect("differentiates");

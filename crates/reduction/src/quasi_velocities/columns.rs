@@ -1,6 +1,6 @@
 //! The columns of `S`, and what they make of a mass matrix and of a force.
 
-use std::collections::{BTreeMap, BTreeSet, HashMap};
+use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
 
 use symbolic::{Expr, Graph, Symbol};
 
@@ -17,6 +17,18 @@ const LONG: usize = 4 * SIDE;
 #[derive(Clone, Debug)]
 pub struct Columns {
     columns: Vec<Sparse>,
+    singles: HashMap<Symbol, Single>,
+}
+
+/// The coefficient of a dependent velocity that hangs on one quasi-velocity alone: `v = S w`.
+#[derive(Clone, Copy, Debug)]
+pub struct Single {
+    /// Place of `w` among the free ones.
+    pub column: usize,
+    /// `S(q, t)`, by its name if it is long.
+    pub coefficient: Expr,
+    /// `S` as it is written.
+    pub written: Expr,
 }
 
 impl QuasiVelocities {
@@ -31,6 +43,7 @@ impl QuasiVelocities {
                 columns[column].insert(i, g.one());
             }
         }
+        let mut singles = HashMap::new();
         for d in &self.dependent {
             let mut entries: BTreeMap<usize, Vec<Expr>> = BTreeMap::new();
             for (s, coefficient) in &d.terms {
@@ -41,19 +54,39 @@ impl QuasiVelocities {
             let sum = |terms: Vec<Expr>| g.sum(&terms);
             let entries =
                 entries.into_iter().map(|(column, terms)| (column, sum(terms))).filter(|(_, e)| !g.is_zero(*e));
-            let row: Sparse = entries.map(|(column, e)| (column, definitions.short(g, "S", SHORT, e))).collect();
+            let entries: Vec<(usize, Expr)> = entries.collect();
+            let row: Sparse =
+                entries.iter().map(|&(column, e)| (column, definitions.short(g, "S", SHORT, e))).collect();
             if let Some(i) = d.coordinate {
                 for (&column, &e) in &row {
                     columns[column].insert(i, e);
                 }
             }
+            if let [(column, written)] = entries[..]
+                && self.homogeneous
+                && (d.terms.len() > 1 || row[&column] != written)
+            {
+                singles.insert(d.symbol, Single { column, coefficient: row[&column], written });
+            }
             rows.insert(d.symbol, row);
         }
-        Columns { columns }
+        Columns { columns, singles }
     }
 }
 
 impl Columns {
+    /// The coefficient of a velocity that hangs on one quasi-velocity alone, by way of others.
+    pub fn single(&self, velocity: Symbol) -> Option<Single> {
+        self.singles.get(&velocity).copied()
+    }
+
+    /// Without the entries of some coordinates.
+    pub fn without(&self, coordinates: &HashSet<usize>) -> Columns {
+        let mut columns = self.columns.clone();
+        columns.iter_mut().for_each(|column| column.retain(|i, _| !coordinates.contains(i)));
+        Columns { columns, singles: self.singles.clone() }
+    }
+
     /// `SᵀMS` for a symmetric `M`, given by its rows.
     pub fn reduced(&self, g: &Graph, mass: &[BTreeMap<usize, Expr>], definitions: &mut Definitions) -> Vec<Vec<Expr>> {
         let products: Vec<Sparse> = self

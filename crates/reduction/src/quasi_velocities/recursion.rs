@@ -94,10 +94,11 @@ impl QuasiVelocities {
     }
 
     /// Hands over guards, chart and the dependent velocities, and those a frame was made from: defined, and
-    /// stated for readers.
+    /// stated for readers. `value`: how each is computed.
     pub(crate) fn hand_over(
         &self,
         g: &Graph,
+        value: impl Fn(&DependentVelocity) -> Expr,
         frame: Option<&Frame>,
         equations: &mut Equations,
         definitions: &mut Definitions,
@@ -107,7 +108,7 @@ impl QuasiVelocities {
             independent: self.free.iter().map(|w| g.name(w.symbol)).collect(),
             coefficients: self.quotients.clone(),
         });
-        let dependent = self.dependent.iter().map(|d| (d.symbol, d.value(g)));
+        let dependent = self.dependent.iter().map(|d| (d.symbol, value(d)));
         for (symbol, velocity) in dependent.chain(frame.iter().flat_map(|f| f.recursion.iter().copied())) {
             definitions.define(symbol, velocity);
             let left = g.variable(symbol);

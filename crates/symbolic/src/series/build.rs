@@ -1,24 +1,30 @@
 //! From a straight-line program to a [`SeriesTape`].
 
+mod ahead;
 mod assemble;
 mod decide;
 mod functions;
 mod motion;
 
+use std::collections::BTreeMap;
+
+use ahead::{STEADY, Stage};
 use motion::Motion;
 
 use super::{Row, SeriesInput, SeriesTape};
 use crate::number::{Number, Rational};
 use crate::program::{Id, Program, Value};
-use rustc_hash::FxHashMap;
+use rustc_hash::{FxHashMap, FxHashSet};
 
-/// The tape for `outputs`: rates, then residuals of blocks, with the lengths `blocks`.
+/// The tape for `outputs`: rates, then residuals of blocks, with the lengths `blocks`. `derivatives`: values
+/// with what they are the time derivatives of.
 pub(crate) fn build(
     program: Program,
     inputs: &[SeriesInput],
     outputs: &[Id],
     own_outputs: usize,
     blocks: &[usize],
+    derivatives: impl Iterator<Item = (Id, Id)>,
 ) -> SeriesTape {
     let steady = |input: &SeriesInput| match *input {
         SeriesInput::State(rate) => {
@@ -28,7 +34,7 @@ pub(crate) fn build(
     };
     let inputs: Vec<SeriesInput> = inputs.iter().map(|i| if steady(i) { SeriesInput::Steady } else { *i }).collect();
     let mut builder = Builder::new(program, &inputs, outputs);
-    builder.integrate_functions();
+    builder.declare(derivatives);
     builder.decide();
     for id in 0..builder.decisions.len() {
         if builder.decisions[id] == Decision::Row {
@@ -76,7 +82,6 @@ struct Sum {
 /// A function of states whose rate is `factor · rate`, the factor constant in time.
 #[derive(Clone, Copy)]
 struct Integrated {
-    id: Id,
     factor: Id,
     rate: Id,
 }
@@ -88,9 +93,12 @@ struct Builder<'i> {
     /// How values move, as far as that is known.
     motions: Vec<Motion>,
     /// Functions that are integrated.
-    integrated: Vec<Integrated>,
-    /// 0: constant in time; else 1 + the number, from 1, of the last block whose unknowns the value needs.
-    stages: Vec<usize>,
+    integrated: BTreeMap<Id, Integrated>,
+    /// Time derivatives, with what they are the derivatives of.
+    derivatives: FxHashMap<Id, Id>,
+    /// States and integrated functions that are computed one order ahead.
+    ahead: FxHashSet<Id>,
+    stages: Vec<Stage>,
     decisions: Vec<Decision>,
     rows: FxHashMap<Id, Row>,
     /// The value of each row; `None` for slopes, which are 0 at order 0.
@@ -110,7 +118,9 @@ impl<'i> Builder<'i> {
             inputs,
             outputs,
             motions: Vec::new(),
-            integrated: Vec::new(),
+            integrated: BTreeMap::new(),
+            derivatives: FxHashMap::default(),
+            ahead: FxHashSet::default(),
             stages: Vec::new(),
             decisions: Vec::new(),
             rows: FxHashMap::default(),
@@ -125,24 +135,6 @@ impl<'i> Builder<'i> {
         builder
     }
 
-    fn extend_stages(&mut self) {
-        for id in self.stages.len()..self.program.len() {
-            let value = self.program.value(id as Id);
-            let stage = match value {
-                Value::Input(i) => match self.inputs[i as usize] {
-                    SeriesInput::Steady => 0,
-                    SeriesInput::Time | SeriesInput::State(_) => 1,
-                    SeriesInput::Unknown(block) => 2 + block,
-                },
-                _ => {
-                    let (operands, count) = value.operands();
-                    operands[..count].iter().map(|o| self.stages[*o as usize]).max().unwrap_or(0)
-                }
-            };
-            self.stages.push(stage);
-        }
-    }
-
     fn push(&mut self, value: Value) -> Id {
         let id = self.program.push(value);
         self.extend_stages();
@@ -151,7 +143,7 @@ impl<'i> Builder<'i> {
     }
 
     fn varies(&self, id: Id) -> bool {
-        self.stages[id as usize] > 0
+        self.stages[id as usize] > STEADY
     }
 
     /// The factor and the value, if `id` is a multiple of a value that varies.

@@ -4,9 +4,9 @@ use super::scalar::Place;
 use super::{Correct, Implicit, Placed, Plan, SeriesScalar, SeriesTape, Source, Store, Task, Weights, Window};
 
 impl<T: SeriesScalar> Plan<T> {
-    /// Pairs with a coefficient of order `k − 1`.
+    /// Pairs of a group with a coefficient of order `k − 1`, in targets up to `last`.
     #[inline(always)]
-    fn multiply<S: Store<T> + ?Sized>(&self, rows: &mut S, k: usize) {
+    fn multiply<S: Store<T> + ?Sized>(&self, rows: &mut S, group: usize, k: usize, last: usize) {
         let newest = k - 1;
         if newest == 0 {
             return;
@@ -14,7 +14,16 @@ impl<T: SeriesScalar> Plan<T> {
         for i in 0..2 {
             let of = &self.halves[i][newest * self.stride..][..self.stride];
             let weights = Weights { of, plain: i == 0, next: self.orders[k].1 };
-            rows.multiply(&self.products[i], weights, newest, self.order - 1);
+            rows.multiply(&self.groups[group].products[i], weights, newest, last);
+        }
+    }
+
+    /// Order `k` of the states of a group.
+    #[inline(always)]
+    fn integrate<S: Store<T> + ?Sized>(&self, rows: &mut S, group: usize, k: usize) {
+        let (before, share) = (rows.window(k - 1), self.orders[k].1);
+        for (state, rate, factor) in &self.groups[group].states {
+            before.set(state + 1, before.get(*rate) * (*factor * share));
         }
     }
 
@@ -26,7 +35,38 @@ impl<T: SeriesScalar> Plan<T> {
             rows.set(*target, rows.get(*start) + *v * rows.get(*a) + *w * rows.get(*b));
         }
     }
+
+    /// Order `k` of `τ x'`.
+    #[inline(always)]
+    fn slopes<S: Store<T> + ?Sized>(&self, rows: &mut S, group: usize, k: usize) {
+        let (newest, factor) = (rows.window(k), self.orders[k].0);
+        for (slope, of) in &self.groups[group].slopes {
+            newest.set(*slope, newest.get(*of) * factor);
+        }
+    }
+
+    /// Order `k ≥ 1` of what is computed one order ahead.
+    #[inline(always)]
+    fn lead<S: Store<T> + ?Sized>(&self, rows: &mut S, k: usize, additions: usize) {
+        self.multiply(rows, AHEAD, k, self.order);
+        self.integrate(rows, AHEAD, k);
+        Plan::add(rows, k, &self.additions[..additions]);
+        self.slopes(rows, AHEAD, k);
+    }
+
+    /// Order `k` of time derivatives.
+    #[inline(always)]
+    fn differentiate<S: Store<T> + ?Sized>(&self, rows: &mut S, k: usize) {
+        let (newest, factor) = (rows.window(k), self.orders[k + 1].0 * self.frequency);
+        for (derivative, of) in &self.derivatives {
+            newest.set(*derivative, newest.get(of + 1) * factor);
+        }
+    }
 }
+
+/// The groups of a tape.
+const AHEAD: usize = 0;
+const OTHERS: usize = 1;
 
 pub(super) struct Expansion<'a, 'c, T> {
     pub(super) tape: &'a SeriesTape,
@@ -40,7 +80,7 @@ impl<T: SeriesScalar> Expansion<'_, '_, T> {
     #[inline(always)]
     fn solve<S: Store<T> + ?Sized>(&mut self, rows: &mut S, k: usize, block: usize) {
         let (tape, plan) = (self.tape, &mut *self.plan);
-        let (from, to) = (tape.stages[block], tape.stages[block + 1]);
+        let (from, to) = (tape.stages[2 + block], tape.stages[3 + block]);
         let Implicit { unknowns, residuals } = &tape.blocks[block];
         for _ in 0..self.sweeps {
             Plan::add(rows, k, &plan.additions[from..to]);
@@ -64,28 +104,32 @@ impl<T: SeriesScalar> Task<T> for Expansion<'_, '_, T> {
     #[inline(always)]
     fn run<S: Store<T> + ?Sized>(mut self, rows: &mut S) {
         let order = self.plan.order;
-        let explicit = self.tape.stages[0];
+        let (ahead, unknown) = (self.tape.stages[0], self.tape.stages[2]);
+        let leads = ahead > 0 || !self.plan.groups[AHEAD].states.is_empty();
+        if leads {
+            self.plan.lead(rows, 1, ahead);
+        }
         for k in 1..=order {
             if k < order {
-                self.plan.multiply(rows, k);
+                self.plan.multiply(rows, OTHERS, k, order - 1);
             }
             // Only now, so that no product waits for a coefficient that was just written.
-            let (before, share) = (rows.window(k - 1), self.plan.orders[k].1);
-            for (state, rate, factor) in &self.plan.states {
-                before.set(state + 1, before.get(*rate) * (*factor * share));
-            }
+            self.plan.integrate(rows, OTHERS, k);
             if k == order {
                 return;
             }
-            Plan::add(rows, k, &self.plan.additions[..explicit]);
+            let mut next = ahead;
+            if leads {
+                next = self.tape.stages[1];
+                Plan::add(rows, k, &self.plan.additions[ahead..next]);
+                self.plan.lead(rows, k + 1, ahead);
+                self.plan.differentiate(rows, k);
+            }
+            Plan::add(rows, k, &self.plan.additions[next..unknown]);
             for block in 0..self.tape.blocks.len() {
                 self.solve(rows, k, block);
             }
-            let factor = self.plan.orders[k].0;
-            let newest = rows.window(k);
-            for (slope, of) in &self.plan.slopes {
-                newest.set(*slope, newest.get(*of) * factor);
-            }
+            self.plan.slopes(rows, OTHERS, k);
         }
     }
 }

@@ -1,9 +1,10 @@
 //! From definitions of series to the tape.
 
+use super::ahead::{AHEAD, DERIVED, STEADY, Stage};
 use super::{Builder, Part};
 use crate::number::Number;
 use crate::program::{Id, Value};
-use crate::series::{Addition, Bilinear, Implicit, Row, SeriesInput, SeriesTape, Slot, Source, State, Term};
+use crate::series::{Addition, Bilinear, Group, Implicit, Row, SeriesInput, SeriesTape, Slot, Source, State, Term};
 use crate::tape::Tape;
 use rustc_hash::FxHashMap;
 
@@ -18,10 +19,9 @@ impl Builder<'_> {
 
         // By stage; within one as they were made, operands first.
         let mut definitions = std::mem::take(&mut self.definitions);
-        let stage = |row: Row| self.of_row[row as usize].map_or(1, |id| self.stages[id as usize]);
-        definitions.sort_by_key(|(row, _)| stage(*row));
-        let ends: Vec<usize> =
-            (0..=blocks.len()).map(|b| definitions.partition_point(|(row, _)| stage(*row) <= 1 + b)).collect();
+        definitions.sort_by_key(|(row, _)| self.stage(*row));
+        let stages = AHEAD..=DERIVED + blocks.len();
+        let ends: Vec<usize> = stages.map(|s| definitions.partition_point(|(row, _)| self.stage(*row) <= s)).collect();
 
         // Operands in the order in which they are known: the last one is what a sum waits for.
         let mut known: Vec<usize> = vec![0; self.of_row.len()];
@@ -49,7 +49,7 @@ impl Builder<'_> {
                 Slot::try_from(first.len() - 1).expect("fewer than 2^32 values")
             })
         };
-        let mut products = [Vec::new(), Vec::new()];
+        let mut groups = [Group::default(), Group::default()];
         let (mut additions, mut places) = (Vec::new(), vec![0]);
         let nothing = Term { weight: slot(zero), row: none, late: false };
         for ((row, sum), total) in definitions.iter().zip(&totals) {
@@ -64,7 +64,7 @@ impl Builder<'_> {
                 start = *row;
             }
             places.push(additions.len());
-            for (list, pairs) in products.iter_mut().zip([&sum.pairs, &sum.pairs_over_k]) {
+            for (list, pairs) in groups[self.group(*row)].products.iter_mut().zip([&sum.pairs, &sum.pairs_over_k]) {
                 list.extend(pairs.iter().map(|(scale, left, right)| Bilinear {
                     scale: slot(*scale),
                     target: *total,
@@ -74,7 +74,7 @@ impl Builder<'_> {
             }
         }
         // So that coefficients have been written for a while when they are read in groups.
-        for list in &mut products {
+        for list in groups.iter_mut().flat_map(|group| &mut group.products) {
             list.sort_by_key(|product: &Bilinear| known[product.left as usize].max(known[product.right as usize]));
         }
         let sources: Vec<Source> = outputs
@@ -84,13 +84,14 @@ impl Builder<'_> {
             .collect();
         let rows = self.of_row.len();
         let one = slot(self.one);
-        let integrated: Vec<State> = self
-            .integrated
-            .iter()
-            .map(|i| State { row: self.rows[&i.id], rate: Source::Row(self.rows[&i.rate]), factor: slot(i.factor) })
-            .collect();
+        let integrated = self.integrated.iter().map(|(id, i)| State {
+            row: self.rows[id],
+            rate: Source::Row(self.rows[&i.rate]),
+            factor: slot(i.factor),
+        });
+        let integrated: Vec<State> = integrated.collect();
         self.program.fuse(&first);
-        let mut states = Vec::new();
+        let mut states: Vec<State> = Vec::new();
         let mut time = None;
         let mut implicit: Vec<Implicit> = Vec::new();
         let mut next = own_outputs;
@@ -106,20 +107,38 @@ impl Builder<'_> {
                 _ => {}
             }
         }
-        states.extend(integrated);
+        for state in states.into_iter().chain(integrated) {
+            groups[self.group(state.row)].states.push(state);
+        }
+        for (slope, of) in &self.slope_list {
+            groups[self.group(*of)].slopes.push((*slope, *of));
+        }
+        let mut derivatives: Vec<(Row, Row)> = self
+            .derivatives
+            .iter()
+            .filter_map(|(derivative, of)| Some((*self.rows.get(derivative)?, *self.rows.get(of)?)))
+            .collect();
+        derivatives.sort_unstable();
         SeriesTape {
             first: Tape::assemble(&self.program, inputs.len(), &first),
             rows,
             inputs: input_rows,
             time,
-            states,
             outputs: sources[..own_outputs].to_vec(),
             blocks: implicit,
-            products,
+            groups,
             additions,
             stages: ends.into_iter().map(|end| places[end]).collect(),
-            slopes: self.slope_list,
+            derivatives,
         }
+    }
+
+    fn stage(&self, row: Row) -> Stage {
+        self.of_row[row as usize].map_or(STEADY, |id| self.stages[id as usize])
+    }
+
+    fn group(&self, row: Row) -> usize {
+        usize::from(self.stage(row) > AHEAD)
     }
 
     /// Terms with the same operand become one.

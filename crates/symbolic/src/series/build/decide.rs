@@ -13,13 +13,18 @@ impl Builder<'_> {
             linear[*o as usize] += 2;
         }
         let mut integrated = vec![false; n];
-        for i in &self.integrated {
-            integrated[i.id as usize] = true;
+        for (id, i) in &self.integrated {
+            integrated[*id as usize] = true;
             linear[i.rate as usize] += 2;
         }
         for id in (0..n).rev() {
             let (terms, factors) = (linear[id], factor[id]);
             if terms + factors == 0 || !self.varies(id as Id) {
+                continue;
+            }
+            if let Some(of) = self.derivatives.get(&(id as Id)) {
+                self.decisions[id] = Decision::Row;
+                linear[*of as usize] += 2;
                 continue;
             }
             let value = self.program.value(id as Id);

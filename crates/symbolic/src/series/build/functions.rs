@@ -8,6 +8,10 @@ use crate::series::Row;
 impl Builder<'_> {
     /// Gives a value that varies its series.
     pub(super) fn define(&mut self, id: Id) -> Row {
+        if let Some(of) = self.derivatives.get(&id).copied() {
+            self.row(of);
+            return self.fresh(Some(id));
+        }
         let value = self.program.value(id);
         match value {
             Value::Input(_) => self.fresh(Some(id)),
@@ -71,7 +75,7 @@ impl Builder<'_> {
 
     fn call(&mut self, id: Id, function: Function, a: Id) -> Row {
         use Function::*;
-        if self.is_integrated(id) {
+        if self.integrated.contains_key(&id) {
             return self.fresh(Some(id));
         }
         match function {
@@ -150,7 +154,7 @@ impl Builder<'_> {
 
     /// s' = a' p, p = s σ(−a) = s − s²
     fn logistic(&mut self, id: Id, a: Id) -> Row {
-        if self.is_integrated(id) {
+        if self.integrated.contains_key(&id) {
             return self.fresh(Some(id));
         }
         let argument = self.row(a);
@@ -164,7 +168,7 @@ impl Builder<'_> {
 
     /// y' = −a' p, p = y tanh a
     fn hyperbolic_secant(&mut self, id: Id, a: Id) -> Row {
-        if self.is_integrated(id) {
+        if self.integrated.contains_key(&id) {
             return self.fresh(Some(id));
         }
         let argument = self.row(a);
@@ -188,10 +192,6 @@ impl Builder<'_> {
         self.absorb(&mut sum, moving, self.one, true);
         self.definitions.push((of_p, sum));
         row
-    }
-
-    fn is_integrated(&self, id: Id) -> bool {
-        self.integrated.iter().any(|i| i.id == id)
     }
 
     /// x' d = sign · a'

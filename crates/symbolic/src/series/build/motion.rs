@@ -1,5 +1,7 @@
 //! Values that are linear in states and time, and functions of these, whose series are integrated.
 
+use rustc_hash::FxHashSet;
+
 use super::{Builder, Integrated};
 use crate::Function;
 use crate::program::{Id, Value};
@@ -79,12 +81,17 @@ impl Builder<'_> {
 
     /// Finds the functions that are integrated: `(sin φ)' = φ' cos φ` is a product like those that equations
     /// of motion are full of, so that it is often there already; and where `φ'` is constant it is none.
-    pub(super) fn integrate_functions(&mut self) {
-        let mut seen = vec![false; self.program.len()];
+    ///
+    /// Returns all values whose series the outputs need.
+    pub(super) fn integrate_functions(&mut self) -> FxHashSet<Id> {
+        let mut seen = FxHashSet::default();
         let mut pending = self.outputs.to_vec();
         while let Some(id) = pending.pop() {
-            seen.resize(self.program.len(), false);
-            if std::mem::replace(&mut seen[id as usize], true) {
+            if !seen.insert(id) {
+                continue;
+            }
+            if let Some(of) = self.derivatives.get(&id) {
+                pending.push(*of);
                 continue;
             }
             let value = self.program.value(id);
@@ -101,9 +108,10 @@ impl Builder<'_> {
                 Some((factor, a)) => (self.scaled(sign, factor), self.push(Value::Mul(a, derivative))),
                 None => (sign, self.push(Value::Mul(slope, derivative))),
             };
-            self.integrated.push(Integrated { id, factor, rate });
+            self.integrated.insert(id, Integrated { factor, rate });
             pending.push(rate);
         }
+        seen
     }
 
     /// The derivative of a function by its argument: a number and a value that varies.
