@@ -4,7 +4,7 @@ use catalogue::trailer::{self, Coordinates};
 use deltaq::{
     CHETAEV, REDUCED_CHETAEV, REDUCED_VAKONOMIC, Settings, choices, derive_at, error_estimate, setting, solve_choice,
 };
-use equations::{Compiled, Plan};
+use equations::Compiled;
 use mechanics::ConstantsRule;
 use reference::{Question, Wide, reference};
 use scene::Scene;
@@ -13,12 +13,12 @@ use symbolic::Scalar;
 use super::support::{at, chetaev, choice, common_times, equations, must, some_multipliers};
 use super::{reduced_form, reduced_vakonomic};
 
-fn train(trailers: usize, coordinates: Coordinates) -> Scene {
+pub fn train(trailers: usize, coordinates: Coordinates) -> Scene {
     trailer::scene(trailers, coordinates).expect("its own text parses")
 }
 
 /// Links that hang one on another from a cart, the last one with a blade at its end.
-fn hanging(links: usize) -> Scene {
+pub fn hanging(links: usize) -> Scene {
     let (mut x, mut y, mut height) = ("x'".to_string(), "0".to_string(), "0".to_string());
     let mut text =
         "title = \"Links\"\n[parameters]\nl = 0.7\nk = 0.3\n[coordinates]\nx = { start = 0.2 }\n".to_string();
@@ -55,36 +55,6 @@ fn instants_of_chains_are_those_of_the_forms_without_quasi_velocities() {
             let [rates, velocities, multipliers] = reduced_vakonomic::differences(&scene, &some_multipliers(&scene));
             must(&format!("{name}: rates of the costate form"), rates, 1e-11);
             must(&format!("{name}: velocities and multipliers"), velocities.max(multipliers), 1e-11);
-        }
-    }
-}
-
-/// Accelerations of a chain contain the rates of its velocities' coefficients, which their series give.
-#[test]
-fn series_of_coefficients_give_their_rates() {
-    const ORDER: usize = 16;
-    let scenes = [train(7, Coordinates::Minimal), train(20, Coordinates::Maximal), hanging(8)];
-    for (scene, products) in scenes.iter().zip([Some(10 * 7 + 4), Some(12 * 20 + 4), None]) {
-        let declared = reduced_form::reduced(scene);
-        let mut plain = declared.clone();
-        plain.derivatives.clear();
-        let y = reduced_form::states(scene, &declared);
-        let [(found, few), (expected, many)] = [declared, plain].map(|equations| {
-            let plan = Plan::choose(&equations, None).expect("a plan");
-            let compiled = Compiled::with_plan(&equations, &plan).expect("compiles");
-            let mut compiled = compiled.with_series(&equations, &plan).expect("compiles");
-            let mut coefficients = vec![0.0; y.len() * (ORDER + 1)];
-            compiled.taylor(scene.start.t, &y, 0.3, &mut coefficients).expect("regular");
-            (coefficients, compiled.cost_of_series().expect("series").0)
-        });
-        println!("{}: {few} products of series, {many} without declarations", scene.name);
-        assert!(products.map_or(few <= many, |products| few == products && 2 * few < many), "{few} of {many} products");
-        for k in 1..=ORDER {
-            let order = |of: &[f64]| of.iter().skip(k).step_by(ORDER + 1).copied().collect::<Vec<f64>>();
-            let (found, expected) = (order(&found), order(&expected));
-            let size = expected.iter().fold(0.0_f64, |size, x| size.max(x.abs()));
-            let apart = found.iter().zip(&expected).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
-            must(&format!("{}: order {k}", scene.name), apart / size, 1e-12);
         }
     }
 }

@@ -5,6 +5,7 @@ mod chains;
 mod charts;
 mod closed_forms;
 mod constraint_law;
+mod declared;
 mod derivations;
 mod ensembles;
 mod forces;

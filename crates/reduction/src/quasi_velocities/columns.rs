@@ -20,7 +20,7 @@ pub struct Columns {
     singles: HashMap<Symbol, Single>,
 }
 
-/// The coefficient of a dependent velocity that hangs on one quasi-velocity alone: `v = S w`.
+/// The coefficient of a dependent velocity that hangs on one quasi-velocity alone, by way of such: `v = S w`.
 #[derive(Clone, Copy, Debug)]
 pub struct Single {
     /// Place of `w` among the free ones.
@@ -43,7 +43,7 @@ impl QuasiVelocities {
                 columns[column].insert(i, g.one());
             }
         }
-        let mut singles = HashMap::new();
+        let (mut singles, mut others) = (HashMap::new(), BTreeSet::new());
         for d in &self.dependent {
             let mut entries: BTreeMap<usize, Vec<Expr>> = BTreeMap::new();
             for (s, coefficient) in &d.terms {
@@ -65,8 +65,11 @@ impl QuasiVelocities {
             if let [(column, written)] = entries[..]
                 && self.homogeneous
                 && (d.terms.len() > 1 || row[&column] != written)
+                && g.symbols_of(written).is_disjoint(&others)
             {
                 singles.insert(d.symbol, Single { column, coefficient: row[&column], written });
+            } else {
+                others.extend(row.values().filter_map(|&e| g.as_symbol(e)));
             }
             rows.insert(d.symbol, row);
         }

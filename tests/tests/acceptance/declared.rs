@@ -1,0 +1,80 @@
+//! Declared time derivatives: series taken from those one order ahead are those of their own formulas.
+
+use catalogue::trailer::Coordinates;
+use deltaq::REDUCED_CHETAEV;
+use equations::{Compiled, Equations, Plan};
+use proptest::{prop_assert, test_runner::TestCaseError};
+use scene::Scene;
+
+use super::chains::{hanging, train};
+use super::reduced_form;
+use super::support::{derived, for_all_linear, linear_scenes, must};
+
+const ORDER: usize = 16;
+
+/// Coefficients at the start, component after component, and products of series per order.
+fn series(equations: &Equations, t: f64, y: &[f64]) -> Option<(Vec<f64>, usize)> {
+    let plan = Plan::choose(equations, None).expect("a plan");
+    let compiled = Compiled::with_plan(equations, &plan).expect("compiles");
+    let mut compiled = compiled.with_series(equations, &plan).expect("compiles");
+    let mut coefficients = vec![0.0; y.len() * (ORDER + 1)];
+    compiled.taylor(t, y, 0.1, &mut coefficients).ok()?;
+    Some((coefficients, compiled.cost_of_series().expect("series").0))
+}
+
+/// With declarations and without: the largest difference relative to the largest coefficient of its order,
+/// and products; `None` where nothing can be expanded at the start.
+fn compare(scene: &Scene, declared: Equations) -> Option<(f64, [usize; 2])> {
+    let mut plain = declared.clone();
+    plain.derivatives.clear();
+    let y = reduced_form::states(scene, &declared);
+    let [found, expected] = [declared, plain].map(|equations| series(&equations, scene.start.t, &y));
+    let ((found, few), (expected, many)) = (found?, expected?);
+    let of_order = |k: usize| found.iter().zip(&expected).skip(k).step_by(ORDER + 1);
+    let differences = (1..=ORDER).map(|k| {
+        let size = of_order(k).fold(0.0_f64, |size, (_, x)| size.max(x.abs()));
+        let apart = of_order(k).map(|(a, b)| if a == b { 0.0 } else { (a - b).abs() / size });
+        apart.fold(0.0, |a: f64, b| if b.is_nan() { b } else { a.max(b) })
+    });
+    let worst = differences.fold(0.0, |a: f64, b| if b.is_nan() { b } else { a.max(b) });
+    Some((worst, [few, many]))
+}
+
+#[test]
+fn trains_take_few_products() {
+    for (scene, expected) in
+        [(train(7, Coordinates::Minimal), 10 * 7 + 4), (train(20, Coordinates::Maximal), 12 * 20 + 4)]
+    {
+        let (apart, [few, many]) = compare(&scene, reduced_form::reduced(&scene)).expect("regular");
+        assert!(few == expected && 2 * few < many, "{}: {few} of {many} products", scene.name);
+        must(&format!("{}: with declarations", scene.name), apart, 1e-12);
+    }
+}
+
+#[test]
+fn series_of_every_scene_are_the_same() {
+    let scenes = linear_scenes().into_iter().chain([hanging(8)]);
+    let fewer = scenes.filter(|scene| {
+        let (apart, [few, many]) = compare(scene, reduced_form::reduced(scene)).expect("regular");
+        must(&format!("{}: {few} products of {many}", scene.name), apart, 1e-11);
+        few < many
+    });
+    assert!(fewer.count() > 2, "declarations were used");
+}
+
+#[test]
+fn series_of_random_systems_are_the_same() {
+    let worst = std::cell::Cell::new((0.0_f64, 0, 0));
+    for_all_linear(1909, |scene| {
+        let equations = derived(scene, REDUCED_CHETAEV, None, Some(&scene.start));
+        let equations = equations.map_err(|e| TestCaseError::fail(e.to_string()))?.leave_out_unneeded();
+        let Some((apart, [few, many])) = compare(scene, equations) else { return Ok(()) };
+        let (most, used, all) = worst.get();
+        worst.set((most.max(apart), used + usize::from(few < many), all + 1));
+        prop_assert!(apart <= 1e-9, "{apart:e}, {few} products of {many}\n{}", scene.to_toml());
+        Ok(())
+    });
+    let (most, used, all) = worst.get();
+    println!("largest difference {most:.1e} on {all} systems, {used} of them with fewer products");
+    assert!(used > 10 && all > 200);
+}
