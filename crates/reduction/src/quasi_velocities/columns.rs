@@ -78,7 +78,7 @@ impl QuasiVelocities {
 }
 
 impl Columns {
-    /// The coefficient of a velocity that hangs on one quasi-velocity alone, by way of others.
+    /// The coefficient of a velocity that hangs on one quasi-velocity alone, by way of such.
     pub fn single(&self, velocity: Symbol) -> Option<Single> {
         self.singles.get(&velocity).copied()
     }
