@@ -158,11 +158,9 @@ impl Carried {
             let expanded = g.expand_if_shorter(m, LONG);
             let (m, rate) = if equations.is_constant(g, expanded) { (expanded, g.zero()) } else { (m, rate) };
             let m = definitions.short(g, "m", NAME, m);
-            let named = definitions.short(g, "dm", NAME, rate);
-            if named != rate {
-                equations.derivatives.extend(g.as_symbol(named).map(|symbol| (symbol, m)));
-            }
-            inertia.insert(column, (m, named));
+            let derivatives = &mut equations.derivatives;
+            let mut rates = Rates { g, definitions: &mut *definitions, derivatives, known: HashMap::new() };
+            inertia.insert(column, (m, rates.named("dm", NAME, m, rate)));
         }
         Carried { coordinates, inertia }
     }

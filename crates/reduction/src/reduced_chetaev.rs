@@ -102,19 +102,21 @@ fn in_velocities(system: System, frame: Option<Frame>, derivation: &Derivation) 
         Some(frame) => frame.inertia.iter().enumerate().map(|(k, &e)| Sparse::from([(k, e)])).collect(),
     };
     let carried = Carried::new(&system, &drift, &mass, &mut equations, &mut definitions);
-    let multiples = quasi.multiples(&system);
-    let balance = |gamma: &[Expr]| match &frame {
-        None => balance(&system, &momenta, gamma),
-        Some(frame) => balance_in_frame(&system, (frame, &multiples), &momenta, gamma),
+    // the reactions need what is left without the carried velocities' own share, and that share
+    let mut gamma = drift.gamma.clone();
+    carried.coordinates.iter().for_each(|&i| gamma[i] = g.zero());
+    let mut applied = match &frame {
+        None => balance(&system, &momenta, &gamma),
+        Some(frame) => balance_in_frame(&system, (frame, &quasi.multiples(&system)), &momenta, &gamma),
     };
-    let named = |definitions: &mut Definitions, e: Expr| definitions.short(g, "r", SHORT, e);
-    let force: Vec<Expr> = balance(&drift.gamma).into_iter().map(|e| named(&mut definitions, e)).collect();
-    let mut applied = force.clone();
-    if !carried.coordinates.is_empty() {
-        let mut gamma = drift.gamma.clone();
-        carried.coordinates.iter().for_each(|&i| gamma[i] = g.zero());
-        let rest = balance(&gamma);
-        carried.coordinates.iter().for_each(|&i| applied[i] = rest[i]);
+    let mut force = applied.clone();
+    for (i, force) in force.iter_mut().enumerate() {
+        let is_carried = carried.coordinates.contains(&i);
+        let own = if is_carried { g.mul(mass[i][&i], drift.gamma[i]) } else { g.zero() };
+        *force = definitions.short(g, "r", SHORT, g.add(*force, own));
+        if !is_carried {
+            applied[i] = *force;
+        }
     }
 
     // SᵀMS ẇ + Sᵀ force = 0
