@@ -166,7 +166,8 @@ impl<'a, P: LaneProblem> Lanes<'a, P> {
             self.slope[i][lane] = 0.0;
             self.absolute_tolerances[i][lane] = self.options.absolute_tolerance_of(start.sizes[i]);
         }
-        let run = LaneRun { states: Vec::new(), work: Work::default(), projection: ProjectionReport::default() };
+        let states = Vec::with_capacity(self.times.len() * start.y.len());
+        let run = LaneRun { states, work: Work::default(), projection: ProjectionReport::default() };
         let pace = Pace::new(start.t, start.end);
         self.riders[lane] = Some(Rider { member, end: start.end, fresh: true, failures: 0, pace, read: 0, run });
     }

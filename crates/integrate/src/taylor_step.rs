@@ -39,11 +39,15 @@ pub(crate) fn longest_step<const N: usize>(
     sizes.fill([0.0; N]);
     for (row, absolute) in coefficients.chunks_exact(sizes.len()).zip(absolute_tolerances) {
         let scale: [f64; N] = from_fn(|l| 1.0 / (absolute[l] + relative_tolerance * row[0][l].abs()));
-        for (size, c) in sizes.iter_mut().zip(row) {
-            for l in 0..N {
-                let scaled = c[l].abs() * scale[l];
-                size[l] = if scaled > size[l] { scaled } else { size[l] };
-            }
+        let grow = |(size, c): (&mut [f64; N], &[f64; N])| {
+            let scaled: [f64; N] = from_fn(|l| c[l].abs() * scale[l]);
+            *size = from_fn(|l| if scaled[l] > size[l] { scaled[l] } else { size[l] });
+        };
+        if N == 1 {
+            sizes.iter_mut().zip(row).for_each(grow);
+        } else {
+            // a vector holds lanes: in pairs, orders are not gathered into one
+            sizes.chunks_mut(2).zip(row.chunks(2)).for_each(|(sizes, row)| sizes.iter_mut().zip(row).for_each(grow));
         }
     }
     let p = sizes.len() - 1;

@@ -44,13 +44,20 @@ pub(crate) struct Chain {
     constraints: usize,
     /// `ż` as they are written.
     written: HashMap<Symbol, Expr>,
+    /// Whether `L` is half as long, or less.
+    pub(crate) halves: bool,
 }
 
 impl Chain {
-    /// `None` where this does not make it half as long.
+    /// `None` where this does not make it shorter.
     pub(crate) fn new(system: &System) -> Option<Chain> {
         let g = &system.graph;
-        let links = links(system)?;
+        let links = links(system);
+        let length = |link: &Link| link.own.len() + usize::from(link.before.is_some());
+        let [short, long] = [links.iter().map(length).sum::<usize>(), links.iter().map(|link| link.row.len()).sum()];
+        if short >= long {
+            return None;
+        }
         let forms = system.linear_constraints().ok()?;
         let mut lifted = system.clone();
         for k in 1..=links.len() {
@@ -80,7 +87,7 @@ impl Chain {
         }
         lifted.graph = g.clone();
         let written = rates.into_iter().zip(links.iter().map(|link| link.written)).collect();
-        Some(Chain { system: lifted, coordinates, constraints, written })
+        Some(Chain { system: lifted, coordinates, constraints, written, halves: 2 * short <= long })
     }
 
     /// The equations of `system` itself, from those derived for [`Chain::system`].
@@ -145,8 +152,8 @@ impl Chain {
     }
 }
 
-/// The velocities that are squared in `L`, linear in `v`, short ones first; `None` where they are no chain.
-fn links(system: &System) -> Option<Vec<Link>> {
+/// The velocities that are squared in `L`, linear in `v`, short ones first.
+fn links(system: &System) -> Vec<Link> {
     let g = &system.graph;
     let v = system.velocities();
     let forms = g.squared_sums(system.lagrangian).into_iter().filter_map(|written| {
@@ -168,9 +175,7 @@ fn links(system: &System) -> Option<Vec<Link>> {
             links.push(Link { written, row, before, own });
         }
     }
-    let length = |link: &Link| link.own.len() + usize::from(link.before.is_some());
-    let [short, long] = [links.iter().map(length).sum::<usize>(), links.iter().map(|link| link.row.len()).sum()];
-    (!links.is_empty() && 2 * short <= long).then_some(links)
+    links
 }
 
 /// `a − b`

@@ -143,18 +143,23 @@ impl Carried {
             [(&j, &m)] if i == j && equations.is_constant(g, m) => Some(m),
             _ => None,
         };
-        let mut squares: BTreeMap<usize, [Vec<Expr>; 2]> = BTreeMap::new();
+        // S² and S Ṡ, by place and mass
+        let mut squares: BTreeMap<usize, BTreeMap<Expr, [Vec<Expr>; 2]>> = BTreeMap::new();
         let mut coordinates = HashSet::new();
         for (&i, (Single { column, coefficient, .. }, slope)) in &drift.singles {
             let Some(m) = own(i) else { continue };
-            let [squares, rates] = squares.entry(*column).or_default();
-            squares.push(g.mul(m, g.powi(*coefficient, 2)));
-            rates.push(g.product(&[g.integer(2), m, *coefficient, *slope]));
+            let [squares, rates] = squares.entry(*column).or_default().entry(m).or_default();
+            squares.push(g.powi(*coefficient, 2));
+            rates.push(g.mul(*coefficient, *slope));
             coordinates.insert(i);
         }
         let mut inertia = BTreeMap::new();
-        for (column, terms) in squares {
-            let [m, rate] = terms.map(|terms| g.sum(&terms));
+        let weighted = |(m, [squares, rates]): (Expr, [Vec<Expr>; 2])| {
+            [g.mul(m, g.sum(&squares)), g.product(&[g.integer(2), m, g.sum(&rates)])]
+        };
+        for (column, by_mass) in squares {
+            let terms: Vec<[Expr; 2]> = by_mass.into_iter().map(weighted).collect();
+            let [m, rate] = [0, 1].map(|i| g.sum(&terms.iter().map(|t| t[i]).collect::<Vec<Expr>>()));
             let expanded = g.expand_if_shorter(m, LONG);
             let (m, rate) = if equations.is_constant(g, expanded) { (expanded, g.zero()) } else { (m, rate) };
             let m = definitions.short(g, "m", NAME, m);

@@ -69,17 +69,22 @@ pub const REDUCED_CHETAEV: Formulation = Formulation {
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn derive_chetaev(system: &System, derivation: &Derivation) -> Result<Equations, DerivationError> {
-    if let Some(chain) = Chain::new(system) {
-        return Ok(chain.own(system, derive_chetaev(&chain.system, derivation)?));
+    let chain = Chain::new(system);
+    let own = |chain: &Chain| Ok(chain.own(system, derive_chetaev(&chain.system, derivation)?));
+    if let Some(chain) = chain.as_ref().filter(|chain| chain.halves) {
+        return own(chain);
     }
     let framed = system.clone();
-    let in_coordinates = in_velocities(system.clone(), None, derivation)?;
-    let Some(frame) = Frame::new(&framed, derivation.start) else { return Ok(in_coordinates) };
-    let in_frame = in_velocities(framed, Some(frame), derivation)?;
-    if matrix_moves(&in_coordinates) && !matrix_moves(&in_frame) {
-        return Ok(in_frame);
+    let mut candidates = vec![in_velocities(system.clone(), None, derivation)?];
+    if let Some(frame) = Frame::new(&framed, derivation.start) {
+        let in_frame = in_velocities(framed, Some(frame), derivation)?;
+        if matrix_moves(&candidates[0]) && !matrix_moves(&in_frame) {
+            return Ok(in_frame);
+        }
+        candidates.push(in_frame);
     }
-    Ok(cheapest(vec![in_coordinates, in_frame]))
+    candidates.extend(chain.as_ref().map(own).transpose()?);
+    Ok(if candidates.len() == 1 { candidates.remove(0) } else { cheapest(candidates) })
 }
 
 /// The equations in quasi-velocities of coordinates, or of a frame.

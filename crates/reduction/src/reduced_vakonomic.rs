@@ -78,7 +78,7 @@ const WHOLE: usize = 16;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn derive_vakonomic(system: &System, derivation: &Derivation) -> Result<Equations, DerivationError> {
-    if let Some(chain) = Chain::new(system) {
+    if let Some(chain) = Chain::new(system).filter(|chain| chain.halves) {
         return Ok(chain.own(system, derive_vakonomic(&chain.system, derivation)?));
     }
     let (system, framed) = (system.clone(), system.clone());

@@ -313,7 +313,7 @@ impl SeriesTape {
             derivatives: self.derivatives.iter().map(pair).collect(),
             frequency: zero,
             halves,
-            orders: (0..=order).map(|k| T::from_f64(k as f64)).map(|k| (k, T::from_f64(1.0) / k)).collect(),
+            orders: (0..=order + 1).map(|k| T::from_f64(k as f64)).map(|k| (k, T::from_f64(1.0) / k)).collect(),
             residual: vec![zero; self.blocks.iter().map(|b| b.residuals.len()).max().unwrap_or(0)],
         }
     }

@@ -8,6 +8,8 @@ use super::recursion::QuasiVelocities;
 use crate::expressions::{SHORT, Sparse, products};
 use equations::Definitions;
 
+/// Nodes of a link's coefficient, a sum, that gets no name of its own: those of links after it contain it.
+const LINK: usize = 3;
 /// Nodes of a side of reduced equations that gets no name of its own.
 const SIDE: usize = 24;
 /// What is not over this is multiplied out: what the columns of `S` have in common with a force cancels.
@@ -55,8 +57,9 @@ impl QuasiVelocities {
             let entries =
                 entries.into_iter().map(|(column, terms)| (column, sum(terms))).filter(|(_, e)| !g.is_zero(*e));
             let entries: Vec<(usize, Expr)> = entries.collect();
+            let limit = if entries.len() == 1 && d.terms.len() > 1 { LINK } else { SHORT };
             let row: Sparse =
-                entries.iter().map(|&(column, e)| (column, definitions.short(g, "S", SHORT, e))).collect();
+                entries.iter().map(|&(column, e)| (column, definitions.short(g, "S", limit, e))).collect();
             if let Some(i) = d.coordinate {
                 for (&column, &e) in &row {
                     columns[column].insert(i, e);

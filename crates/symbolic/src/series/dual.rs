@@ -203,7 +203,7 @@ impl Store<Dual> for Rows<'_> {
             let tangents = sums[0] + if square { sums[0] } else { sums[1] };
             let sum = Dual { value, tangents } * *scale;
             let target = &mut self.0[target + newest + 1];
-            *target = *target + if weights.plain { sum } else { sum * weights.next };
+            *target = *target + if weights.plain { sum } else { sum * weights.next[0] };
         }
     }
 }

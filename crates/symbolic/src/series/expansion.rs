@@ -13,7 +13,7 @@ impl<T: SeriesScalar> Plan<T> {
         }
         for i in 0..2 {
             let of = &self.halves[i][newest * self.stride..][..self.stride];
-            let weights = Weights { of, plain: i == 0, next: self.orders[k].1 };
+            let weights = Weights { of, plain: i == 0, next: [self.orders[k].1, self.orders[k + 1].1] };
             rows.multiply(&self.groups[group].products[i], weights, newest, last);
         }
     }

@@ -128,24 +128,32 @@ impl Store<Lanes> for Rows<'_> {
         &mut self.0[first..]
     }
 
+    /// Two orders at once from an odd `newest` on: coefficients are read once for both. What the second still
+    /// waits for then, the two terms with the newest coefficients, is added when it is due.
     #[inline(always)]
     fn multiply(&mut self, products: &[Product<Lanes>], weights: Weights<Lanes>, newest: usize, _: usize) {
+        let weigh = |sum: Lanes, weight: Lanes| if weights.plain { sum } else { sum * weight };
         for Product { scale, target, left, right } in products {
             let [target, left, right] = [target, left, right].map(|p| *p as usize);
             let (x, y) = (&self.0[left + 1..][..newest], &self.0[right + 1..][..newest]);
-            let mut sums = [Lanes([0.0; LANES]); 2];
-            let pairs = |i: usize| x[i] * y[newest - 1 - i];
-            let half = newest / 2;
-            for i in 0..half {
-                sums[0] = sums[0] + pairs(i);
-                sums[1] = sums[1] + pairs(newest - 1 - i);
+            let mut sum = x[0] * y[newest - 1];
+            if newest.is_multiple_of(2) {
+                sum = sum + x[newest - 1] * y[0];
+            } else {
+                let (mut sums, mut before) = ([Lanes([0.0; LANES]); 3], y[newest - 1]);
+                for (x, y) in x[1..].chunks_exact(2).zip(y[..newest - 1].rchunks_exact(2)) {
+                    sum = sum + x[0] * y[1];
+                    sums[0] = sums[0] + x[1] * y[0];
+                    sums[1] = sums[1] + x[0] * before;
+                    sums[2] = sums[2] + x[1] * y[1];
+                    before = y[0];
+                }
+                sum = sum + sums[0];
+                let second = &mut self.0[target + newest + 2];
+                *second = *second + weigh((sums[1] + sums[2]) * *scale, weights.next[1]);
             }
-            if newest % 2 == 1 {
-                sums[0] = sums[0] + pairs(half);
-            }
-            let sum = (sums[0] + sums[1]) * *scale;
-            let target = &mut self.0[target + newest + 1];
-            *target = *target + if weights.plain { sum } else { sum * weights.next };
+            let first = &mut self.0[target + newest + 1];
+            *first = *first + weigh(sum * *scale, weights.next[0]);
         }
     }
 }

@@ -33,8 +33,8 @@ pub struct Weights<'a, T> {
     pub(crate) of: &'a [T],
     /// Are they 1 as long as `j < newest`?
     pub(crate) plain: bool,
-    /// The weight of all terms of order `newest + 1`, each taken once.
-    pub(crate) next: T,
+    /// The weights of all terms of orders `newest + 1` and `newest + 2`, each taken once.
+    pub(crate) next: [T; 2],
 }
 
 /// Coefficients from some place on.
