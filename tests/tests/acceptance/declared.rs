@@ -43,13 +43,13 @@ fn compare(scene: &Scene, declared: Equations) -> Option<(f64, [usize; 2])> {
 #[test]
 fn trains_take_few_products() {
     // of 3 trailers, L is shorter as a chain, but not half as long
-    for (scene, expected) in [
-        (train(3, Coordinates::Minimal), 10 * 3 + 4),
-        (train(7, Coordinates::Minimal), 10 * 7 + 4),
-        (train(20, Coordinates::Maximal), 12 * 20 + 4),
+    for (scene, expected, undeclared) in [
+        (train(3, Coordinates::Minimal), 10 * 3 + 4, 68),
+        (train(7, Coordinates::Minimal), 10 * 7 + 4, 149),
+        (train(20, Coordinates::Maximal), 12 * 20 + 4, 482),
     ] {
         let (apart, [few, many]) = compare(&scene, reduced_form::reduced(&scene)).expect("regular");
-        assert!(few == expected && 3 * few < 2 * many, "{}: {few} of {many} products", scene.name);
+        assert!(few == expected && many >= undeclared, "{}: {few} of {many} products", scene.name);
         must(&format!("{}: with declarations", scene.name), apart, 1e-12);
     }
 }
