@@ -2,6 +2,7 @@
 //! compared with integrals.
 
 use deltaq::{CHETAEV, Ending, Settings, choices, error_estimate, setting, solve_choice};
+use diffsol_methods::{BDF, ESDIRK34, EVERY, TR_BDF2};
 use integrate::Method;
 use scene::Scene;
 use symbolic::SplitMix;
@@ -160,15 +161,16 @@ fn pulses_and_walls_are_found_or_told_at_any_place() {
     let draws = std::env::var("NARROW").ok().and_then(|n| n.parse().ok()).unwrap_or(DRAWS);
     let mut random = SplitMix::new(36);
     let (mut right, mut wide, mut told, mut told_wide, mut wrong) = (0, 0, 0, 0, Vec::new());
-    let methods = Method::ALL.into_iter().map(Some).chain([None]);
+    let methods = EVERY.into_iter().map(Some).chain([None]);
     for case in (0..draws).flat_map(|_| 0..PULSES.len() + WALLS.len()).map(|family| Case::new(family, &mut random)) {
         let Case { truth, effect, width, place, .. } = case;
         let scene = Scene::parse("narrow", &case.scene).unwrap_or_else(|e| panic!("{e}\n{}", case.scene));
         let chetaev = choices(&scene).into_iter().find(|c| c.formulation == CHETAEV).expect("it is there");
         let is_wide = width > WIDE * place;
         for method in methods.clone() {
-            let tolerance = if matches!(method, Some(Method::TrBdf2 | Method::Esdirk34)) { 1e-6 } else { 1e-8 };
-            let is_low = matches!(method, Some(Method::Bdf | Method::TrBdf2 | Method::Esdirk34));
+            let one_of = |methods: &[Method]| method.is_some_and(|method| methods.contains(&method));
+            let tolerance = if one_of(&[TR_BDF2, ESDIRK34]) { 1e-6 } else { 1e-8 };
+            let is_low = one_of(&[BDF, TR_BDF2, ESDIRK34]);
             let allowed = if is_low { BY_LOW_ORDER } else { ALLOWED };
             let settings = Settings { method, tolerance, ..Settings::default() };
             wide += usize::from(is_wide);

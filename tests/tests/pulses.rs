@@ -5,6 +5,7 @@ use deltaq::{
     Choice, Ending, Ensemble, EnsembleOptions, Motion, Prepared, Settings, SolveError, Steps, choices, error_estimate,
     setting, solve_by_steps, solve_choice,
 };
+use diffsol_methods::{BDF, ESDIRK34, EVERY, TR_BDF2};
 use discrete::Composition;
 use integrate::Method;
 use scene::Scene;
@@ -152,9 +153,10 @@ fn every_pulse_is_found_by_every_method_and_in_ensembles() {
         let choice = &choices(&scene)[0];
         let right = pulse.end(&scene, choice);
         let what = |by: &str| format!("pulse {index} by {by}, {}: {}", pulse.text, pulse.scene);
-        for method in [None].into_iter().chain(Method::ALL.map(Some)) {
+        for method in [None].into_iter().chain(EVERY.map(Some)) {
             // the last two have order 2 and 3
-            let tolerance = if matches!(method, Some(Method::TrBdf2 | Method::Esdirk34)) { 1e-6 } else { 1e-8 };
+            let tolerance =
+                if method.is_some_and(|method| [TR_BDF2, ESDIRK34].contains(&method)) { 1e-6 } else { 1e-8 };
             let settings = Settings { method, tolerance, ..Settings::default() };
             let mut motion = solve_choice(&scene, choice, &settings).unwrap_or_else(|e| panic!("{}: {e}", what("")));
             asked += 1;
@@ -261,7 +263,7 @@ fn every_method_and_ensembles_end_a_step_at_breakpoints() {
     let again = Scene::parse("switch", &scene.to_toml()).expect("as written");
     assert_eq!(again.system.breakpoints, [5.5, 5.0, 12.0]);
     let choice = &choices(&scene)[0];
-    for method in [None].into_iter().chain(Method::ALL.map(Some)) {
+    for method in [None].into_iter().chain(EVERY.map(Some)) {
         let settings = Settings { method, tolerance: 1e-6, max_step: 0.5, ..Settings::default() };
         let mut motion = solve_choice(&scene, choice, &settings).expect("a motion");
         let times = motion.step_times();
@@ -283,12 +285,12 @@ fn every_method_and_ensembles_end_a_step_at_breakpoints() {
 fn flat(scene: &str, coordinate: usize, right: f64) {
     let scene = Scene::parse("flat", scene).expect("a scene");
     let (choice, mut completed) = (&choices(&scene)[0], 0);
-    for method in Method::ALL.into_iter().map(Some).chain([None]) {
+    for method in EVERY.into_iter().map(Some).chain([None]) {
         let mut motion = solve_choice(&scene, choice, &Settings { method, ..Settings::default() }).expect("a motion");
         let Ending::Completed = motion.ending else { continue };
         completed += 1;
         let found = motion.at(1.0).expect("the end").coordinates[coordinate];
-        let allowed = if method == Some(Method::Bdf) { ALLOWED } else { 1e-7 };
+        let allowed = if method == Some(BDF) { ALLOWED } else { 1e-7 };
         assert!((found - right).abs() < allowed, "{method:?}: {found} instead of {right}");
     }
     assert!(completed > 5, "{completed} methods complete it");

@@ -31,6 +31,8 @@ pub const TARGETS: [f64; 4] = [1e-6, 1e-9, 1e-10, 1e-11];
 /// The extent of the measurements.
 #[derive(Clone, Debug)]
 pub struct Effort {
+    /// The methods that are measured.
+    pub methods: Vec<Method>,
     /// Runs of one setting are repeated until they took this many seconds together, but for those that take
     /// over four times as long as a run of another method with no larger error.
     pub seconds: f64,
@@ -45,14 +47,14 @@ pub struct Effort {
 
 impl Effort {
     /// For the main job, which has other things to do as well.
-    pub fn brief() -> Effort {
-        Effort { seconds: 0.0015, repeats: 2, max_steps: 50_000, patience: 0.008 }
+    pub fn brief(methods: &[Method]) -> Effort {
+        Effort { methods: methods.to_vec(), seconds: 0.0015, repeats: 2, max_steps: 50_000, patience: 0.008 }
     }
 }
 
 impl Default for Effort {
     fn default() -> Self {
-        Effort { seconds: 0.02, repeats: 3, max_steps: 200_000, patience: 0.5 }
+        Effort { methods: Method::ALL.to_vec(), seconds: 0.02, repeats: 3, max_steps: 200_000, patience: 0.5 }
     }
 }
 
@@ -227,7 +229,7 @@ fn measurements(scene: &Scene, choice: &Choice, truth: &mut Truth, effort: &Effo
     let constants = ConstantsRule::Given(ready.constants.clone());
     let usual = Usual::new(setting(scene), &Choice { constants, ..choice.clone() }, truth, effort);
     let mut series: Vec<Series> = Vec::new();
-    for method in Method::ALL.into_iter().filter(|method| method.is_built_in()) {
+    for method in effort.methods.iter().copied() {
         series.push(Series::new(method, &mut ready, truth, effort, &series));
     }
     Ok(Measurements {

@@ -1,5 +1,6 @@
 //! The page about error against run time.
 
+use std::collections::BTreeMap;
 use std::fmt::Write;
 
 use anyhow::Result;
@@ -21,10 +22,10 @@ pub fn bench_headline(benches: &[Bench]) -> String {
     let all: Vec<&Measurements> =
         benches.iter().flat_map(|b| &b.entries).filter_map(|e| e.outcome.as_ref().ok()).collect();
     let winners: Vec<Fastest> = all.iter().filter_map(|m| m.fastest(HEADLINE_TARGET, None)).collect();
-    let count = |method: Method| winners.iter().filter(|winner| winner.method == method).count();
-    let mut names = Method::ALL.map(|method| (method.name(), count(method))).to_vec();
-    names.retain(|(_, count)| *count > 0);
-    names.sort_by_key(|&(name, count)| (std::cmp::Reverse(count), name));
+    let mut counts: BTreeMap<&str, usize> = BTreeMap::new();
+    winners.iter().for_each(|winner| *counts.entry(winner.method.name()).or_default() += 1);
+    let mut names: Vec<(&str, usize)> = counts.into_iter().collect();
+    names.sort_by_key(|&(_, count)| std::cmp::Reverse(count));
     let words: Vec<String> = names.iter().map(|(name, count)| format!("{name} on {count}")).collect();
     format!(
         "An error of at most {HEADLINE_TARGET:.0e} is reached on {} of {} motions; fastest there: {}.",

@@ -2,7 +2,7 @@
 
 use anyhow::{Result, bail};
 
-use crate::cli::BenchArguments;
+use crate::cli::{BenchArguments, METHODS};
 use bench::{
     Effort, KeptReferences, bench_all, bench_files, bench_json, bench_table, ensemble_json, ensemble_text,
     ensemble_throughput, references,
@@ -24,7 +24,7 @@ pub(crate) fn run(arguments: &BenchArguments, quiet: bool) -> Result<String> {
         let (text, json) = (|| ensemble_text(&measured), || ensemble_json(&measured));
         return arguments.output.answer("bench-ensemble", || Ok(Vec::new()), text, json);
     }
-    let effort = Effort { seconds: arguments.seconds, ..Effort::default() };
+    let effort = Effort { methods: METHODS.to_vec(), seconds: arguments.seconds, ..Effort::default() };
     let all = || catalogue::SCENES.iter().map(|(name, _)| *name).collect();
     let given: Vec<&str> = arguments.scenes.iter().map(String::as_str).collect();
     let names: Vec<&str> = if given.is_empty() { all() } else { given };

@@ -24,11 +24,19 @@ pub use ensemble::{EnsembleArguments, FreeArguments, Limits, MotionArguments};
 use equations::Formulation;
 pub use fit::FitArguments;
 pub use integrals::IntegralsArguments;
+use integrate::Method;
 pub use judge::JudgeArguments;
 pub use linearize::{LinearizeArguments, TableFormat};
 use program::{Common, Output, TextOrJson, by_name};
 pub use range::{MOST_MEMBERS, Range};
 pub use scenes::{CheckArguments, NewArguments, Overrides, SceneArguments, ShowArguments};
+
+/// The methods of time stepping that are built in.
+#[cfg(feature = "diffsol")]
+pub const METHODS: &[Method] = &diffsol_methods::EVERY;
+/// The methods of time stepping that are built in.
+#[cfg(not(feature = "diffsol"))]
+pub const METHODS: &[Method] = &Method::ALL;
 
 /// What may a virtual displacement be? One system with velocity constraints, several formulations of motion.
 #[derive(Parser, Debug)]
@@ -103,11 +111,13 @@ pub struct SolveArguments {
     #[command(flatten)]
     pub motion: MotionArguments,
     /// Time-stepping method: auto, the one that suits equations and motion (taylor, or else dop853 or
-    /// radau5); Taylor series, of the order that the tolerance asks for; explicit Runge–Kutta of
-    /// order 8 (dop853) or 5 (tsit45); stiff: implicit Runge–Kutta of order 5 (radau5), 4 (esdirk34) or 2
-    /// (tr-bdf2) and backward differentiation formulas (bdf); leapfrog, a discrete variational principle in
-    /// equal steps, which keeps constraints, reversibility and (vakonomic, removed) the symplectic form.
-    #[arg(long, value_parser = by_name(Stepping::all(), Stepping::name, None), default_value = "auto")]
+    /// radau5); Taylor series, of the order that the tolerance asks for; explicit Runge–Kutta of order 8
+    /// (dop853); stiff: implicit Runge–Kutta of order 5 (radau5); leapfrog, a discrete variational principle
+    /// in equal steps, which keeps constraints, reversibility and (vakonomic, removed) the symplectic form.
+    /// A program built with `--features diffsol` has those of the library diffsol, too: explicit Runge–Kutta
+    /// of order 5 (tsit45); stiff: backward differentiation formulas (bdf), implicit Runge–Kutta of order 2
+    /// (tr-bdf2) and 4 (esdirk34).
+    #[arg(long, value_parser = by_name(Stepping::all(METHODS), Stepping::name, None), default_value = "auto")]
     pub method: Stepping,
     /// Longest step of `--method leapfrog`, at most the duration, which is cut into two at least. A second
     /// run in half as many steps gives the error estimate.

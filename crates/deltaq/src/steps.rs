@@ -26,9 +26,9 @@ pub enum Stepping {
 }
 
 impl Stepping {
-    /// Every way that there is.
-    pub fn all() -> impl Iterator<Item = Stepping> {
-        let methods = Method::ALL.into_iter().map(Some);
+    /// Every way that there is with these methods.
+    pub fn all(methods: &[Method]) -> impl Iterator<Item = Stepping> {
+        let methods = methods.iter().copied().map(Some);
         [None].into_iter().chain(methods).map(Stepping::Adaptive).chain([Stepping::Leapfrog])
     }
 

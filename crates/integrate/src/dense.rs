@@ -248,7 +248,7 @@ impl DenseOutput {
 
 /// The basis functions of a step's coefficients.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub(crate) enum Basis {
+pub enum Basis {
     /// 1, θ, θ (1 − θ), θ² (1 − θ) …; all components of the first coefficient, then those of the second …
     Nested,
     /// 1, θ, θ² …; all coefficients of the first component, then those of the second …

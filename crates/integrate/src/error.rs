@@ -46,9 +46,6 @@ pub enum CallError {
     /// [`crate::Method::Taylor`] was asked for, and the problem has no Taylor series.
     #[error("the method needs Taylor series of the solution, which the problem does not have")]
     NoTaylor,
-    /// The method is one of a library that was not built in ([`crate::Method::feature`]).
-    #[error("the method {method} is not built in: it needs the feature `{feature}`")]
-    NotBuiltIn { method: &'static str, feature: &'static str },
     /// The longest step is not above 0.
     #[error("the longest step is {found:?}, it must be above {limit}")]
     MaxStep { found: f64, limit: f64 },

@@ -22,11 +22,8 @@
 //! | [`Method::Taylor`] | from the tolerance: 22 at 1e-9, 29 at 1e-12 | that of the step | smooth non-stiff
 //! problems with Taylor series, any accuracy |
 //! | [`Method::Dop853`] | 8 | 7 | non-stiff problems, high accuracy |
-//! | [`Method::Tsit45`] | 5 | 4 | non-stiff problems, low accuracy |
-//! | [`Method::Bdf`] | 1 to 5 | that of the step | stiff problems |
-//! | [`Method::TrBdf2`] | 2 | 2 | stiff problems, low accuracy |
-//! | [`Method::Esdirk34`] | 3 | 3 | stiff problems |
 //! | [`Method::Radau5`] | 5 | 3 | stiff problems, down to tight tolerances |
+//! | [`Method::Linked`] | | | those of another crate: [`stepping`] |
 //!
 //! # What the tolerance means
 //! It bounds the estimated error *of one step* (see [`Options`]). The error at the end depends on how the
@@ -49,12 +46,9 @@
 //! With [`Projection::EveryStep`], [`Problem::project`] is applied to each accepted state before it is
 //! stored. Dop853 evaluates the rates at the projected state instead of the other one, so that projection
 //! costs no evaluation, and the dense output stays continuously differentiable. Taylor continues from the
-//! projected state at no cost; the move is added to the last coefficient of the step's polynomial. Tsit45,
-//! TrBdf2 and Esdirk34 continue from the projected state, at one evaluation per step. Bdf uses several
-//! previous steps and would have to restart, so that its own solution is left unprojected until the
-//! projection moves the state by more than 1000 tolerances; stored states are always projected. In each case
-//! the order of the method is kept; between the ends of steps the solution is on the manifold to the accuracy
-//! of the dense output.
+//! projected state at no cost; the move is added to the last coefficient of the step's polynomial. In each
+//! case the order of the method is kept; between the ends of steps the solution is on the manifold to the
+//! accuracy of the dense output.
 //!
 //! # What never happens
 //! A NaN or an infinity is never part of a solution: a step with stages, state or rates that are not finite
@@ -64,14 +58,11 @@
 //!
 //! # Sources
 //! E. Hairer, S. P. Nørsett, G. Wanner, *Solving Ordinary Differential Equations I*, 2nd ed., Springer 1993
-//! (DOP853, dense output, starting step). The other methods are those of the library
-//! [`diffsol`](https://docs.rs/diffsol), by the feature `diffsol`, off by default ([`Method::feature`]);
-//! least squares: [`levenberg-marquardt`](https://docs.rs/levenberg-marquardt).
+//! (DOP853, dense output, starting step). Least squares:
+//! [`levenberg-marquardt`](https://docs.rs/levenberg-marquardt).
 
 mod boundary;
 mod dense;
-#[cfg(feature = "diffsol")]
-mod diffsol_methods;
 mod dop853;
 #[cfg(test)]
 mod dop853_order_conditions;
@@ -90,6 +81,7 @@ mod root;
 mod status;
 mod steep;
 mod stepper;
+pub mod stepping;
 mod system;
 mod taylor;
 mod taylor_step;
@@ -100,7 +92,7 @@ pub use dense::DenseOutput;
 pub use error::{CallError, DenseError};
 pub use interrupt::Interrupt;
 pub use lanes::{LANES, Lane, LaneProblem, LaneRun, LaneStart, Left, integrate_lanes};
-pub use options::{Dense, Method, Options, Projection};
+pub use options::{Dense, LinkedMethod, Method, Options, Projection};
 pub use problem::{EvaluationError, Gauge, Problem, Start};
 pub use root::find_root;
 pub use status::{Before, ProjectionReport, Solution, Status, StopCause, Work};
@@ -151,12 +143,7 @@ fn between_breakpoints(
         Method::Radau5 => {
             time_loop::drive(&system, radau5::Radau5::new(&system, start, end, options), start, end, options)
         }
-        #[cfg(feature = "diffsol")]
-        Method::Tsit45 | Method::Bdf | Method::TrBdf2 | Method::Esdirk34 => {
-            diffsol_methods::run(&system, start, end, options)
-        }
-        #[cfg(not(feature = "diffsol"))]
-        method => return Err(CallError::NotBuiltIn { method: method.name(), feature: "diffsol" }),
+        Method::Linked(method) => method.integrate(&system, start, end, options),
     })
 }
 

@@ -1,78 +1,110 @@
 //! Options of an integration.
 
+use std::fmt;
 use std::sync::Arc;
 
 use crate::interrupt::Interrupt;
-use crate::status::Before;
+use crate::problem::Start;
+use crate::status::{Before, Solution};
 use crate::stepper::shortest_step;
+use crate::system::System;
 
 /// The time-stepping method.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[derive(Clone, Copy)]
 pub enum Method {
     /// Taylor series of an order that follows from the tolerance, dense output of that order; for smooth
     /// non-stiff problems that can be expanded ([`crate::Problem::taylor`]), at any accuracy.
     Taylor,
     /// Dormand and Prince's explicit Runge–Kutta 8(5,3), dense output of order 7; for non-stiff problems.
     Dop853,
-    /// Tsitouras' explicit Runge–Kutta method of order 5(4) (diffsol).
-    Tsit45,
-    /// Backward differentiation formulas of variable order 1 to 5 (diffsol); for stiff problems.
-    Bdf,
-    /// The trapezoidal rule and BDF2 in a step, order 2, L-stable (diffsol); stiff problems, low accuracy.
-    TrBdf2,
-    /// Singly diagonally implicit Runge–Kutta method of order 3(4), L-stable (diffsol); for stiff problems.
-    Esdirk34,
     /// Radau IIA of order 5, dense output of order 3, L-stable; for stiff problems, tight tolerances too.
     Radau5,
+    /// A method of another crate, such as those of the library diffsol in `diffsol-methods`.
+    Linked(&'static dyn LinkedMethod),
+}
+
+/// A method that another crate brings along.
+pub trait LinkedMethod: Sync {
+    /// Its name, as on the command line and in reports; no other method has it.
+    fn name(&self) -> &'static str;
+
+    /// As [`Method::order_in_steps`].
+    fn order_in_steps(&self) -> f64;
+
+    /// As [`Method::tightest`].
+    fn tightest(&self) -> i32;
+
+    /// Whether it asks for [`crate::Problem::jacobian`].
+    fn is_implicit(&self) -> bool;
+
+    /// Whether a step continues several before it: then a projection may move a state by what they add up.
+    fn is_multistep(&self) -> bool;
+
+    /// Integrates from `start` to `end`, by [`crate::stepping::drive`].
+    fn integrate(&self, system: &System, start: &Start, end: f64, options: &Options) -> Solution;
 }
 
 impl Method {
-    /// Every method there is.
-    pub const ALL: [Method; 7] =
-        [Method::Taylor, Method::Dop853, Method::Tsit45, Method::Radau5, Method::Bdf, Method::TrBdf2, Method::Esdirk34];
+    /// The methods of this crate.
+    pub const ALL: [Method; 3] = [Method::Taylor, Method::Dop853, Method::Radau5];
 
     /// Its name, as on the command line and in reports.
     pub fn name(self) -> &'static str {
         match self {
             Method::Dop853 => "dop853",
             Method::Taylor => "taylor",
-            Method::Tsit45 => "tsit45",
-            Method::Bdf => "bdf",
-            Method::TrBdf2 => "tr-bdf2",
-            Method::Esdirk34 => "esdirk34",
             Method::Radau5 => "radau5",
+            Method::Linked(method) => method.name(),
         }
     }
 
-    /// The number of steps grows as `tolerance^(−1/order)` with this order, for [`Method::Bdf`] at least with
-    /// it; [`Method::Taylor`] takes a higher order instead of more steps, and has none.
+    /// The number of steps grows as `tolerance^(−1/order)` with this order, for a method of variable order at
+    /// least with it; [`Method::Taylor`] takes a higher order instead of more steps, and has none.
     pub fn order_in_steps(self) -> Option<f64> {
         match self {
             Method::Taylor => None,
             Method::Dop853 => Some(8.0),
-            Method::Tsit45 => Some(5.0),
-            Method::Bdf => Some(6.0),
-            Method::TrBdf2 => Some(3.0),
-            Method::Esdirk34 | Method::Radau5 => Some(4.0),
+            Method::Radau5 => Some(4.0),
+            Method::Linked(method) => Some(method.order_in_steps()),
         }
     }
 
-    /// The feature of this crate that builds the method in; none for one that is always there.
-    pub fn feature(self) -> Option<&'static str> {
+    /// The tightest tolerance at which its error is worth measuring is `10^(−tightest)`: at tighter ones it
+    /// takes too many steps, or measures round-off.
+    pub fn tightest(self) -> i32 {
         match self {
-            Method::Taylor | Method::Dop853 | Method::Radau5 => None,
-            Method::Tsit45 | Method::Bdf | Method::TrBdf2 | Method::Esdirk34 => Some("diffsol"),
+            Method::Taylor => 16,
+            Method::Dop853 => 15,
+            Method::Radau5 => 12,
+            Method::Linked(method) => method.tightest(),
         }
-    }
-
-    /// Whether the method is built in; [`crate::integrate`] refuses any other one.
-    pub fn is_built_in(self) -> bool {
-        self.feature().is_none() || cfg!(feature = "diffsol")
     }
 
     /// Whether the method asks for [`crate::Problem::jacobian`].
     pub fn is_implicit(self) -> bool {
-        matches!(self, Method::Bdf | Method::TrBdf2 | Method::Esdirk34 | Method::Radau5)
+        match self {
+            Method::Taylor | Method::Dop853 => false,
+            Method::Radau5 => true,
+            Method::Linked(method) => method.is_implicit(),
+        }
+    }
+
+    pub(crate) fn is_multistep(self) -> bool {
+        matches!(self, Method::Linked(method) if method.is_multistep())
+    }
+}
+
+impl PartialEq for Method {
+    fn eq(&self, other: &Method) -> bool {
+        self.name() == other.name()
+    }
+}
+
+impl Eq for Method {}
+
+impl fmt::Debug for Method {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name())
     }
 }
 
@@ -133,7 +165,7 @@ pub struct Options {
 
 impl Options {
     /// The absolute tolerance of each of `n` components.
-    pub(crate) fn absolute_tolerances(&self, n: usize) -> Vec<f64> {
+    pub fn absolute_tolerances(&self, n: usize) -> Vec<f64> {
         let size = |i: usize| self.sizes.get(i).copied().unwrap_or(1.0);
         (0..n).map(|i| self.absolute_tolerance_of(size(i))).collect()
     }
@@ -165,7 +197,7 @@ impl Options {
     ///
     /// ```
     /// use integrate::{Method, Options};
-    /// let options = Options { method: Method::Bdf, ..Options::with_tolerance(1e-8) };
+    /// let options = Options { method: Method::Radau5, ..Options::with_tolerance(1e-8) };
     /// assert_eq!(options.relative_tolerance, options.absolute_tolerance);
     /// ```
     pub fn with_tolerance(tolerance: f64) -> Self {
@@ -184,23 +216,5 @@ impl Options {
             interrupt: None,
             before: None,
         }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::CallError;
-
-    #[test]
-    fn a_method_that_is_not_built_in_says_what_it_needs() {
-        let of_libraries = Method::ALL.into_iter().filter_map(|method| Some((method.name(), method.feature()?)));
-        let expected = ["tsit45", "bdf", "tr-bdf2", "esdirk34"].map(|name| (name, "diffsol"));
-        assert_eq!(of_libraries.collect::<Vec<_>>(), expected);
-        assert!(
-            Method::ALL.into_iter().all(|m| m.is_built_in() == (m.feature().is_none() || cfg!(feature = "diffsol")))
-        );
-        let error = CallError::NotBuiltIn { method: "bdf", feature: "diffsol" };
-        assert_eq!(error.to_string(), "the method bdf is not built in: it needs the feature `diffsol`");
     }
 }

@@ -8,7 +8,7 @@ use crate::system::Failure;
 ///
 /// The loop calls `attempt`; on a candidate it may move the candidate's state (projection), then calls
 /// `finish` and then `advance`. Until `advance` the step can be taken back with `shrink`.
-pub(crate) trait Stepper {
+pub trait Stepper {
     /// Degree of the polynomials written by `finish`.
     fn degree(&self) -> usize;
 
@@ -27,19 +27,33 @@ pub(crate) trait Stepper {
     fn candidate(&mut self) -> &mut [f64];
 
     /// Completes the candidate, whose state may have moved; writes the coefficients of its polynomial.
+    ///
+    /// # Errors
+    /// Why the step cannot be taken.
     fn finish(&mut self, moved: bool, segment: Option<&mut [f64]>) -> Result<(), Failure>;
 
     /// Makes the candidate the point reached.
+    ///
+    /// # Errors
+    /// Why the run cannot go on from there.
     fn advance(&mut self) -> Result<(), StopCause>;
 
     /// Drops the candidate; the next attempt is to be half as long.
+    ///
+    /// # Errors
+    /// Why it cannot be.
     fn shrink(&mut self) -> Result<(), StopCause>;
 }
 
 /// What came of an attempt.
-pub(crate) enum Attempt {
-    /// A step to `t`, its error within the tolerance; `rejected` attempts were thrown away inside the method.
-    Candidate { t: f64, rejected: usize },
+pub enum Attempt {
+    /// A step whose error is within the tolerance.
+    Candidate {
+        /// Where it ends.
+        t: f64,
+        /// Attempts that were thrown away inside the method.
+        rejected: usize,
+    },
     /// The error was too large; the step has been shortened.
     Rejected,
     /// Not possible; a shorter step may be.
@@ -65,6 +79,6 @@ pub(crate) fn next_step((t, end): (f64, f64), step: f64, stretch: f64, longest: 
 }
 
 /// The shortest step that still moves the time `t` by more than its own round-off.
-pub(crate) fn shortest_step(t: f64) -> f64 {
+pub fn shortest_step(t: f64) -> f64 {
     (10.0 * f64::EPSILON * t.abs()).max(1e-300)
 }

@@ -7,13 +7,21 @@ use crate::status::{StopCause, Work};
 
 /// Why a step could not be taken, though a shorter one may be possible.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) enum Failure {
+#[expect(missing_docs, reason = "the messages of StopCause say what fields are")]
+pub enum Failure {
+    /// [`StopCause::Evaluation`].
     Evaluation { reason: String },
+    /// [`StopCause::NotFinite`].
     NotFinite { component: usize },
+    /// [`StopCause::NotSmooth`].
     NotSmooth { component: usize },
+    /// [`StopCause::OffConstraint`].
     OffConstraint { component: usize },
+    /// A function changes within less than the step.
     Steep { t: f64 },
+    /// The argument of a function has more round-off than the function changes within.
     Blurred { t: f64 },
+    /// A divisor vanishes within the step.
     Pole { t: f64 },
 }
 
@@ -49,8 +57,11 @@ impl From<Failure> for StopCause {
     }
 }
 
-/// The first NaN or infinite component, if any, as a failure.
-pub(crate) fn check_finite(values: &[f64]) -> Result<(), Failure> {
+/// Refuses values that are NaN or infinite.
+///
+/// # Errors
+/// [`Failure::NotFinite`] with the first of them.
+pub fn check_finite(values: &[f64]) -> Result<(), Failure> {
     // 0 · x is 0 for finite x and NaN otherwise: one pass without branches, in sums that run side by side.
     let (groups, rest) = values.as_chunks::<8>();
     let mut sums = [0.0; 8];
@@ -66,8 +77,9 @@ pub(crate) fn check_finite(values: &[f64]) -> Result<(), Failure> {
     Err(Failure::NotFinite { component })
 }
 
-/// Shared by the time loop and the stepper; the interior mutability serves diffsol, whose closures are `Fn`.
-pub(crate) struct System<'p> {
+/// A problem, shared by the time loop and the stepper: every call is counted, every value checked. The interior
+/// mutability serves libraries whose closures are `Fn`.
+pub struct System<'p> {
     /// No step is longer.
     pub(crate) longest: f64,
     dimension: usize,
@@ -79,10 +91,8 @@ struct Inner<'p> {
     problem: &'p mut dyn Problem,
     work: Work,
     /// The first failure inside a callback that cannot return one; those after it may follow from its NaN.
-    #[cfg(feature = "diffsol")]
     failure: Option<Failure>,
     /// Why there is no Jacobian, as long as there is none.
-    #[cfg(feature = "diffsol")]
     no_jacobian: Option<Failure>,
     /// The point at which `jacobian` was evaluated; empty `y`: nowhere yet.
     jacobian_t: f64,
@@ -100,9 +110,7 @@ impl<'p> System<'p> {
             inner: RefCell::new(Inner {
                 problem,
                 work,
-                #[cfg(feature = "diffsol")]
                 failure: None,
-                #[cfg(feature = "diffsol")]
                 no_jacobian: None,
                 jacobian_t: f64::NAN,
                 jacobian_y: Vec::new(),
@@ -111,7 +119,8 @@ impl<'p> System<'p> {
         }
     }
 
-    pub(crate) fn dimension(&self) -> usize {
+    /// The number of unknowns.
+    pub fn dimension(&self) -> usize {
         self.dimension
     }
 
@@ -127,12 +136,16 @@ impl<'p> System<'p> {
         self.inner.borrow_mut().work.steps += 1;
     }
 
-    pub(crate) fn count_rejected(&self, attempts: usize) {
+    /// Counts attempts that came to nothing.
+    pub fn count_rejected(&self, attempts: usize) {
         self.inner.borrow_mut().work.rejected += attempts;
     }
 
-    /// F(t, y), finite or an error.
-    pub(crate) fn rates(&self, t: f64, y: &[f64], rates: &mut [f64]) -> Result<(), Failure> {
+    /// F(t, y).
+    ///
+    /// # Errors
+    /// Where the problem has none, or one that is not finite.
+    pub fn rates(&self, t: f64, y: &[f64], rates: &mut [f64]) -> Result<(), Failure> {
         let inner = &mut *self.inner.borrow_mut();
         inner.work.evaluations += 1;
         inner.problem.rates(t, y, rates)?;
@@ -159,8 +172,7 @@ impl<'p> System<'p> {
     }
 
     /// F(t, y) for callers without errors: a failure is kept for [`System::take_failure`], NaN is written.
-    #[cfg(feature = "diffsol")]
-    pub(crate) fn rates_or_nan(&self, t: f64, y: &[f64], rates: &mut [f64]) {
+    pub fn rates_or_nan(&self, t: f64, y: &[f64], rates: &mut [f64]) {
         if let Err(failure) = check_finite(y).and_then(|()| self.rates(t, y, rates)) {
             self.inner.borrow_mut().failure.get_or_insert(failure);
             rates.fill(f64::NAN);
@@ -179,8 +191,7 @@ impl<'p> System<'p> {
     }
 
     /// `product = ∂F/∂y(t, y) · v`. The matrix is evaluated once a point, for any number of products.
-    #[cfg(feature = "diffsol")]
-    pub(crate) fn jacobian_product_or_nan(&self, t: f64, y: &[f64], v: &[f64], product: &mut [f64]) {
+    pub fn jacobian_product_or_nan(&self, t: f64, y: &[f64], v: &[f64], product: &mut [f64]) {
         let inner = &mut *self.inner.borrow_mut();
         if let Err(failure) = inner.evaluate_jacobian(t, y) {
             inner.no_jacobian = Some(failure);
@@ -194,8 +205,8 @@ impl<'p> System<'p> {
         }
     }
 
-    #[cfg(feature = "diffsol")]
-    pub(crate) fn take_failure(&self) -> Option<Failure> {
+    /// Why the last values that are NaN are so.
+    pub fn take_failure(&self) -> Option<Failure> {
         let inner = &mut *self.inner.borrow_mut();
         let failure = inner.failure.take();
         inner.no_jacobian.clone().or(failure)

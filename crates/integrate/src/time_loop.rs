@@ -2,7 +2,7 @@
 
 use crate::dense::{Basis, DenseOutput, evaluate_segment};
 use crate::events::{EventWatch, Segment};
-use crate::options::{Dense, Method, Options, Projection};
+use crate::options::{Dense, Options, Projection};
 use crate::pace::Pace;
 use crate::poles::PoleWatch;
 use crate::problem::Start;
@@ -18,8 +18,8 @@ pub(crate) const HALVINGS: usize = 60;
 /// last one is allowed.
 const PERSISTENT: usize = 6;
 
-/// Integrates with `stepper`, or reports that it could not be set up.
-pub(crate) fn drive<S: Stepper>(
+/// Integrates `system` from `start` to `end` with `stepper`, or reports that it could not be set up.
+pub fn drive<S: Stepper>(
     system: &System,
     stepper: Result<S, impl Into<StopCause>>,
     start: &Start,
@@ -33,7 +33,7 @@ pub(crate) fn drive<S: Stepper>(
 }
 
 /// [`drive`] with any stepper.
-pub(crate) fn run(
+pub fn run(
     system: &System,
     stepper: Result<&mut dyn Stepper, StopCause>,
     start: &Start,
@@ -166,7 +166,7 @@ impl Record<'_, '_> {
             }
         }
         let Moves { allowed, last, shorter } = &mut self.moves;
-        if worst <= *allowed || self.options.method == Method::Bdf {
+        if worst <= *allowed || self.options.method.is_multistep() {
             *shorter = 0;
             return Ok(());
         }

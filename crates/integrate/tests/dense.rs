@@ -1,11 +1,12 @@
 //! The dense output of every method.
 
 use crate::problems::*;
+use diffsol_methods::{EVERY, TR_BDF2};
 use integrate::{DenseError, Method, Options, Projection};
 
 #[test]
 fn it_is_continuous_also_where_states_are_projected() {
-    for method in Method::ALL {
+    for method in EVERY {
         for projection in [Projection::EveryStep, Projection::Off] {
             let options = Options { method, projection, ..Options::with_tolerance(1e-5) };
             let mut case = oscillator().with_projection(onto_circle);
@@ -28,7 +29,7 @@ fn it_is_continuous_also_where_states_are_projected() {
 fn it_is_as_good_as_the_steps() {
     // Within a small factor of the error at the ends of the steps, for every method. Those of Radau5 are of
     // an order that its polynomial does not have, and the measure is the tolerance.
-    for method in Method::ALL {
+    for method in EVERY {
         let options = Options { method, ..Options::with_tolerance(1e-7) };
         let solution = run(&mut oscillator(), 0.0, &[1.0, 0.0], 10.0, &options);
         let error = |t: f64| distance(&state::<2>(&solution, t), &circle(t));
@@ -63,12 +64,12 @@ fn questions_it_cannot_answer() {
 
 #[test]
 fn backward_integration_returns_to_the_start() {
-    for method in Method::ALL {
+    for method in EVERY {
         let options = Options { method, ..Options::with_tolerance(1e-9) };
         let there = run(&mut nonautonomous(), 0.5, &[1.0], 4.0, &options);
         let back = run(&mut nonautonomous(), 4.0, there.dense.end_state(), 0.5, &options);
         let missed = (back.dense.end_state()[0] - 1.0).abs();
-        let limit = if method == Method::TrBdf2 { 1e-4 } else { 1e-6 };
+        let limit = if method == TR_BDF2 { 1e-4 } else { 1e-6 };
         assert!(missed < limit, "{method:?}: misses the start by {missed:e}");
         for i in 0..=35 {
             let t = 0.5 + 0.1 * f64::from(i);

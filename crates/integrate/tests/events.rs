@@ -1,6 +1,7 @@
 //! Events and roots.
 
 use crate::problems::*;
+use diffsol_methods::{EVERY, TR_BDF2};
 use integrate::{EvaluationError, Method, Options, Status, StopCause, find_root};
 
 /// θ'' = −sin θ.
@@ -51,7 +52,7 @@ fn the_pendulum_swings_in_its_period() {
 
 #[test]
 fn every_method_finds_the_first_of_several_events_in_both_directions() {
-    for method in Method::ALL {
+    for method in EVERY {
         for direction in [1.0, -1.0] {
             let mut case = oscillator().with_events(3, |t, y, g| {
                 g[0] = y[0] + 0.5; // cos t = −1/2
@@ -63,7 +64,7 @@ fn every_method_finds_the_first_of_several_events_in_both_directions() {
             let solution = attempt(&mut case, 0.0, &[1.0, 0.0], 10.0 * direction, &options);
             let t = stopped_at(&solution, 1);
             let exact = direction * std::f64::consts::FRAC_PI_3;
-            let limit = if method == Method::TrBdf2 { 1e-5 } else { 1e-6 };
+            let limit = if method == TR_BDF2 { 1e-5 } else { 1e-6 };
             assert!((t - exact).abs() < limit, "{method:?}: {t} instead of {exact}");
             assert!((solution.dense.end_state()[0] - 0.5).abs() < 1e-14);
             assert!((state::<2>(&solution, 0.5 * t)[0] - (0.5 * t).cos()).abs() < limit);
@@ -88,7 +89,7 @@ fn an_event_at_the_pole_of_another_does_not_hide_it() {
 /// As the square of a velocity where a motion comes to rest and turns back: the jump makes the steps short.
 #[test]
 fn an_event_that_touches_zero_at_a_jump_is_seen() {
-    for method in Method::ALL {
+    for method in EVERY {
         for direction in [1.0, -1.0] {
             let mut case = Case::new(2, |_, y| vec![y[0].number(1.0), &y[0] * &(&y[0] * &y[0]).powf(-0.5)])
                 .with_events(1, |_, y, g| {
@@ -128,7 +129,7 @@ fn an_event_at_the_very_end_counts() {
 
 #[test]
 fn events_that_cannot_be_evaluated_stop_the_run() {
-    for method in Method::ALL {
+    for method in EVERY {
         let mut case = oscillator().with_events(1, |t, _, g| {
             g[0] = 1.0;
             if t <= 1.0 { Ok(()) } else { Err(EvaluationError { reason: "no event past 1".into() }) }

@@ -1,6 +1,7 @@
 //! The methods of diffsol and Radau5: orders against cost, stiff problems, projection.
 
 use crate::problems::*;
+use diffsol_methods::{BDF, ESDIRK34, EVERY, TR_BDF2, TSIT45};
 use integrate::{Method, Options, Projection, Solution};
 
 #[test]
@@ -14,10 +15,10 @@ fn errors_fall_with_the_order_of_the_method() {
     // Radau5 has order 5 at the ends of its steps, and its dense output order 3
     type Error<'a> = &'a dyn Fn(&Solution) -> f64;
     let cases: [(Method, f64, f64, Error, &[f64]); 6] = [
-        (Method::Tsit45, 5.0, 0.6, &everywhere, &tolerances),
-        (Method::Bdf, 5.0, 0.6, &everywhere, &tolerances),
-        (Method::TrBdf2, 2.0, 0.6, &everywhere, &tolerances),
-        (Method::Esdirk34, 3.0, 0.6, &everywhere, &tolerances),
+        (TSIT45, 5.0, 0.6, &everywhere, &tolerances),
+        (BDF, 5.0, 0.6, &everywhere, &tolerances),
+        (TR_BDF2, 2.0, 0.6, &everywhere, &tolerances),
+        (ESDIRK34, 3.0, 0.6, &everywhere, &tolerances),
         (Method::Radau5, 4.0, 0.6, &everywhere, &tolerances),
         (Method::Radau5, 5.0, 0.4, &at_steps, &tolerances[1..]),
     ];
@@ -40,12 +41,9 @@ fn stiff_problems_agree_with_their_references() {
     let robertson_40 = [0.715_827_068_719_4, 9.185_534_764_557_3e-6, 0.284_163_745_745_8];
     let van_der_pol_2 = [1.706_167_732_170_483, -0.892_809_701_024_797_5];
     // Radau5 keeps its dense output, of order 3, under the tolerance; the ends are better by orders
-    for (method, limit, steps, share) in [
-        (Method::Bdf, 2e-6, 1000, 5),
-        (Method::TrBdf2, 3e-5, 1000, 5),
-        (Method::Esdirk34, 1e-5, 1000, 5),
-        (Method::Radau5, 1e-9, 2000, 2),
-    ] {
+    for (method, limit, steps, share) in
+        [(BDF, 2e-6, 1000, 5), (TR_BDF2, 3e-5, 1000, 5), (ESDIRK34, 1e-5, 1000, 5), (Method::Radau5, 1e-9, 2000, 2)]
+    {
         let options = Options { method, absolute_tolerance: 1e-13, ..Options::with_tolerance(1e-7) };
         let solution = run(&mut robertson(), 0.0, &[1.0, 0.0, 0.0], 40.0, &options);
         for (i, (y, reference)) in solution.dense.end_state().iter().zip(robertson_40).enumerate() {
@@ -64,7 +62,7 @@ fn stiff_problems_agree_with_their_references() {
 
 #[test]
 fn projection_keeps_the_radius_and_does_no_harm() {
-    for method in Method::ALL {
+    for method in EVERY {
         let tolerance = 1e-7;
         let off = Options { method, projection: Projection::Off, ..Options::with_tolerance(tolerance) };
         let on = Options { projection: Projection::EveryStep, ..off.clone() };
@@ -100,7 +98,7 @@ fn projection_holds_what_would_run_away() {
         vec![&y[1] + &(&push * &y[0]), &(&push * &y[1]) - &y[0]]
     })
     .with_projection(onto_circle);
-    for method in Method::ALL {
+    for method in EVERY {
         let options = Options { method, ..Options::with_tolerance(1e-7) };
         let solution = run(&mut case.clone(), 0.0, &[1.0, 0.0], 20.0, &options);
         let error = distance(solution.dense.end_state(), &circle(20.0));

@@ -1,6 +1,7 @@
 //! Every way in which a run ends before its end, every bad call, and the counters.
 
 use crate::problems::*;
+use diffsol_methods::{BDF, ESDIRK34, EVERY, TR_BDF2};
 use integrate::{CallError, EvaluationError, Interrupt, Method, Options, Start, Status, StopCause, integrate};
 
 fn options(method: Method) -> Options {
@@ -9,7 +10,7 @@ fn options(method: Method) -> Options {
 
 #[test]
 fn nothing_gets_past_a_blow_up() {
-    for method in Method::ALL {
+    for method in EVERY {
         for (tolerance, limit) in [(1e-3, 2e-2), (1e-6, 2e-4), (1e-9, 2e-6)] {
             let options = Options { method, ..Options::with_tolerance(tolerance) };
             for (sign, start) in [(1.0, 1.0), (-1.0, -1.0)] {
@@ -38,7 +39,7 @@ fn nothing_gets_past_a_blow_up() {
 
 #[test]
 fn rates_that_are_not_finite_are_named() {
-    for method in Method::ALL {
+    for method in EVERY {
         // From the start on.
         let mut nan = Case::new(2, |_, y| vec![y[0].number(0.0), y[0].number(f64::NAN)]);
         let status = attempt(&mut nan, 0.0, &[1.0, 1.0], 1.0, &options(method)).status;
@@ -67,7 +68,7 @@ fn a_wall_is_walked_up_to_and_reported_in_the_problems_words() {
         .with_refusal(|_, y| (y[0] < -0.75).then(|| format!("depth {} under the floor −0.75", y[0])));
     let steep =
         Case::new(1, |_, y| vec![-&y[0].powf(-1.0)]).with_refusal(|_, y| (y[0] <= 0.0).then(|| "not above 0".into()));
-    for method in Method::ALL {
+    for method in EVERY {
         let solution = attempt(&mut gentle.clone(), 0.0, &[0.0], 9.0, &options(method));
         match solution.status {
             Status::Stopped { t, cause: StopCause::Evaluation { reason } } => {
@@ -89,7 +90,7 @@ fn a_wall_is_walked_up_to_and_reported_in_the_problems_words() {
 
 #[test]
 fn a_wall_next_to_the_start_is_no_hindrance_on_the_way_away() {
-    for method in Method::ALL {
+    for method in EVERY {
         let mut case = Case::new(1, |_, y| vec![y[0].clone()])
             .with_refusal(|t, _| (!(0.0..=1.0).contains(&t)).then(|| format!("outside of [0, 1]: {t}")));
         let solution = run(&mut case, 0.0, &[1.0], 1.0, &options(method));
@@ -100,7 +101,7 @@ fn a_wall_next_to_the_start_is_no_hindrance_on_the_way_away() {
 
 #[test]
 fn failing_projections_and_jacobians_stop_the_run() {
-    for method in Method::ALL {
+    for method in EVERY {
         let mut case = oscillator().with_projection(|t, _| match t <= 0.5 {
             true => Ok(0.0),
             false => Err(EvaluationError { reason: "no projection past 1/2".into() }),
@@ -118,7 +119,7 @@ fn failing_projections_and_jacobians_stop_the_run() {
         let status = attempt(&mut case, 0.0, &[1.0, 0.0], 2.0, &options(method)).status;
         assert_eq!(status, Status::Stopped { t: 0.0, cause: StopCause::NotFinite { component: 1 } }, "{method:?}");
     }
-    for method in [Method::Bdf, Method::TrBdf2, Method::Esdirk34, Method::Radau5] {
+    for method in [BDF, TR_BDF2, ESDIRK34, Method::Radau5] {
         let broken = |y: &Jet| Jet(y.0.iter().enumerate().map(|(k, y)| if k == 0 { *y } else { f64::NAN }).collect());
         let mut case = Case::new(2, move |_, y| vec![broken(&y[1]), broken(&y[0])]);
         let status = attempt(&mut case, 0.0, &[1.0, 0.0], 2.0, &options(method)).status;
@@ -145,7 +146,7 @@ fn a_run_that_creeps_up_to_a_singularity_says_so() {
 
 #[test]
 fn steps_are_limited() {
-    for method in Method::ALL {
+    for method in EVERY {
         let options = Options { max_steps: 10, ..options(method) };
         let solution = attempt(&mut oscillator(), 0.0, &[1.0, 0.0], 100.0, &options);
         let cause = StopCause::TooManySteps { limit: 10 };
@@ -165,7 +166,7 @@ fn steps_are_limited() {
 
 #[test]
 fn work_is_counted_to_the_evaluation() {
-    for method in Method::ALL {
+    for method in EVERY {
         for mut case in [oscillator(), oscillator().with_projection(onto_circle)] {
             let solution = run(&mut case, 0.0, &[1.0, 0.0], 10.0, &options(method));
             assert_eq!(solution.work.evaluations, case.evaluations, "{method:?}");
@@ -181,7 +182,7 @@ fn work_is_counted_to_the_evaluation() {
 
 #[test]
 fn the_end_is_hit_exactly() {
-    for method in Method::ALL {
+    for method in EVERY {
         for (t, end) in [(0.0, 1.0), (0.1, 0.7), (1e6, 1e6 + 1.0), (0.0, 1e-9), (-3.0, -0.3), (2.0, 1.9), (0.0, -1e3)] {
             let solution = run(&mut nonautonomous(), t, &[1.0], end, &options(method));
             assert_eq!(solution.dense.start().to_bits(), t.to_bits());
@@ -248,7 +249,7 @@ fn every_bad_call() {
 
 #[test]
 fn steps_are_no_longer_than_allowed_and_end_where_they_are_to() {
-    for method in Method::ALL {
+    for method in EVERY {
         for direction in [1.0, -1.0] {
             let breakpoints = [0.7, 5.0, 0.3, 0.3, -1.0].map(|t| direction * t).to_vec();
             let options = Options { max_step: 0.01, breakpoints, ..options(method) };
@@ -275,7 +276,7 @@ fn steps_are_no_longer_than_allowed_and_end_where_they_are_to() {
 
 #[test]
 fn an_interrupt_ends_the_run_at_the_end_of_a_step() {
-    for method in Method::ALL {
+    for method in EVERY {
         let interrupt = Interrupt::default();
         let options = Options { interrupt: Some(interrupt.clone()), ..options(method) };
         // the oscillator, which raises the flag once it is past t = 1
@@ -299,7 +300,7 @@ fn an_interrupt_ends_the_run_at_the_end_of_a_step() {
 
 #[test]
 fn who_watches_sees_how_far_a_run_is_and_a_time_limit_ends_it() {
-    for method in Method::ALL {
+    for method in EVERY {
         let interrupt = Interrupt::default();
         let watched = interrupt.clone();
         let options = Options { interrupt: Some(interrupt.within(3600.0)), ..options(method) };
@@ -323,7 +324,7 @@ fn who_watches_sees_how_far_a_run_is_and_a_time_limit_ends_it() {
 
 #[test]
 fn a_problem_is_told_of_every_accepted_state_and_may_refuse_one() {
-    for method in Method::ALL {
+    for method in EVERY {
         for refuse in [0, 3] {
             let mut diary = Case { refuse, ..Case::new(1, |t, _| vec![t.cos()]) };
             let options = Options { method, ..Options::with_tolerance(1e-8) };

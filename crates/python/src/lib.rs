@@ -59,8 +59,7 @@ mod _native {
         let names = |list: Vec<&str>| PyTuple::new(module.py(), list);
         module.add("FORMULATIONS", names(deltaq::FORMULATIONS.iter().map(|f| f.name).collect())?)?;
         module.add("SCENES", names(catalogue::built_in().map(|(name, _)| *name).collect())?)?;
-        let methods = Method::ALL.into_iter().filter(|method| method.is_built_in());
-        module.add("METHODS", names(methods.map(Method::name).collect())?)?;
+        module.add("METHODS", names(Method::ALL.map(Method::name).to_vec())?)?;
         module.add("UnknownNameError", crate::errors::unknown_name(module.py())?)?;
         module.add("__version__", env!("CARGO_PKG_VERSION"))
     }

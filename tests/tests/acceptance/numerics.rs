@@ -7,6 +7,7 @@ use deltaq::{
     CHETAEV, Choice, Ending, Motion, REDUCED_CHETAEV, REDUCED_VAKONOMIC, Settings, VAKONOMIC_COSTATE, choices,
     solve_choice,
 };
+use diffsol_methods::{BDF, ESDIRK34, EVERY, TR_BDF2, TSIT45};
 use integrate::Method;
 use mechanics::ConstantsRule;
 use scene::Scene;
@@ -27,10 +28,10 @@ fn every_method_reaches_the_closed_form_of_the_sledge() {
     for (method, tolerance, factor) in [
         (Method::Taylor, 1e-9, 100.0),
         (Method::Dop853, 1e-9, 100.0),
-        (Method::Tsit45, 1e-7, 100.0),
-        (Method::Bdf, 1e-6, 1000.0),
-        (Method::TrBdf2, 1e-5, 100.0),
-        (Method::Esdirk34, 1e-6, 100.0),
+        (TSIT45, 1e-7, 100.0),
+        (BDF, 1e-6, 1000.0),
+        (TR_BDF2, 1e-5, 100.0),
+        (ESDIRK34, 1e-6, 100.0),
         (Method::Radau5, 1e-6, 100.0),
     ] {
         let settings = Settings { method: Some(method), tolerance, ..Settings::default() };
@@ -76,7 +77,7 @@ fn implicit_methods_use_those_jacobians() {
         motion_of(&scene, equations(&scene.system, CHETAEV, None), &[], &settings)
     };
     let mut reference: Motion = run(Method::Dop853);
-    for method in [Method::Bdf, Method::Esdirk34] {
+    for method in [BDF, ESDIRK34] {
         let mut motion = run(method);
         assert!(motion.work.jacobians > 0, "{method:?} asked for no Jacobian");
         let error =
@@ -198,7 +199,7 @@ duration = 3
     let scene = Scene::parse("cone", text).expect("a scene");
     let removed = choices(&scene).into_iter().find(|c| c.removal.is_some()).expect("a removal");
     let choice = Choice { constants: ConstantsRule::Given(vec![0.4]), ..removed };
-    for method in [None].into_iter().chain(Method::ALL.map(Some)) {
+    for method in [None].into_iter().chain(EVERY.map(Some)) {
         let (_, t, cause) = stopped(&scene, &choice, method, 1e-8);
         assert!((t - 1.25).abs() < 1e-5, "{method:?}: {t}: {cause}");
     }

@@ -14,6 +14,7 @@
 use std::collections::HashMap;
 
 use deltaq::{CHETAEV, Metric, Motion, Setting, Settings, SolveError, solve};
+use diffsol_methods::BDF;
 use integrate::Method;
 use mechanics::{ConstantsRule, Parameter, Removal, State, System, complete_removal_start};
 use nalgebra::{DMatrix, DVector};
@@ -53,7 +54,7 @@ pub fn realize(kind: Realization, strength: f64, setting: Setting, multipliers: 
     match kind {
         Realization::Friction => {
             let system = with_friction(setting.system, strength);
-            run(Setting { system: &system, ..setting }, Method::Bdf, setting.system.dimension())
+            run(Setting { system: &system, ..setting }, BDF, setting.system.dimension())
         }
         Realization::AddedMass | Realization::Both { .. } => {
             let kappa = if let Realization::Both { kappa } = kind { kappa } else { 0.0 };

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 use std::fmt::Write;
 
 use anyhow::Result;
+use diffsol_methods::EVERY;
 use discrete::Composition;
 use integrate::Method;
 use serde_json::{Map, Value, json};
@@ -81,7 +82,7 @@ impl StabilityReport {
         format!(
             "Stiff and extreme cases, {} answers of {} methods and of structure-preserving steps: {} accurate, {} inaccurate and said so, {} refused with time and cause, {} wrong.",
             self.answers(),
-            Method::ALL.len(),
+            EVERY.len(),
             self.count("accurate"),
             self.count("admitted"),
             self.count("refused"),
@@ -251,7 +252,7 @@ impl StabilityReport {
         };
         let title = format!("{name}: true error, lines where nothing is refused");
         let (x, y) = (Axis::log(variable(name)), Axis::log("error over distance"));
-        let curves = Method::ALL.iter().enumerate().flat_map(of).collect();
+        let curves = EVERY.iter().enumerate().flat_map(of).collect();
         Ok(Picture::new(title, x, y, curves).to_svg()?)
     }
 }

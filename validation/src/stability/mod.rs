@@ -1,7 +1,7 @@
 //! Stiff and extreme cases: is what comes back right, and where it is not, does it say so?
 //!
 //! A [`Question`] is one system at a point of a case in one formulation, with a [`Reference`] that does not
-//! share the failure sought. All of [`integrate::Method::ALL`] answer, or structure-preserving steps of a
+//! share the failure sought. All of [`diffsol_methods::EVERY`] answer, or structure-preserving steps of a
 //! given length and every order; [`judge()`] says a word per [`Cell`]:
 //!
 //! ```text

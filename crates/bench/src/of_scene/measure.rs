@@ -36,18 +36,6 @@ pub struct Series {
     pub points: Vec<Point>,
 }
 
-/// Tightest tolerance asked of a method.
-fn tightest(method: Method) -> i32 {
-    match method {
-        Method::Dop853 => 15,
-        Method::Taylor => 16,
-        Method::Tsit45 => 13,
-        Method::TrBdf2 => 8,
-        Method::Bdf | Method::Esdirk34 => 11,
-        Method::Radau5 => 12,
-    }
-}
-
 /// A run that takes over this many times as long as another that is as good is not repeated: the least of its
 /// times would be no less than that one's.
 const BEYOND: f64 = 4.0;
@@ -67,7 +55,7 @@ impl Series {
         let reaches = matches!(method, Method::Taylor | Method::Dop853);
         let patience = if reaches { 4.0 * effort.patience } else { effort.patience };
         let mut points = Vec::new();
-        for exponent in 3..=tightest(method) {
+        for exponent in 3..=method.tightest() {
             let mut options = Options::with_tolerance(10.0_f64.powi(-exponent));
             options.method = method;
             options.max_steps = effort.max_steps;

@@ -10,6 +10,7 @@ use std::time::Instant;
 use anyhow::{Context, Result, bail};
 use clap::{CommandFactory, ValueEnum};
 use deltaq::{Comparison, Fits, Settings, choices, compare_unfitted};
+use diffsol_methods::EVERY;
 use scene::Scene;
 use serde_json::{Value, json};
 
@@ -104,7 +105,7 @@ impl Results {
     }
 
     fn measured(prepared: Vec<bench::Prepared>, names: &[&str], quiet: bool) -> Result<Part> {
-        let benches = bench_all(prepared, &Effort::brief(), quiet)?;
+        let benches = bench_all(prepared, &Effort::brief(&EVERY), quiet)?;
         let mut ensembles = Vec::new();
         if names.contains(&bench::ENSEMBLE_SCENE) {
             ensembles = bench::ensemble_throughput(bench::FEW_MEMBERS, ENSEMBLE_TOLERANCE, ENSEMBLE_REPEATS)?;

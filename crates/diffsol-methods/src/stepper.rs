@@ -1,4 +1,4 @@
-//! Methods of diffsol: [`Method::Bdf`], [`Method::TrBdf2`], [`Method::Esdirk34`], [`Method::Tsit45`].
+//! A solver of diffsol as a stepper of our time loop.
 //!
 //! What this file guards against: diffsol 0.18 takes a NaN error estimate of a Runge–Kutta step for zero
 //! (`max` drops NaN), so that NaN comes out as success; and a failed Newton iteration leaves the solver in
@@ -10,14 +10,11 @@ use diffsol::{
     DiffsolError, NalgebraLU, NalgebraMat, NalgebraVec, OdeBuilder, OdeEquations, OdeSolverConfig, OdeSolverMethod,
     OdeSolverStopReason, Vector, VectorCommon,
 };
+use integrate::stepping::{self, Attempt, Failure, Stepper, System, check_finite, shortest_step};
+use integrate::{Options, Solution, Start, StopCause};
 use nalgebra::DMatrix;
 
-use crate::options::{Method, Options};
-use crate::problem::Start;
-use crate::status::{Solution, StopCause};
-use crate::stepper::{Attempt, Stepper, shortest_step};
-use crate::system::{Failure, System, check_finite};
-use crate::time_loop;
+use crate::Diffsol;
 
 type Linear = NalgebraLU<f64>;
 type States = NalgebraVec<f64>;
@@ -33,7 +30,7 @@ const ITERATION: f64 = 0.02;
 const LIBRARY_FAILURES: usize = 100_000;
 
 /// Integrates with one of diffsol's methods.
-pub(crate) fn run(system: &System, start: &Start, end: f64, options: &Options) -> Solution {
+pub(crate) fn run(method: Diffsol, system: &System, start: &Start, end: f64, options: &Options) -> Solution {
     let n = system.dimension();
     let sign = (end - start.t).signum();
     let problem = OdeBuilder::<NalgebraMat<f64>>::new()
@@ -51,19 +48,17 @@ pub(crate) fn run(system: &System, start: &Start, end: f64, options: &Options) -
         .build();
     let mut problem = match problem {
         Ok(problem) => problem,
-        Err(error) => return time_loop::run(system, Err(solver_cause(&error)), start, end, options),
+        Err(error) => return stepping::run(system, Err(solver_cause(&error)), start, end, options),
     };
     problem.ode_options.nonlinear_solver_tolerance = ITERATION;
     problem.ode_options.max_nonlinear_solver_failures = LIBRARY_FAILURES;
     problem.ode_options.max_error_test_failures = LIBRARY_FAILURES;
     let call = Call { system, start, end, options };
-    match options.method {
-        Method::Bdf => call.drive(problem.bdf::<Linear>(), Kind { degree: 5, told_above: MULTISTEP_MOVE }),
-        Method::TrBdf2 => call.drive(problem.tr_bdf2::<Linear>(), Kind { degree: 2, told_above: 0.0 }),
-        Method::Esdirk34 => call.drive(problem.esdirk34::<Linear>(), Kind { degree: 3, told_above: 0.0 }),
-        Method::Tsit45 | Method::Dop853 | Method::Taylor | Method::Radau5 => {
-            call.drive(problem.tsit45(), Kind { degree: 4, told_above: 0.0 })
-        }
+    match method {
+        Diffsol::Bdf => call.drive(problem.bdf::<Linear>(), Kind { degree: 5, told_above: MULTISTEP_MOVE }),
+        Diffsol::TrBdf2 => call.drive(problem.tr_bdf2::<Linear>(), Kind { degree: 2, told_above: 0.0 }),
+        Diffsol::Esdirk34 => call.drive(problem.esdirk34::<Linear>(), Kind { degree: 3, told_above: 0.0 }),
+        Diffsol::Tsit45 => call.drive(problem.tsit45(), Kind { degree: 4, told_above: 0.0 }),
     }
 }
 
@@ -93,7 +88,7 @@ impl Call<'_, '_> {
         let stepper = solver
             .map_err(|error| self.system.take_failure().map_or_else(|| solver_cause(&error), StopCause::from))
             .and_then(|solver| Library::new(self, solver, kind));
-        time_loop::drive(self.system, stepper, self.start, self.end, self.options)
+        stepping::drive(self.system, stepper, self.start, self.end, self.options)
     }
 }
 
