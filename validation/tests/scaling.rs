@@ -1,9 +1,10 @@
 //! How cost grows: counts that do not depend on the machine.
 
+use bench::exponent;
 use catalogue::trailer::Coordinates;
 use deltaq::{CHETAEV, REDUCED_CHETAEV, REDUCED_VAKONOMIC};
 use equations::Formulation;
-use validation::scaling::{FROM, Limits, TRAILERS, counts, exponent, line};
+use validation::scaling::{FROM, Limits, TRAILERS, counts, line};
 
 #[test]
 fn a_train_costs_what_its_length_costs() {

@@ -5,10 +5,12 @@
 //! reference over [`SAMPLES`] times. A run that fails is listed with its cause.
 
 mod ensemble;
+mod exponent;
 mod of_scene;
 mod page;
 
 pub use ensemble::{ENSEMBLE_SCENE, FEW_MEMBERS, MEMBERS, Throughput, Time, ensemble_throughput};
+pub use exponent::{Exponent, exponent};
 pub use of_scene::{
     Bench, Effort, Entry, Fastest, KeptMotion, KeptReferences, Measured, Measurements, Point, Prepared, SAMPLES,
     Series, TARGETS, Truth, Usual, bench_all, measure, prepare, references,

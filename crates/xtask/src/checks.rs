@@ -11,7 +11,7 @@ use std::time::Instant;
 
 use anyhow::{Context, Result};
 
-use crate::tools::{Outcome, build, cargo, outside, succeed, target};
+use crate::tools::{ALL, Outcome, build, cargo, outside, succeed, target};
 use crate::{dependencies, explore, lint, python, sources};
 
 /// One thing that must hold.
@@ -251,11 +251,11 @@ fn fmt() -> Result<Outcome> {
 }
 
 fn tests() -> Result<Outcome> {
-    succeed(cargo().args(["test", "--release", "--workspace", "--tests", "--examples"]))
+    succeed(cargo().arg("test").args(ALL).args(["--tests", "--examples"]))
 }
 
 fn doctests() -> Result<Outcome> {
-    succeed(cargo().args(["test", "--release", "--workspace", "--doc"]))
+    succeed(cargo().arg("test").args(ALL).arg("--doc"))
 }
 
 fn reports() -> Result<Outcome> {

@@ -165,7 +165,8 @@ fn fresh(digest: &str) -> Result<(PathBuf, String)> {
     build()?;
     let (target, folder) = (target()?, workshop()?);
     let mut compile = cargo();
-    compile.args(["build", "--profile", "page", "--target", WASM, "--package", "deltaq-explore"]);
+    compile.args(["rustc", "--profile", "page", "--target", WASM, "--package", "deltaq-explore"]);
+    compile.args(["--crate-type", "cdylib"]);
     succeed(compile.env("CARGO_TARGET_WASM32_UNKNOWN_UNKNOWN_RUSTFLAGS", flags()))?;
     let (program, page) = (target.join(WASM).join("page").join("explore.wasm"), target.join("explore/explore.html"));
     let mut bundle = outside("node");

@@ -10,7 +10,7 @@ use std::process::{Command, ExitCode};
 
 use anyhow::{Context, Result};
 
-use crate::tools::{Outcome, cargo, succeed, target};
+use crate::tools::{ALL, Outcome, cargo, succeed, target};
 
 /// Set for the calls that are to be linted: the folder of the tools.
 const TOOLS: &str = "XTASK_LINT_TOOLS";
@@ -21,7 +21,7 @@ pub(crate) fn check() -> Result<Outcome> {
     let cargo_program = PathBuf::from(cargo().get_program());
     let tools = cargo_program.parent().unwrap_or(Path::new(""));
     let mut build = cargo();
-    build.args(["build", "--release", "--workspace", "--all-targets"]);
+    build.arg("build").args(ALL).arg("--all-targets");
     build.env("RUSTC_WORKSPACE_WRAPPER", program).env(TOOLS, tools).env("CARGO_TARGET_DIR", target()?);
     // the separator is clippy-driver's own
     build.env("CLIPPY_ARGS", "-D__CLIPPY_HACKERY__warnings__CLIPPY_HACKERY__");

@@ -4,7 +4,8 @@ use std::fmt::Write;
 
 use anyhow::Result;
 
-use crate::scaling::{Exponent, FROM, Line, Point};
+use crate::scaling::{FROM, Line, Point};
+use bench::Exponent;
 use deltaq::FORMS;
 use deltaq::words::{or_dash, short};
 use pages::Table;

@@ -5,11 +5,10 @@
 //! changes: expressions made, operations of a right-hand side, evaluations. Trains grow until a formulation's
 //! derivation takes over [`Limits::seconds`]; solves that would are left out.
 
-mod fit;
-
 use std::time::Instant;
 
 use anyhow::{Context, Result};
+use bench::{Exponent, exponent};
 use deltaq::{
     CHETAEV, Prepared, REDUCED_CHETAEV, REDUCED_VAKONOMIC, REMOVED_CONSTRAINT, Setting, Settings, VAKONOMIC,
     VAKONOMIC_COSTATE, default_constants, prepare, setting, solve,
@@ -18,8 +17,6 @@ use equations::{Compiled, Derivation, Formulation};
 use mechanics::{ConstantsRule, Removal, System};
 use scene::Scene;
 use serde::Serialize;
-
-pub use fit::{Exponent, exponent};
 
 use catalogue::trailer::{Coordinates, scene};
 

@@ -1,9 +1,7 @@
 //! Exponents of growth.
 
-use serde::Serialize;
-
 /// The slope of `log cost` over `log n`.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Exponent {
     /// The exponent.
     pub value: f64,
@@ -15,7 +13,7 @@ pub struct Exponent {
 ///
 /// ```
 /// let squares: Vec<(f64, f64)> = [20.0, 40.0, 80.0].map(|n: f64| (n, 3.0 * n * n)).into();
-/// let fit = validation::scaling::exponent(&squares).unwrap();
+/// let fit = bench::exponent(&squares).unwrap();
 /// assert!((fit.value - 2.0).abs() < 1e-12 && fit.error < 1e-12);
 /// ```
 pub fn exponent(points: &[(f64, f64)]) -> Option<Exponent> {
