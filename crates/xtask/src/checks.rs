@@ -44,6 +44,12 @@ pub(crate) fn all() -> Vec<Check> {
             sources::paths,
         ),
         check(
+            "once",
+            "nothing that the main job has compiled is compiled again with other features",
+            "name the features in validation/Cargo.toml, or do without the package that asks for them",
+            dependencies::once,
+        ),
+        check(
             "build",
             "libraries, programs, tests and the Python module compile, each once",
             "cargo build --release --workspace --all-targets",

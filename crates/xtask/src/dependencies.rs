@@ -23,6 +23,32 @@ pub(crate) fn check() -> Result<Outcome> {
     Ok(Outcome::Passed(format!("{}; {}", String::from_utf8_lossy(&laid.stdout).trim_end(), counts.join(", "))))
 }
 
+/// The package of the main job.
+const MAIN_JOB: &str = "deltaq-validation";
+
+/// What the main job has compiled the other checks do not compile again: with the rest of the workspace no
+/// package of it gets other features.
+pub(crate) fn once() -> Result<Outcome> {
+    let alone = tree("{p} {f}", &["--package", MAIN_JOB])?;
+    let beside = tree("{p} {f}", &["--edges", "normal,build,dev", "--workspace", "--exclude", "engine"])?;
+    let twice: Vec<String> = alone.difference(&beside).map(|package| differs(package, &beside)).collect();
+    ensure!(
+        twice.is_empty(),
+        "compiled by `cargo run --release` and again by `cargo xtask test`: {}; name these features in \
+         validation/Cargo.toml",
+        twice.join("; ")
+    );
+    Ok(Outcome::Passed(format!(", {} packages of the main job", alone.len())))
+}
+
+/// A package with its features, and what other features it has beside the rest of the workspace.
+fn differs(package: &str, beside: &BTreeSet<String>) -> String {
+    let mut words = package.splitn(3, ' ');
+    let name = [words.next().unwrap_or_default(), words.next().unwrap_or_default()].join(" ");
+    let others = beside.iter().filter_map(|other| other.strip_prefix(&name[..]));
+    format!("{package}, else with{}", others.collect::<Vec<_>>().join(", or with"))
+}
+
 /// A registry's packages can be put together: every dependency has a version and asks for what there is.
 pub(crate) fn package() -> Result<Outcome> {
     succeed(cargo().args(["package", "--workspace", "--no-verify", "--allow-dirty", "--offline", "--quiet"]))
@@ -30,14 +56,26 @@ pub(crate) fn package() -> Result<Outcome> {
 
 /// How many packages are compiled for one.
 fn compiled(package: &str, most: usize) -> Result<String> {
-    let tree = cargo().args(["tree", "--prefix", "none", "--edges", "normal,build", "--package", package]).output();
-    let text = String::from_utf8(tree.context("cargo tree")?.stdout).context("cargo tree")?;
-    let packages: BTreeSet<&str> = text.lines().map(|line| line.trim_end_matches(" (*)")).collect();
+    let packages = tree("{p}", &["--package", package])?;
     ensure!(
         packages.len() <= most,
         "{} packages are compiled for {package}, at most {most} are allowed",
         packages.len()
     );
-    ensure!(packages.len() > 1, "cargo tree names no packages for {package}");
     Ok(format!("{} packages for {package}", packages.len()))
+}
+
+/// What `cargo tree` names in this format, of normal and build dependencies unless other edges are asked for.
+fn tree(format: &str, asked: &[&str]) -> Result<BTreeSet<String>> {
+    let mut tree = cargo();
+    tree.args(["tree", "--prefix", "none", "--format", format]).args(asked);
+    if !asked.contains(&"--edges") {
+        tree.args(["--edges", "normal,build"]);
+    }
+    let output = tree.output().context("cargo tree")?;
+    ensure!(output.status.success(), "cargo tree: {}", String::from_utf8_lossy(&output.stderr));
+    let text = String::from_utf8(output.stdout).context("cargo tree")?;
+    let packages: BTreeSet<String> = text.lines().map(|line| line.trim_end_matches(" (*)").to_owned()).collect();
+    ensure!(packages.len() > 1, "cargo tree names no packages for {}", asked.join(" "));
+    Ok(packages)
 }
