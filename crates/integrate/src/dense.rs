@@ -248,7 +248,7 @@ impl DenseOutput {
 
 /// The basis functions of a step's coefficients.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub(crate) enum Basis {
+pub enum Basis {
     /// 1, θ, θ (1 − θ), θ² (1 − θ) …; all components of the first coefficient, then those of the second …
     Nested,
     /// 1, θ, θ² …; all coefficients of the first component, then those of the second …
@@ -256,7 +256,7 @@ pub(crate) enum Basis {
 }
 
 /// The polynomial of one step at θ.
-pub(crate) fn evaluate_segment(basis: Basis, coefficients: &[f64], theta: f64, y: &mut [f64]) {
+pub fn evaluate_segment(basis: Basis, coefficients: &[f64], theta: f64, y: &mut [f64]) {
     let dimension = y.len();
     let terms = coefficients.len() / dimension;
     if basis == Basis::Powers {
