@@ -3,12 +3,14 @@
 pub use crate::connect::{merge, samples, spread, times};
 pub use crate::constants::searched;
 pub use crate::ensemble::{WATCHED, instants};
+pub use crate::fit::{Differences, INSTANTS};
+pub use crate::fits::{Start, fit_run, unknown};
 pub use crate::last_digits::{move_digits, signs};
 pub use crate::lost_digits::{Looked, RoundOff, is_small, largest, look, round_off};
 pub use crate::sizes::{sizes, unbounded_sizes};
 pub use crate::wanted::{HALVES, STRETCHES, kept_before, wanted};
 
-use crate::{Motion, round_off};
+use crate::{Comparison, Motion, round_off};
 
 /// In how many stretches a motion is looked at: in a first check, and closely.
 pub const LOOKED_AT: [usize; 2] = [round_off::FEW, round_off::STRETCHES];
@@ -36,4 +38,9 @@ pub fn replace_looser(motion: &mut Motion, other: &Motion) {
 /// The motion stops there, for this cause.
 pub fn stop_at(motion: &mut Motion, t: f64, cause: &str) {
     motion.stop_at(t, cause.into());
+}
+
+/// The constants that a run has stand in the place of fitted ones that leave a larger gap.
+pub fn keep_closer(comparison: &mut Comparison) {
+    comparison.keep_closer();
 }

@@ -14,6 +14,7 @@ mod errors;
 mod estimates;
 mod examples;
 mod fits;
+mod fitted;
 mod gaps;
 mod instants;
 mod known_gaps;
