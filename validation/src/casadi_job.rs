@@ -35,7 +35,7 @@ mod questions;
 mod table;
 
 pub use forced::forced;
-pub use python_environment::NotRun;
+pub use python_environment::{NotRun, cache, target};
 pub use questions::{Amount, Question};
 pub use table::{headline, referee_table, verdict_words};
 

@@ -1,6 +1,6 @@
 //! The audit of the paper: every verdict again, and that a wrong correction is noticed.
 
-use validation::audit::{Paper, STATEMENT, Stationarity, Verdict, Which, cone, refusal};
+use validation::audit::{BUMPS, Paper, STATEMENT, Stationarity, Verdict, Which, bump, cone, refusal};
 
 fn paper() -> Paper {
     Paper::new().unwrap_or_else(|e| panic!("{e:#}"))
@@ -144,4 +144,19 @@ fn the_equation_of_motion_holds_along_the_computed_motion() {
     let finding = paper().check("motion, x").expect("there");
     let [printed, corrected] = finding.along.expect("along a motion");
     assert!(printed[0] > 1.0 && corrected.iter().all(|r| *r < 1e-5), "{printed:?} {corrected:?}");
+}
+
+#[test]
+fn bumps_vanish_at_both_ends_with_their_derivatives() {
+    let span = [0.5, 2.0];
+    for k in 0..BUMPS {
+        for t in span {
+            let [value, slope, _] = bump(k, span, t);
+            assert!(value.abs() < 1e-14 && slope.abs() < 1e-13, "{k}: {value} {slope}");
+        }
+        let h = 1e-4;
+        let [before, now, after] = [1.0 - h, 1.0, 1.0 + h].map(|t| bump(k, span, t));
+        assert!(((after[0] - before[0]) / (2.0 * h) - now[1]).abs() < 1e-5, "{k}");
+        assert!(((after[1] - before[1]) / (2.0 * h) - now[2]).abs() < 1e-4, "{k}");
+    }
 }

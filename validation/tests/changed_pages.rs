@@ -3,7 +3,9 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use validation::report::Compared;
+use pages::difference_of_verdicts;
+use serde_json::json;
+use validation::report::{Compared, without_referees};
 
 /// The pages and pictures of the reports, those of the main job and of times alike.
 fn pages() -> Vec<(PathBuf, String)> {
@@ -87,4 +89,62 @@ fn of_twenty_pages_with_one_number_changed_each_twenty_are_found() {
     }
     println!("{found} of {tried} changed numbers found on {} pages and pictures", pages.len());
     assert!(found == tried && pages.len() > 20 && tried > 5 * 20);
+}
+
+fn differs(old: &str, new: &str) -> bool {
+    Compared::default().page(old, new).is_err()
+}
+
+#[test]
+fn counts_are_exact_and_digits_as_sure_as_they_are() {
+    for (old, new) in [
+        ("419 of 419 hold", "519 of 519 hold"),
+        ("0 wrong", "41 wrong"),
+        ("no claim fails", "5 claims fail"),
+        ("the gap is 1.25", "the gap is 1.52"),
+        ("1.3e-12", "1.3e-10"),
+        ("after 0.327 s", "after 0.427 s"),
+        ("one line", "one line\nanother"),
+        ("2.0e-3", "2.0e-4"),
+        ("3 of 4", "3 of 5"),
+        ("0.3 s", "0.4 s"),
+        ("to 1e-8", "to 2e-8"),
+        ("| 2.0e\u{2212}3 |", "| 2.0e\u{2212}4 |"),
+    ] {
+        assert!(differs(old, new), "{old} / {new}");
+        assert!(differs(new, old), "{new} / {old}");
+    }
+    for (old, new) in [("1.3e-12", "1.4e-12"), ("4e-13 apart", "2e-13 apart"), ("0.327 s", "0.328 s")] {
+        assert!(!differs(old, new), "{old} / {new}");
+    }
+    let mut compared = Compared::default();
+    compared.page("x1 = 0.51, 3 of 3, 1e-16", "x1 = 0.52, 3 of 3, 2e-16").expect("the same");
+    assert_eq!(compared, Compared { pages: 1, same: 3, last_digit: 1, round_off: 1 });
+}
+
+#[test]
+fn of_a_picture_what_is_written_in_it_counts() {
+    let picture = |x: f64, word: &str| format!("<svg><path d=\"M0 {x}\"/><text x=\"{x}\">{word}</text></svg>");
+    assert!(!differs(&picture(1.25, "gap 3"), &picture(1.5, "gap 3")));
+    assert!(differs(&picture(1.25, "gap 3"), &picture(1.25, "gap 4")));
+}
+
+#[test]
+fn only_what_referees_say_is_left_out() {
+    let page = "# Scene\n\nWith sliders, here.\n";
+    assert_eq!(without_referees(&format!("{page}\n## Referees\n\n| CasADi |\n")), page);
+    let overview = "- A line. [More](a.md).\n- Referees. [More](scenes/sledge.md#referees).\n- B.\n";
+    assert_eq!(without_referees(overview), "- A line. [More](a.md).\n- B.\n");
+}
+
+#[test]
+fn a_changed_verdict_is_found() {
+    let old = json!({ "scenes": { "disc": { "pairs": [{ "verdict": "same", "passes": [0.5, null] }] } } });
+    let mut new = old.clone();
+    assert_eq!(difference_of_verdicts(&old, &new), None);
+    new["scenes"]["disc"]["pairs"][0]["passes"][0] = json!(0.5001);
+    assert_eq!(difference_of_verdicts(&old, &new), None);
+    new["scenes"]["disc"]["pairs"][0]["verdict"] = json!("different");
+    let found = difference_of_verdicts(&old, &new).unwrap();
+    assert!(found.starts_with("/scenes/disc/pairs/0/verdict"), "{found}");
 }

@@ -1,7 +1,9 @@
 //! The control is flagged on scenes where Maggi's equations say that it is wrong, and nowhere else.
 
 use deltaq::{Comparison, Extent, Run, Settings, choices, solve_choice};
+use random::{FoundOut, Word};
 use scene::Scene;
+use validation::report::control::{Control, sentence};
 use validation::report::overview;
 
 /// Chetaev's motion of `scene` and the control, or `forged` in the place of one of them.
@@ -57,4 +59,15 @@ fn a_right_control_that_is_flagged_is_a_fault_of_the_program() {
     };
     let words = ["**The wrong formulation is not found out.**", "On `disc` Maggi's equations say otherwise"];
     said(&[compared("disc", other)], &[words[0], words[1], "| flagged, though right |"]);
+}
+
+#[test]
+fn residuals_are_those_of_controls_that_are_right() {
+    let control = |name: &str, flagged: bool, residual: f64| {
+        let found = FoundOut { residual, flagged, word: Some(Word::Holds), note: String::new() };
+        Control { name: name.into(), is_same: !flagged, found: Some(found) }
+    };
+    let said = sentence(&[control("a", true, 0.3), control("b", false, 2e-14), control("c", false, 1e-15)]);
+    assert!(said.contains(" on 1 scene: flagged on 1. "), "{said}");
+    assert!(said.ends_with("called right on b and c, with a residual of at most 2.0e-14."), "{said}");
 }

@@ -7,18 +7,27 @@ mod benchmark;
 mod casadi;
 mod changed_pages;
 mod control;
+mod environment;
+mod equivalence;
 mod hamilton;
 mod headlines;
 mod integrals;
 #[path = "../../crates/command/tests/killed.rs"]
 mod killed;
+mod literature;
+mod markdown;
 mod pages;
 mod pictures;
 mod program;
 mod random_command;
+mod realizations;
 mod scaling;
+mod scenery;
+mod stability;
+mod stamps;
 #[path = "../../crates/command/tests/support.rs"]
 mod support;
+mod trains;
 mod widths;
 
 const PROGRAM: &str = env!("CARGO_BIN_EXE_evidence");

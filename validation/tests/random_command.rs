@@ -4,7 +4,9 @@ use std::collections::BTreeSet;
 use std::fs;
 
 use deltaq::Settings;
+use random::Count;
 use serde_json::Value;
+use validation::report::{random_complaint, theorem_word};
 
 use crate::killed::killed;
 use crate::support::{answer, refused};
@@ -126,4 +128,24 @@ fn a_log_that_is_killed_goes_on_with_every_system_once() {
     let call = ["random", "--count", "12", "--kind", "free", "--quiet", "--threads", "2", "--log", log];
     // what is killed leaves a log that is not whole, and goes on
     killed("random log", &call, &file, |now, whole| assert_eq!(indices(now), indices(whole)), false);
+}
+
+#[test]
+fn one_in_fifty_verdicts_may_be_undecided_and_none_may_fail() {
+    for ([holds, fails, undecided], expected) in [
+        ([98, 0, 2], "holds"),
+        ([97, 0, 3], "undecided"),
+        ([99, 1, 0], "fails"),
+        ([0, 1, 99], "fails"),
+        ([0, 0, 0], "holds"),
+    ] {
+        assert_eq!(theorem_word(Count { holds, fails, undecided }), expected, "{holds}, {fails}, {undecided}");
+    }
+}
+
+#[test]
+fn a_claim_that_fails_is_a_complaint_and_one_that_is_undecided_is_none() {
+    let count = |holds, fails, undecided| random_complaint(Count { holds, fails, undecided });
+    assert_eq!(count(3, 0, 2), None);
+    assert_eq!(count(3, 1, 2), Some("1 of 6 verdicts on theorems: a claim fails".into()));
 }

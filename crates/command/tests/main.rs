@@ -14,6 +14,7 @@ mod judge_command;
 mod killed;
 mod kills;
 mod linearize_command;
+mod members;
 mod memory;
 mod output;
 mod prove_command;

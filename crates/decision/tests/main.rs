@@ -3,6 +3,7 @@
 mod classics;
 mod closed_forms;
 mod drawn;
+mod exact;
 mod floating;
 mod hypotheses;
 mod numbers;

@@ -151,7 +151,7 @@ impl Comparison {
 
     /// Puts the constants that a run has in the place of fitted ones that leave a larger gap: a search is no
     /// reason to go farther away.
-    fn keep_closer(&mut self) {
+    pub(crate) fn keep_closer(&mut self) {
         for fit in &mut self.fits {
             let (first, second) = (fit.run.min(fit.target), fit.run.max(fit.target));
             let pair = self.pairs.iter().find(|p| (p.first, p.second) == (first, second));
@@ -233,43 +233,4 @@ fn worth_comparing(first: &Run, second: &Run) -> bool {
     let both = [first.choice.formulation, second.choice.formulation];
     let outside = both.iter().any(|own| !is_in_table(own));
     (!both.contains(&VAKONOMIC_COSTATE) || both.contains(&VAKONOMIC)) && (!outside || both.contains(&CHETAEV))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::choices;
-    use crate::fits::FittedMotion;
-
-    #[test]
-    fn constants_that_a_search_has_found_stay_only_where_they_come_closer() {
-        let scene = Scene::parse("sledge", include_str!("../../scene/sledge.toml")).expect("a scene");
-        let all = choices(&scene);
-        let mut comparison = compare_unfitted(scene, all, Vec::new(), &Settings::default()).expect("a comparison");
-        let (target, run) = (0, comparison.run(VAKONOMIC).expect("a run"));
-        let own = comparison.pair(target, run).expect("a pair").gap.clone();
-        let fit = |largest: f64| {
-            let gap = crate::Gap { largest, ..own.clone() };
-            let fitted = FittedMotion { constants: vec![("mu0_1".into(), 0.625)], gap, starts: 3 };
-            Fit { run, target, fitted: Some(fitted), by_identity: false }
-        };
-        comparison.fits = vec![fit(0.5 * own.largest), fit(2.0 * own.largest)];
-        comparison.keep_closer();
-        let found = |i: usize| comparison.fits[i].fitted.as_ref().map(|f| (f.constants[0].1, f.gap.largest));
-        assert_eq!((found(0), found(1)), (Some((0.625, 0.5 * own.largest)), Some((0.0, own.largest))));
-    }
-
-    /// A gap of nothing, which no search comes under.
-    #[test]
-    fn a_fit_ends_with_what_comes_closer() {
-        let scene = Scene::parse("sledge", include_str!("../../scene/sledge.toml")).expect("a scene");
-        let all = choices(&scene);
-        let settings = Settings::default();
-        let mut comparison = compare_unfitted(scene, all, Vec::new(), &settings).expect("a comparison");
-        comparison.pairs.iter_mut().for_each(|pair| pair.gap.largest = 0.0);
-        comparison.fit(Fits::All, &settings).expect("fits");
-        let fitted = comparison.fits.iter().filter_map(|fit| fit.fitted.as_ref());
-        let gaps: Vec<f64> = fitted.map(|found| found.gap.largest).collect();
-        assert!(!gaps.is_empty() && gaps.iter().all(|gap| *gap == 0.0), "{gaps:?}");
-    }
 }

@@ -33,7 +33,8 @@ use crate::carried::{Carried, Which};
 use crate::constants::constant_names;
 use crate::{Choice, Metric, Motion, Settings, SolveError, TIGHTER, VAKONOMIC, over_threads, solve_choice};
 use action::action;
-pub use conjugate::ConjugateTime;
+pub use conjugate::{ConjugateTime, samples, times};
+pub use guesses::spread;
 use two_point::TwoPoint;
 
 /// Where a motion is to end.
@@ -234,7 +235,7 @@ fn grown(problem: &mut TwoPoint, guess: &[f64], settings: &Settings) -> Option<V
 }
 
 /// Adds to those that were found.
-fn merge(all: &mut Vec<(Vec<f64>, usize)>, unknowns: Vec<f64>, starts: usize, one: f64) {
+pub fn merge(all: &mut Vec<(Vec<f64>, usize)>, unknowns: Vec<f64>, starts: usize, one: f64) {
     let same = |other: &[f64]| unknowns.iter().zip(other).all(|(x, y)| (x - y).abs() <= one * (1.0 + y.abs()));
     match all.iter_mut().find(|(other, _)| same(other)) {
         Some((_, count)) => *count += starts,
@@ -329,22 +330,4 @@ fn complete(
 /// Names of the free constants of a motion that are no parameters.
 fn own_constant_names(problem: &crate::Varying) -> Vec<String> {
     constant_names(&problem.prepared().equations)[..problem.constants().len()].to_vec()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn motions_are_one_up_to_a_part_of_their_unknowns() {
-        // |x − y| against 10⁻³ (1 + |y|), each unknown by itself
-        let known = [99.0, 0.0];
-        for (moved, found) in [([0.09, 0.0], 1), ([0.11, 0.0], 2), ([0.0, 0.9e-3], 1), ([0.0, 1.1e-3], 2)] {
-            let mut all = vec![(known.to_vec(), 2)];
-            merge(&mut all, vec![known[0] + moved[0], known[1] + moved[1]], 3, 1e-3);
-            assert_eq!(all.len(), found, "{moved:?}");
-            assert_eq!(all.iter().map(|(_, starts)| starts).sum::<usize>(), 5);
-            assert_eq!(all[0].1, if found == 1 { 5 } else { 2 });
-        }
-    }
 }

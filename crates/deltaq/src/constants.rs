@@ -7,6 +7,7 @@ use mechanics::ConstantsRule;
 
 use crate::{Prepared, Setting, Settings, SolveError};
 use natural::natural_constants;
+pub use natural::searched;
 pub(crate) use natural::{chord, places};
 
 /// Compiles `equations` and computes what they start from. Nothing is integrated, unless the constants are

@@ -34,7 +34,7 @@ impl Doubt {
     ///
     /// Two runs with the same steps have the same error, which their difference hides; a run whose steps
     /// follow its round-off is no better than the looser one. Doubt begins where this first shows.
-    pub(crate) fn of([kept, looser]: [&[f64]; 2], end: f64, complete: bool, method: Option<Method>) -> Option<Doubt> {
+    pub fn of([kept, looser]: [&[f64]; 2], end: f64, complete: bool, method: Option<Method>) -> Option<Doubt> {
         let start = kept[0];
         let end = if complete { end } else { start + BEFORE_THE_END * (end - start) };
         let sign = (end - start).signum();
@@ -75,63 +75,4 @@ fn too_few_words(method: Option<Method>) -> String {
         format!("; stiff equations do that to {name}: radau5 is made for them, and the default method changes to it")
     });
     format!("something else limits the steps{}", stiff.unwrap_or_default())
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// Ends of `count` equal steps from 0 to 1, then of `more` times as many from 1 to 2.
-    fn steps(count: usize, more: usize) -> Vec<f64> {
-        let first = (0..count).map(|i| i as f64 / count as f64);
-        let second = (0..=count * more).map(|i| 1.0 + i as f64 / (count * more) as f64);
-        first.chain(second).collect()
-    }
-
-    fn doubt(kept: Vec<f64>, looser: Vec<f64>, direction: f64) -> Option<Doubt> {
-        let [kept, looser] = [kept, looser].map(|times| times.into_iter().map(|t| direction * t).collect::<Vec<f64>>());
-        Doubt::of([&kept, &looser], direction * 2.0, true, Some(Method::Dop853))
-    }
-
-    #[test]
-    fn what_the_order_explains_is_not_doubted() {
-        // order 8: a hundredth of the tolerance takes 1.8 times the steps
-        assert_eq!(doubt(steps(540, 1), steps(300, 1), 1.0), None);
-    }
-
-    #[test]
-    fn a_doubt_begins_where_round_off_takes_over() {
-        for direction in [1.0, -1.0] {
-            let doubt = doubt(steps(540, 60), steps(300, 1), direction).expect("too many steps");
-            assert!(doubt.because.contains("round-off limits"), "{doubt:?}");
-            let before = 1.0 - direction * doubt.from;
-            assert!((0.0..=TOGETHER as f64 / 300.0).contains(&before), "{doubt:?}");
-        }
-    }
-
-    #[test]
-    fn a_doubt_begins_where_steps_follow_something_else() {
-        let (kept, looser) = (steps(54, 50), steps(30, 90));
-        let doubt = doubt(kept, looser, 1.0).expect("2700 steps at both tolerances");
-        assert!(doubt.because.contains("something else limits") && doubt.because.contains("stiff"), "{doubt:?}");
-        assert!((doubt.from - 1.0).abs() < 0.2, "{doubt:?}");
-    }
-
-    #[test]
-    fn a_method_made_for_stiff_equations_is_not_advised_to_itself() {
-        let (kept, looser) = (steps(54, 50), steps(30, 90));
-        let doubt = Doubt::of([&kept, &looser], 2.0, true, Some(Method::Radau5)).expect("too few steps");
-        assert!(doubt.because.ends_with("something else limits the steps"), "{doubt:?}");
-    }
-
-    #[test]
-    fn steps_just_before_a_stop_are_not_doubted() {
-        // to 1.9 as the order explains, and then short ones
-        let (mut kept, looser) = (steps(540, 1), steps(300, 1));
-        kept.retain(|t| *t < 1.9);
-        kept.extend((0..=100_000).map(|i| 1.9 + 1e-6 * f64::from(i)));
-        let doubt = |complete| Doubt::of([&kept, &looser], 2.0, complete, Some(Method::Dop853));
-        assert_eq!(doubt(false), None);
-        assert!(doubt(true).is_some_and(|doubt| doubt.from > 1.8));
-    }
 }

@@ -78,7 +78,7 @@ impl Ending {
     }
 
     /// How the kept run ended, unless the looser one stopped while that went on, in a run over this time.
-    pub(crate) fn joint(kept: Ending, looser: Ending, [start, end]: [f64; 2]) -> Ending {
+    pub fn joint(kept: Ending, looser: Ending, [start, end]: [f64; 2]) -> Ending {
         // both stop near the same singularity, or for different causes
         const NEAR: f64 = 1e-3;
         let much_before = |t: f64, later: f64| (later - t) * (end - start).signum() > NEAR * (later - start).abs();
@@ -92,7 +92,7 @@ impl Ending {
     }
 
     /// Where only the tighter run goes on, there is no error estimate, and so no motion.
-    pub(crate) fn unconfirmed(t: f64, cause: &str) -> Ending {
+    pub fn unconfirmed(t: f64, cause: &str) -> Ending {
         Ending::Stopped { t, cause: format!("the run that estimates the error stops here: {cause}") }
     }
 }
@@ -239,25 +239,4 @@ fn least_determined(matrix: DMatrix<f64>, [columns, rows]: &[DVector<f64>; 2]) -
     let found = SingularValues::of(&(DMatrix::from_diagonal(rows) * matrix * DMatrix::from_diagonal(columns)));
     let last = found.values.len() - 1;
     (found.values[last], found.right.row(last).transpose())
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_run_that_stops_much_earlier_is_where_the_motion_stops() {
-        let stopped = |t: f64| Ending::Stopped { t, cause: "a wall".into() };
-        for [start, end] in [[1.0, 11.0], [1.0, -9.0]] {
-            let at = |past: f64| start + past * (end - start);
-            let joint = |kept: Ending, looser: Ending| Ending::joint(kept, looser, [start, end]);
-            let unconfirmed = Ending::unconfirmed(at(0.4), "a wall");
-            assert_eq!(joint(Ending::Completed, stopped(at(0.4))), unconfirmed);
-            assert_eq!(joint(stopped(at(0.5)), stopped(at(0.4))), unconfirmed);
-            // near the same singularity, or behind it
-            assert_eq!(joint(stopped(at(0.5)), stopped(at(0.4999))), stopped(at(0.5)));
-            assert_eq!(joint(stopped(at(0.4)), stopped(at(0.5))), stopped(at(0.4)));
-            assert_eq!(joint(stopped(at(0.4)), Ending::Completed), stopped(at(0.4)));
-        }
-    }
 }

@@ -4,8 +4,6 @@ mod motions;
 mod reading;
 mod run;
 mod singly;
-#[cfg(test)]
-mod tests;
 mod threads;
 
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -18,7 +16,7 @@ use scene::Scene;
 
 use crate::by_name::{Beginning, ByName};
 use crate::{Choice, Metric, Prepared, Settings, SolveError, setting};
-pub use motions::MemberMotion;
+pub use motions::{MemberMotion, WATCHED, instants};
 pub use run::{EnsembleOptions, MemberRun};
 pub use threads::{number_of_threads, over_threads};
 
@@ -100,6 +98,17 @@ impl EnsembleMember {
     pub fn start(&self) -> &[f64] {
         &self.y
     }
+
+    /// The same member from another `y(t₀)`.
+    #[must_use]
+    pub fn starting_at(self, y: Vec<f64>) -> Self {
+        EnsembleMember { y, ..self }
+    }
+
+    /// Values of the free constants, then of the parameters that vary.
+    pub fn constants(&self) -> &[f64] {
+        &self.constants
+    }
 }
 
 impl Ensemble {
@@ -140,14 +149,14 @@ impl Ensemble {
     }
 
     /// Members take at most this many steps.
-    pub(crate) fn at_most(mut self, max_steps: usize) -> Self {
+    pub fn at_most(mut self, max_steps: usize) -> Self {
         self.settings.max_steps = max_steps;
         self
     }
 
     /// Members that take too many or too short steps in lanes are given up, and not integrated again to see
     /// how far they come.
-    pub(crate) fn only_complete(mut self) -> Self {
+    pub fn only_complete(mut self) -> Self {
         self.only_complete = true;
         self
     }

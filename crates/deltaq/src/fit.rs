@@ -16,7 +16,7 @@ use crate::single_run::{SingleRun, outputs};
 use crate::{Metric, Motion, Prepared, Setting, Settings, SolveError, TIGHTER, solve};
 
 /// Instants at which the sum of squares is taken.
-const INSTANTS: usize = 40;
+pub const INSTANTS: usize = 40;
 
 /// Tolerance of the integrations while constants are searched, and the limit on their steps.
 pub(crate) const SEARCH_TOLERANCE: f64 = 1e-7;
@@ -71,7 +71,7 @@ pub fn best_fit(
 type Asked = (Vec<f64>, f64, f64, usize);
 
 /// Differences to a motion at equidistant instants, as functions of the free constants of another.
-pub(crate) struct Differences {
+pub struct Differences {
     prepared: Prepared,
     coarse: Settings,
     tolerance: f64,
@@ -89,7 +89,11 @@ pub(crate) struct Differences {
 }
 
 impl Differences {
-    pub(crate) fn new(
+    /// At this number of instants.
+    ///
+    /// # Errors
+    /// As of [`best_fit`].
+    pub fn new(
         setting: Setting,
         equations: &Equations,
         target: &mut Motion,

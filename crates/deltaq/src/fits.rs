@@ -164,16 +164,24 @@ fn screening(scene: &Scene, choice: &Choice, equations: &Equations, settings: &S
 }
 
 /// Where the constants of a fit come from.
-enum Start {
+pub enum Start {
     /// They are these, one per memory variable, found from this number of starts.
     Known((Vec<f64>, usize)),
     /// They are searched, from the least-norm element of the decided set or the nearest miss, from zero
     /// where nothing was decided; or from those of the run, where these are closer.
-    Search { nearest: Option<Vec<f64>>, may_vanish: bool },
+    Search {
+        /// That element, or the nearest miss.
+        nearest: Option<Vec<f64>>,
+        /// Whether the gap may vanish.
+        may_vanish: bool,
+    },
 }
 
 /// Outer `None`: there is nothing to fit. Inner `None`: no constants lead to a motion.
-fn fit_run(
+///
+/// # Errors
+/// [`SolveError`] where a motion cannot be started or read off.
+pub fn fit_run(
     scene: &Scene,
     runs: &mut [Run],
     run: usize,
@@ -234,7 +242,15 @@ fn fit_run(
 const KNOWN: f64 = 1e-10;
 
 /// The largest gap that the digits of a motion's constants make that a search does not know.
-fn unknown(scene: &Scene, motion: &mut Motion, metric: &mut Metric, settings: &Settings) -> Result<f64, SolveError> {
+///
+/// # Errors
+/// [`SolveError`] where a motion cannot be started or read off.
+pub fn unknown(
+    scene: &Scene,
+    motion: &mut Motion,
+    metric: &mut Metric,
+    settings: &Settings,
+) -> Result<f64, SolveError> {
     let constants = motion.constants.clone();
     let size = constants.iter().fold(0.0, |a: f64, c| a.max(c.abs()));
     let mut gap = 0.0;
@@ -246,50 +262,4 @@ fn unknown(scene: &Scene, motion: &mut Motion, metric: &mut Metric, settings: &S
         gap += compare_motions(motion, &mut other, metric)?.largest;
     }
     Ok(gap)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::{choices, solve_choice};
-
-    const HEISENBERG: &str = include_str!("../../catalogue/scenes/heisenberg.toml");
-
-    fn settings() -> Settings {
-        Settings { tolerance: 1e-12, ..Settings::default() }
-    }
-
-    /// The vakonomic motion with this multiplier at the start.
-    fn run(scene: &Scene, mu: f64) -> Run {
-        let choice = choices(scene).into_iter().find(|c| c.formulation == VAKONOMIC).expect("vakonomic");
-        let choice = Choice { constants: ConstantsRule::Given(vec![mu]), ..choice };
-        let outcome = solve_choice(scene, &choice, &settings());
-        Run { choice, outcome }
-    }
-
-    /// The gap between these two.
-    fn apart(scene: &Scene, metric: &mut Metric, [one, other]: [f64; 2]) -> Gap {
-        let [mut one, mut other] = [one, other].map(|mu| run(scene, mu).outcome.expect("a motion"));
-        compare_motions(&mut one, &mut other, metric).expect("a gap")
-    }
-
-    #[test]
-    fn the_constants_of_a_search_are_known_to_ten_digits_and_those_of_an_identity_to_all() {
-        let scene = Scene::parse("heisenberg", HEISENBERG).unwrap_or_else(|e| panic!("{e}"));
-        let mut metric = Metric::new(&scene.system).expect("a metric");
-        // what a change of the constant makes of the motion, by one that is large
-        let slope = apart(&scene, &mut metric, [2.0, 2.0 + 1e-5]).largest / 1e-5;
-        let mut motion = run(&scene, 2.0).outcome.expect("a motion");
-        let found = unknown(&scene, &mut motion, &mut metric, &settings()).expect("a gap");
-        let known = 2.0 * 1e-10 * slope;
-        assert!((found - known).abs() < 0.05 * known, "{found:e}, {known:e}");
-        for (off, starts, word) in [(0.3, 7, "undecided"), (0.3, 0, "different"), (4.0, 7, "different")] {
-            let mut runs = [run(&scene, 1.5), run(&scene, 2.0)];
-            let start = Start::Known((vec![2.0 * (1.0 + off * 1e-10)], starts));
-            let fitted = fit_run(&scene, &mut runs, 0, 1, start, &mut metric, &settings()).expect("no error");
-            let fitted = fitted.expect("a constant").expect("a motion");
-            assert_eq!(fitted.gap.verdict.word(), word, "{off}, {starts}: {:?}", fitted.gap.verdict);
-            assert_eq!((fitted.starts, fitted.constants.len()), (starts, 1));
-        }
-    }
 }

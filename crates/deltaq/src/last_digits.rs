@@ -8,7 +8,7 @@ use crate::metric::subtract;
 pub(crate) const UNITS: f64 = 4.0;
 
 /// Perturbation of each entry in units in the last place, with alternating sign.
-pub(crate) fn move_digits(y: &mut [f64], units: impl Fn(usize) -> f64) {
+pub fn move_digits(y: &mut [f64], units: impl Fn(usize) -> f64) {
     let places = (0..y.len()).zip(signs());
     y.iter_mut().zip(places).for_each(|(x, (i, sign))| *x *= 1.0 + sign * units(i) * f64::EPSILON);
 }
@@ -26,7 +26,7 @@ pub(crate) fn terms_of_invariants(compiled: &mut Compiled, t: f64, y: &[f64], si
 }
 
 /// 1 or −1, place by place.
-pub(crate) fn signs() -> impl Iterator<Item = f64> {
+pub fn signs() -> impl Iterator<Item = f64> {
     let next = |state: &u64| {
         let state = state ^ (state << 13);
         let state = state ^ (state >> 7);
@@ -34,31 +34,4 @@ pub(crate) fn signs() -> impl Iterator<Item = f64> {
     };
     let states = std::iter::successors(Some(0x9E37_79B9_7F4A_7C15_u64), next).skip(1);
     states.map(|state| if state & 1 == 0 { 1.0 } else { -1.0 })
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn signs_are_of_both_kinds_and_follow_no_period() {
-        let all: Vec<f64> = signs().take(400).collect();
-        assert!(all.iter().all(|sign| sign.abs() == 1.0) && all.iter().sum::<f64>().abs() < 80.0, "{all:?}");
-        for period in 1..100 {
-            let alike = all.iter().zip(&all[period..]).filter(|(a, b)| a == b).count();
-            let part = alike as f64 / (all.len() - period) as f64;
-            assert!((0.35..0.65).contains(&part), "{period}: {part}");
-        }
-    }
-
-    #[test]
-    fn digits_are_moved_in_units_of_each() {
-        let (before, units) = ([1.0, -2e9, 3e-7, 0.0], [4.0, 4.0, 16.0, 4.0]);
-        let mut y = before;
-        move_digits(&mut y, |i| units[i]);
-        for ((x, y), units) in before.into_iter().zip(y).zip(units) {
-            let moved = ((y - x) / (f64::EPSILON * units)).abs();
-            assert!((moved - x.abs()).abs() <= 0.5 * x.abs(), "{x:e}: {moved:e}");
-        }
-    }
 }

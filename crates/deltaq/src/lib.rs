@@ -99,6 +99,8 @@ mod method;
 mod metric;
 mod model;
 mod motion;
+#[doc(hidden)]
+pub mod parts;
 mod prepared;
 mod round_off;
 mod runs;

@@ -33,7 +33,10 @@ impl Metric {
     }
 
     /// The same, with parameters whose values are set by [`Metric::set_parameters`].
-    pub(crate) fn varying(system: &System, parameters: &[Symbol]) -> Result<Self, CompileError> {
+    ///
+    /// # Errors
+    /// As [`Metric::new`].
+    pub fn varying(system: &System, parameters: &[Symbol]) -> Result<Self, CompileError> {
         let system = system.clone(); // the Hessian is built in a graph of its own
         let mut outputs = system.velocity_hessian().entries().to_vec();
         outputs.extend(&system.constraints);
@@ -52,7 +55,10 @@ impl Metric {
     }
 
     /// Values of the parameters that vary.
-    pub(crate) fn set_parameters(&mut self, values: &[f64]) {
+    ///
+    /// # Panics
+    /// If there are not as many.
+    pub fn set_parameters(&mut self, values: &[f64]) {
         self.inputs[1 + 2 * self.dimension..].copy_from_slice(values);
         self.values.clear();
         self.is_definite = None;
@@ -176,33 +182,4 @@ pub(crate) fn larger(a: f64, b: f64) -> f64 {
 
 pub(crate) fn subtract(a: &[f64], b: &[f64]) -> Vec<f64> {
     a.iter().zip(b).map(|(x, y)| x - y).collect()
-}
-
-#[cfg(test)]
-mod tests {
-    use mechanics::Parameter;
-    use symbolic::Graph;
-
-    use super::*;
-
-    /// `L = (m q + s t) q̇²/2`: a mass that changes with place, time and parameter, and its sign.
-    #[test]
-    fn what_was_asked_before_changes_no_length() {
-        let mut system = System::new(Graph::new(), &[("q", "m")]);
-        let [m, s] = ["m", "s"].map(|name| system.graph.symbol(name));
-        system.parameters = vec![Parameter { symbol: m, value: 1.0 }, Parameter { symbol: s, value: 0.5 }];
-        system.lagrangian = system.expression("(m*q + s*t)*q'^2/2").expect("a Lagrangian");
-        let mut metric = Metric::varying(&system, &[m]).expect("a metric");
-        for m in [1.0, -1.0, 4.0] {
-            metric.set_parameters(&[m]);
-            for (t, q) in [(0.0, 2.0), (0.0, 2.0), (0.0, -2.0), (2.0, -2.0), (2.0, 2.0), (0.0, 2.0)] {
-                let length = f64::sqrt(f64::abs(m * q + 0.5 * t));
-                for difference in [1.0, -3.0] {
-                    let found = metric.length(t, &[q], &[0.0], &[difference]);
-                    assert!((found - length * f64::abs(difference)).abs() < 1e-14, "{m}, {t}, {q}: {found}");
-                }
-                assert!((metric.distance(t, &[q], &[0.0], &[q + 2.0]) - 2.0 * length).abs() < 1e-14);
-            }
-        }
-    }
 }

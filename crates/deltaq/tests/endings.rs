@@ -36,3 +36,19 @@ fn the_unknown_that_is_lost_is_named() {
         assert!(cause.contains(&format!("the equations for {lost}'' are nearly dependent")), "{cause}");
     }
 }
+
+#[test]
+fn a_run_that_stops_much_earlier_is_where_the_motion_stops() {
+    let stopped = |t: f64| Ending::Stopped { t, cause: "a wall".into() };
+    for [start, end] in [[1.0, 11.0], [1.0, -9.0]] {
+        let at = |past: f64| start + past * (end - start);
+        let joint = |kept: Ending, looser: Ending| Ending::joint(kept, looser, [start, end]);
+        let unconfirmed = Ending::unconfirmed(at(0.4), "a wall");
+        assert_eq!(joint(Ending::Completed, stopped(at(0.4))), unconfirmed);
+        assert_eq!(joint(stopped(at(0.5)), stopped(at(0.4))), unconfirmed);
+        // near the same singularity, or behind it
+        assert_eq!(joint(stopped(at(0.5)), stopped(at(0.4999))), stopped(at(0.5)));
+        assert_eq!(joint(stopped(at(0.4)), stopped(at(0.5))), stopped(at(0.4)));
+        assert_eq!(joint(stopped(at(0.4)), Ending::Completed), stopped(at(0.4)));
+    }
+}

@@ -1,6 +1,6 @@
 //! Every sentence of a headline against rows that say what it should: numbers, names, counts.
 
-use deltaq::words::{Headline, rows};
+use deltaq::words::{Headline, enumerate, or_dash, rows, short};
 use deltaq::{
     CHETAEV, Choice, Comparison, Gap, Pair, Run, Settings, SolveError, VAKONOMIC, VAKONOMIC_COSTATE, Verdict, choices,
     compare_unfitted,
@@ -182,4 +182,15 @@ fn a_second_form_that_agrees_is_not_named() {
     assert_eq!(all.len(), 3);
     let told = verdict(&compare_unfitted(scene, all, Vec::new(), &Settings::default()).expect("a comparison"));
     assert!(told.starts_with("2 different motions: Chetaev; vakonomic") && !told.contains('≈'), "{told}");
+}
+
+#[test]
+fn short_numbers() {
+    let cases =
+        [(0.0, "0"), (0.12345, "0.123"), (12.0, "12"), (1.0e-7, "1.0e-7"), (-2.71328, "-2.71"), (2500.0, "2500")];
+    for (x, text) in cases {
+        assert_eq!(short(x), text);
+    }
+    assert_eq!(enumerate(&["a".into(), "b".into(), "c".into()]), "a, b and c");
+    assert_eq!([None, Some(0.12345)].map(or_dash), ["–", "0.123"]);
 }

@@ -64,11 +64,7 @@ mod newton;
 mod removed_start;
 mod start;
 mod step;
-#[cfg(test)]
-mod structure_tests;
 mod sum;
-#[cfg(test)]
-mod tests;
 mod trajectory;
 
 pub use composition::Composition;
@@ -97,9 +93,13 @@ pub use trajectory::{Sample, Trajectory};
 /// ```
 #[derive(Clone, Debug)]
 pub struct Discrete {
-    step: Step,
+    /// One step.
+    #[doc(hidden)]
+    pub step: Step,
     composition: Composition,
-    start: Node,
+    /// The node that it starts from.
+    #[doc(hidden)]
+    pub start: Node,
     end: f64,
 }
 
@@ -228,7 +228,8 @@ impl Discrete {
     }
 
     /// Calls `visit` at every node, the start included.
-    fn march(
+    #[doc(hidden)]
+    pub fn march(
         &mut self,
         mut node: Node,
         steps: usize,
@@ -248,7 +249,8 @@ impl Discrete {
     }
 
     /// Moves `node` by `h` to the time `t`.
-    fn composed_step(&mut self, node: &mut Node, h: f64, t: f64) -> Result<(), DiscreteError> {
+    #[doc(hidden)]
+    pub fn composed_step(&mut self, node: &mut Node, h: f64, t: f64) -> Result<(), DiscreteError> {
         let (lengths, begin) = (self.composition.lengths(), node.t);
         let mut done = 0.0;
         for (i, length) in lengths.iter().enumerate() {
@@ -258,4 +260,11 @@ impl Discrete {
         }
         Ok(())
     }
+}
+
+/// Parts that are tested by themselves: for `tests/` of this crate, and for nobody else.
+#[doc(hidden)]
+pub mod parts {
+    pub use crate::step::{Node, Step};
+    pub use crate::sum::Compensated;
 }

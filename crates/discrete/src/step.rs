@@ -88,14 +88,17 @@ pub(crate) struct Principle {
 
 /// A node of the discrete motion.
 #[derive(Clone, Debug)]
-pub(crate) struct Node {
-    pub(crate) t: f64,
-    pub(crate) x: Compensated,
-    pub(crate) p: Compensated,
+pub struct Node {
+    /// `t_k`.
+    pub t: f64,
+    /// `x_k`.
+    pub x: Compensated,
+    /// `p_k`.
+    pub p: Compensated,
     /// `v_k` where reactions need it, else a first guess for it.
-    pub(crate) v: Vec<f64>,
+    pub v: Vec<f64>,
     /// `ν` at the node, or a first guess for it.
-    pub(crate) multipliers: Vec<f64>,
+    pub multipliers: Vec<f64>,
 }
 
 impl Node {
@@ -109,11 +112,11 @@ impl Node {
 
 /// A compiled [`Principle`].
 #[derive(Clone, Debug)]
-pub(crate) struct Step {
+pub struct Step {
     /// Length of `x`.
-    pub(crate) size: usize,
+    pub size: usize,
     /// Whether reactions act at the nodes.
-    pub(crate) reacts: bool,
+    pub reacts: bool,
     /// `t, h, x, p, v, ẋ, ν` → the first line of [`Principle`].
     balance: Iteration,
     /// The same → `p_{k+1} − p_k` but for the reaction at `k + 1`, then `c`.
@@ -192,12 +195,12 @@ impl Step {
     }
 
     /// Forgets what earlier steps were solved by: the next one starts from the node's own rates.
-    pub(crate) fn forget(&mut self) {
+    pub fn forget(&mut self) {
         self.past = [None, None];
     }
 
     /// Moves `node` by a step of length `h`, of either sign, to the time `t = t_k + h`.
-    pub(crate) fn advance(&mut self, node: &mut Node, h: f64, t: f64) -> Result<(), DiscreteError> {
+    pub fn advance(&mut self, node: &mut Node, h: f64, t: f64) -> Result<(), DiscreteError> {
         let middle = node.t + 0.5 * h;
         let n = self.size;
         let mut inputs = std::mem::take(&mut self.balance.inputs);
@@ -240,7 +243,7 @@ impl Step {
     }
 
     /// `v` and `ν` of the node from its `x` and `p`: `𝓛_ẋ = p`, `c = 0`.
-    pub(crate) fn read(&mut self, node: &mut Node, h: f64) -> Result<(), DiscreteError> {
+    pub fn read(&mut self, node: &mut Node, h: f64) -> Result<(), DiscreteError> {
         let inputs = &mut self.legendre.inputs;
         inputs.clear();
         inputs.extend([node.t, h]);
@@ -253,7 +256,7 @@ impl Step {
     }
 
     /// `ẋ·p − 𝓛` and `c` at a node that was read.
-    pub(crate) fn readings(&mut self, node: &Node) -> &[f64] {
+    pub fn readings(&mut self, node: &Node) -> &[f64] {
         let mut inputs = vec![node.t, 0.0];
         node.write(&mut inputs);
         self.readings.evaluate(&inputs)

@@ -91,3 +91,9 @@ pub use lanes::LaneEquations;
 pub use outputs::{Cost, Outputs};
 pub use plan::{Collected, Plan};
 pub use tangents::Tangents;
+
+/// The choice of pivots, which is tested by itself: for `tests/` of this crate, and for nobody else.
+#[doc(hidden)]
+pub mod pivots {
+    pub use crate::plan::{Entry, Order, POINTS, Pattern, Strategy};
+}

@@ -55,29 +55,3 @@ fn ln_gamma(a: f64) -> f64 {
     let series = (1.0 / 12.0 - s * (1.0 / 360.0 - s * (1.0 / 1260.0 - s * (1.0 / 1680.0 - s / 1188.0)))) / a;
     (a - 0.5) * a.ln() - a + 0.5 * (2.0 * std::f64::consts::PI).ln() + series - shift
 }
-
-#[cfg(test)]
-mod tests {
-    use super::{chi_squared_tail, normal_tails};
-
-    /// SciPy 1.17: `chi2.sf`, `2*norm.sf`.
-    #[test]
-    fn tails_are_those_of_tables() {
-        for (x, k, known) in TAILS {
-            let found = chi_squared_tail(x, k);
-            assert!((found / known - 1.0).abs() < 1e-11, "{x}, {k}: {found} for {known}");
-        }
-        assert!((normal_tails(1.959_963_984_540_054) - 0.05).abs() < 1e-13);
-        assert_eq!((chi_squared_tail(0.0, 3.0), chi_squared_tail(-1.0, 3.0)), (1.0, 1.0));
-    }
-
-    const TAILS: [(f64, f64, f64); 7] = [
-        (0.5, 1.0, 0.47950012218695337),
-        (30.0, 1.0, 4.3204630578274955e-08),
-        (7.0, 4.0, 0.13588822540043327),
-        (100.0, 10.0, 5.4497019829205215e-17),
-        (590.0, 600.0, 0.6068126559479526),
-        (750.0, 600.0, 2.7525003741109153e-05),
-        (1200.0, 1190.0, 0.41368923983072176),
-    ];
-}

@@ -68,7 +68,7 @@ pub use planned::Sampling;
 pub use problem::{Problem, Residual};
 pub use quantity::{quantity, unit};
 pub use question::{Question, ROBUST, formulations};
-pub use residual_tests::{ResidualTest, residual_tests};
+pub use residual_tests::{ResidualTest, residual_tests, runs, whiteness};
 pub use search::{Found, search};
 pub use unknown::{Prior, Unknown};
 pub use verdict::{EXCLUDED, Row, Verdict, verdicts};

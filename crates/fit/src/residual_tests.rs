@@ -68,7 +68,7 @@ pub fn residual_tests(films: &[&Film], residuals: &[Residual], unknowns: usize, 
 }
 
 /// Runs of one sign, how many are expected, and the probability.
-fn runs(values: &[f64]) -> (f64, f64, f64) {
+pub fn runs(values: &[f64]) -> (f64, f64, f64) {
     let n = values.len() as f64;
     let above = values.iter().filter(|x| **x > 0.0).count() as f64;
     let found = 1.0 + values.windows(2).filter(|pair| (pair[0] > 0.0) != (pair[1] > 0.0)).count() as f64;
@@ -81,7 +81,7 @@ fn runs(values: &[f64]) -> (f64, f64, f64) {
 }
 
 /// Ljung's and Box's Q, its degrees of freedom, and the probability.
-fn whiteness(values: &[f64]) -> (f64, f64, f64) {
+pub fn whiteness(values: &[f64]) -> (f64, f64, f64) {
     let n = values.len();
     let lags = LAGS.min(n / 4);
     let mean = values.iter().sum::<f64>() / n as f64;
@@ -92,22 +92,4 @@ fn whiteness(values: &[f64]) -> (f64, f64, f64) {
     let sum: f64 = (1..=lags).map(|lag| correlation(lag).powi(2) / (n - lag) as f64).sum();
     let found = n as f64 * (n as f64 + 2.0) * sum;
     (found, lags as f64, chi_squared_tail(found, lags as f64))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::{runs, whiteness};
-
-    /// By hand: + + − − + − has 4 runs; 3 above of 6: 4 expected.
-    #[test]
-    fn runs_and_correlations_by_hand() {
-        let (found, expected, probability) = runs(&[1.0, 2.0, -1.0, -1.0, 3.0, -2.0]);
-        assert_eq!((found, expected), (4.0, 4.0));
-        assert!((probability - 1.0).abs() < 1e-12);
-        // one sign only
-        assert_eq!(runs(&[1.0; 12]), (1.0, 1.0, 2.0 * 0.5_f64.powi(12)));
-        // ρ₁ of 1, −1, 1, −1 is −3/4: Q = 4·6·(9/16)/3
-        let (found, lags, _) = whiteness(&[1.0, -1.0, 1.0, -1.0]);
-        assert!((found - 4.5).abs() < 1e-12 && lags == 1.0);
-    }
 }

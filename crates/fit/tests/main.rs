@@ -7,7 +7,9 @@ mod laws;
 mod noise;
 mod search;
 mod shown;
+mod statistics;
 mod tables;
+mod verdicts;
 
 // a search allocates in all threads at once
 #[global_allocator]

@@ -256,7 +256,7 @@ pub enum Basis {
 }
 
 /// The polynomial of one step at θ.
-pub(crate) fn evaluate_segment(basis: Basis, coefficients: &[f64], theta: f64, y: &mut [f64]) {
+pub fn evaluate_segment(basis: Basis, coefficients: &[f64], theta: f64, y: &mut [f64]) {
     let dimension = y.len();
     let terms = coefficients.len() / dimension;
     if basis == Basis::Powers {

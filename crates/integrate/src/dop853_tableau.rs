@@ -6,39 +6,39 @@
 //! the embedded formulas and the 85 of order ≤ 7, as polynomials in θ, for the dense output.
 
 /// One sparse row of the tableau: `Σ_m weight[m] · k[from[m]]`, stages counted from 0.
-pub(crate) struct Row<const M: usize> {
-    pub(crate) from: [usize; M],
-    pub(crate) weight: [f64; M],
+pub struct Row<const M: usize> {
+    pub from: [usize; M],
+    pub weight: [f64; M],
 }
 
 /// Stages of the step, the rates at its end (stage 12) and the three more of the dense output.
-pub(crate) const STAGES: usize = 16;
+pub const STAGES: usize = 16;
 
 /// Nodes `c_i`.
 #[rustfmt::skip]
-pub(crate) const NODES: [f64; STAGES] = [
+pub const NODES: [f64; STAGES] = [
     0.0, 0.05260015195876773, 0.0789002279381516, 0.1183503419072274,
     0.2816496580927726, 0.3333333333333333, 0.25, 0.3076923076923077,
     0.6512820512820513, 0.6, 0.8571428571428571, 1.0,
     1.0, 0.1, 0.2, 0.7777777777777778,
 ];
 
-pub(crate) const STAGE_1: Row<1> = Row { from: [0], weight: [0.05260015195876773] };
+pub const STAGE_1: Row<1> = Row { from: [0], weight: [0.05260015195876773] };
 
-pub(crate) const STAGE_2: Row<2> = Row { from: [0, 1], weight: [0.0197250569845379, 0.0591751709536137] };
+pub const STAGE_2: Row<2> = Row { from: [0, 1], weight: [0.0197250569845379, 0.0591751709536137] };
 
-pub(crate) const STAGE_3: Row<2> = Row { from: [0, 2], weight: [0.02958758547680685, 0.08876275643042054] };
+pub const STAGE_3: Row<2> = Row { from: [0, 2], weight: [0.02958758547680685, 0.08876275643042054] };
 
-pub(crate) const STAGE_4: Row<3> =
+pub const STAGE_4: Row<3> =
     Row { from: [0, 2, 3], weight: [0.2413651341592667, -0.8845494793282861, 0.924834003261792] };
 
-pub(crate) const STAGE_5: Row<3> =
+pub const STAGE_5: Row<3> =
     Row { from: [0, 3, 4], weight: [0.037037037037037035, 0.17082860872947386, 0.12546768756682242] };
 
-pub(crate) const STAGE_6: Row<4> =
+pub const STAGE_6: Row<4> =
     Row { from: [0, 3, 4, 5], weight: [0.037109375, 0.17025221101954405, 0.06021653898045596, -0.017578125] };
 
-pub(crate) const STAGE_7: Row<5> = Row {
+pub const STAGE_7: Row<5> = Row {
     from: [0, 3, 4, 5, 6],
     weight: [
         0.03709200011850479,
@@ -49,7 +49,7 @@ pub(crate) const STAGE_7: Row<5> = Row {
     ],
 };
 
-pub(crate) const STAGE_8: Row<6> = Row {
+pub const STAGE_8: Row<6> = Row {
     from: [0, 3, 4, 5, 6, 7],
     weight: [
         0.6241109587160757,
@@ -61,7 +61,7 @@ pub(crate) const STAGE_8: Row<6> = Row {
     ],
 };
 
-pub(crate) const STAGE_9: Row<7> = Row {
+pub const STAGE_9: Row<7> = Row {
     from: [0, 3, 4, 5, 6, 7, 8],
     weight: [
         0.47766253643826434,
@@ -74,7 +74,7 @@ pub(crate) const STAGE_9: Row<7> = Row {
     ],
 };
 
-pub(crate) const STAGE_10: Row<8> = Row {
+pub const STAGE_10: Row<8> = Row {
     from: [0, 3, 4, 5, 6, 7, 8, 9],
     weight: [
         -0.9371424300859873,
@@ -88,7 +88,7 @@ pub(crate) const STAGE_10: Row<8> = Row {
     ],
 };
 
-pub(crate) const STAGE_11: Row<9> = Row {
+pub const STAGE_11: Row<9> = Row {
     from: [0, 3, 4, 5, 6, 7, 8, 9, 10],
     weight: [
         2.273310147516538,
@@ -104,7 +104,7 @@ pub(crate) const STAGE_11: Row<9> = Row {
 };
 
 /// Weights `b_i` of the step (order 8).
-pub(crate) const STEP: Row<8> = Row {
+pub const STEP: Row<8> = Row {
     from: [0, 5, 6, 7, 8, 9, 10, 11],
     weight: [
         0.054293734116568765,
@@ -119,7 +119,7 @@ pub(crate) const STEP: Row<8> = Row {
 };
 
 /// Stage 13 (dense output only).
-pub(crate) const STAGE_13: Row<8> = Row {
+pub const STAGE_13: Row<8> = Row {
     from: [0, 6, 7, 8, 9, 10, 11, 12],
     weight: [
         0.056167502283047954,
@@ -134,7 +134,7 @@ pub(crate) const STAGE_13: Row<8> = Row {
 };
 
 /// Stage 14 (dense output only).
-pub(crate) const STAGE_14: Row<8> = Row {
+pub const STAGE_14: Row<8> = Row {
     from: [0, 5, 6, 7, 10, 11, 12, 13],
     weight: [
         0.03183464816350214,
@@ -149,7 +149,7 @@ pub(crate) const STAGE_14: Row<8> = Row {
 };
 
 /// Stage 15 (dense output only).
-pub(crate) const STAGE_15: Row<8> = Row {
+pub const STAGE_15: Row<8> = Row {
     from: [0, 5, 6, 7, 8, 12, 13, 14],
     weight: [
         -0.42889630158379194,
@@ -164,7 +164,7 @@ pub(crate) const STAGE_15: Row<8> = Row {
 };
 
 /// Step minus embedded formula of order 5.
-pub(crate) const ERROR_5: Row<8> = Row {
+pub const ERROR_5: Row<8> = Row {
     from: [0, 5, 6, 7, 8, 9, 10, 11],
     weight: [
         0.01312004499419488,
@@ -179,11 +179,11 @@ pub(crate) const ERROR_5: Row<8> = Row {
 };
 
 /// Embedded formula of order 3.
-pub(crate) const EMBEDDED_3: Row<3> =
+pub const EMBEDDED_3: Row<3> =
     Row { from: [0, 8, 11], weight: [0.2440944881889764, 0.7338466882816118, 0.022058823529411766] };
 
 /// Coefficient 4 of the dense output, in units of the step.
-pub(crate) const DENSE_4: Row<12> = Row {
+pub const DENSE_4: Row<12> = Row {
     from: [0, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15],
     weight: [
         -8.428938276109013,
@@ -202,7 +202,7 @@ pub(crate) const DENSE_4: Row<12> = Row {
 };
 
 /// Coefficient 5 of the dense output, in units of the step.
-pub(crate) const DENSE_5: Row<12> = Row {
+pub const DENSE_5: Row<12> = Row {
     from: [0, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15],
     weight: [
         10.427508642579134,
@@ -221,7 +221,7 @@ pub(crate) const DENSE_5: Row<12> = Row {
 };
 
 /// Coefficient 6 of the dense output, in units of the step.
-pub(crate) const DENSE_6: Row<12> = Row {
+pub const DENSE_6: Row<12> = Row {
     from: [0, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15],
     weight: [
         19.985053242002433,
@@ -240,7 +240,7 @@ pub(crate) const DENSE_6: Row<12> = Row {
 };
 
 /// Coefficient 7 of the dense output, in units of the step.
-pub(crate) const DENSE_7: Row<12> = Row {
+pub const DENSE_7: Row<12> = Row {
     from: [0, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15],
     weight: [
         -25.69393346270375,

@@ -62,21 +62,24 @@
 //! [`levenberg-marquardt`](https://docs.rs/levenberg-marquardt).
 
 mod boundary;
-mod dense;
+#[doc(hidden)]
+pub mod dense;
 mod dop853;
-#[cfg(test)]
-mod dop853_order_conditions;
-mod dop853_tableau;
+#[doc(hidden)]
+pub mod dop853_tableau;
 mod error;
 mod events;
 mod interrupt;
 mod lanes;
 mod options;
-mod pace;
-mod poles;
+#[doc(hidden)]
+pub mod pace;
+#[doc(hidden)]
+pub mod poles;
 mod problem;
 mod radau5;
-mod radau5_tableau;
+#[doc(hidden)]
+pub mod radau5_tableau;
 mod root;
 mod status;
 mod steep;

@@ -3,8 +3,13 @@
 mod boundary;
 mod dense;
 mod dop853;
+mod dop853_order_conditions;
 mod events;
 mod methods;
+mod options;
+mod pace;
 mod problems;
+mod radau5;
 mod stops;
+mod suspicions;
 mod taylor;

@@ -143,30 +143,3 @@ impl Balance {
 pub fn inputs(system: &System) -> Vec<Symbol> {
     [&[system.time], &system.positions()[..], &system.velocities(), &system.accelerations()].concat()
 }
-
-#[cfg(test)]
-mod tests {
-    use scene::Scene;
-
-    use super::*;
-
-    /// What is said of a sample at rest at this x, of a particle from x = 1 under a force and two constraints
-    /// that are parallel but for x: the least length over the largest is x/2.
-    fn at(x: f64, force: &str) -> Result<Instant, JudgeError> {
-        let text = format!(
-            "title = \"parallel\"\n[coordinates]\nx = {{ start = 1 }}\ny = {{ start = 0 }}\nz = {{ start = 0 }}\n\
-             [system]\nlagrangian = \"(x'^2 + y'^2 + z'^2)/2\"\nconstraints = [\"1e3*y'\", \"1e3*(y' + x*z')\"]\n\
-             forces = {{ x = \"{force}\" }}\n[start.velocities]\n\"x'\" = 0\n[run]\nduration = 1\n"
-        );
-        let scene = Scene::parse("parallel", &text).unwrap_or_else(|e| panic!("{text}: {e}"));
-        let state = [vec![x, 0.0, 0.0], vec![0.0; 3], vec![0.0; 3]];
-        Balance::new(&scene.system).expect("compiled").at(0.25, state)
-    }
-
-    #[test]
-    fn constraints_that_are_parallel_to_a_million_millionth_are_refused_and_so_is_what_is_not_finite() {
-        assert!(matches!(at(1e-12, "0"), Err(JudgeError::Dependent { t: 0.25 })));
-        assert!(at(1e-11, "0").is_ok() && at(1e-3, "1/x").is_ok());
-        assert!(matches!(at(1e-3, "1/(x - 1e-3)"), Err(JudgeError::Dependent { t: 0.25 })));
-    }
-}

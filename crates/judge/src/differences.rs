@@ -49,17 +49,3 @@ fn combine(rows: &[Vec<f64>], weights: &[f64]) -> Vec<f64> {
     }
     sum
 }
-
-#[cfg(test)]
-mod tests {
-    use super::{derivative, halfway};
-
-    #[test]
-    fn polynomials_are_differentiated_exactly() {
-        let t = [0.0, 0.1, 0.25, 0.3, 0.5, 0.55, 0.7];
-        let rows: Vec<Vec<f64>> = t.iter().map(|t: &f64| vec![t.powi(5)]).collect();
-        assert!((derivative(&t, &rows, 3, 3, 1)[0] - 5.0 * 0.3f64.powi(4)).abs() < 1e-12);
-        assert!((derivative(&t, &rows, 3, 3, 2)[0] - 20.0 * 0.3f64.powi(3)).abs() < 1e-11);
-        assert!((halfway(&t, &rows, 4)[0] - 0.525f64.powi(5)).abs() < 1e-13);
-    }
-}

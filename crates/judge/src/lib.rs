@@ -38,6 +38,8 @@ mod regression;
 mod samples;
 mod substituted;
 
+pub use balance::{Balance, Instant, inputs};
+pub use differences::{derivative, halfway};
 pub use error::JudgeError;
 pub use judgement::{Drift, Judgement, Law, Left, judge};
 pub use order::{Order, order};

@@ -126,17 +126,3 @@ fn reflected(matrix: &DMatrix<f64>, normal: &DVector<f64>) -> DMatrix<f64> {
     let square = normal.norm_squared();
     if square == 0.0 { matrix.clone() } else { matrix - normal * (normal.transpose() * matrix) * (2.0 / square) }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn one_number_is_an_eigenvalue_where_it_is_over_its_error() {
-        for (number, values) in [(2e-3, vec![2e-3]), (-2e-3, vec![-2e-3]), (0.5e-3, vec![])] {
-            let [block, noise] = [number, 1e-3].map(|x| DMatrix::from_element(1, 1, x));
-            let found = Core::of(block, noise).expect("a core").values;
-            assert_eq!(found, values.into_iter().map(Complex::from).collect::<Vec<_>>(), "{number}");
-        }
-    }
-}

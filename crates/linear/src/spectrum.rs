@@ -89,9 +89,10 @@ impl Spectrum {
     ///
     /// ```
     /// use linear::Spectrum;
-    /// use nalgebra::{DMatrix, dmatrix};
+    /// use nalgebra::DMatrix;
     /// // a free particle, and an oscillator of 2 rad/s
-    /// let matrix = dmatrix![0., 1., 0., 0.; 0., 0., 0., 0.; 0., 0., 0., 1.; 0., 0., -4., 0.];
+    /// let matrix = [0., 1., 0., 0., 0., 0., 0., 0., 0., 0., 0., 1., 0., 0., -4., 0.];
+    /// let matrix = DMatrix::from_row_slice(4, 4, &matrix);
     /// let spectrum = Spectrum::of(&matrix, &DMatrix::zeros(4, 4)).unwrap();
     /// let zeros: usize = spectrum.blocks.iter().map(|block| block.zeros).sum();
     /// assert_eq!((zeros, spectrum.zero_vectors), (2, 1));

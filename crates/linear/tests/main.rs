@@ -10,7 +10,7 @@ use deltaq::{
 use equations::Formulation;
 use linear::{LinearError, Linearization, Spectrum, find_steady, linearize, linearize_at, sweep};
 use mechanics::ConstantsRule;
-use nalgebra::{DMatrix, dmatrix};
+use nalgebra::{Complex, DMatrix};
 use scene::Scene;
 
 /// A scene from its coordinates with starts, its Lagrangian, constraints and start velocities.
@@ -90,10 +90,10 @@ fn chains_of_zeros_are_counted() {
     // x'' = 0 in turned axes: one block, two chains of two
     let turn = |m: DMatrix<f64>| {
         let (s, c) = 0.7_f64.sin_cos();
-        let q = dmatrix![c, s, 0.0; -s * c, c * c, s; s * s, -s * c, c];
+        let q = DMatrix::from_row_slice(3, 3, &[c, s, 0.0, -s * c, c * c, s, s * s, -s * c, c]);
         &q * m * q.transpose()
     };
-    let jordan = turn(dmatrix![0.0, 1.0, 0.0; 0.0, 0.0, 1.0; 0.0, 0.0, 0.0]);
+    let jordan = turn(DMatrix::from_row_slice(3, 3, &[0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0]));
     let spectrum = Spectrum::of(&jordan, &DMatrix::zeros(3, 3)).expect("converges");
     let zeros: usize = spectrum.blocks.iter().map(|block| block.zeros).sum();
     assert_eq!((zeros, spectrum.zero_vectors), (3, 1));
@@ -178,7 +178,7 @@ fn what_moves_is_said_with_its_rate_and_the_limit() {
         let frozen = linearize_at(setting(&swings), &choice(&swings, CHETAEV), t, &Settings::default());
         let frozen = frozen.expect("runs");
         assert!(!frozen.is_steady && (frozen.values[0] - 0.5 * (2.0 * t).cos()).abs() < 1e-9, "{frozen:?}");
-        assert_eq!(frozen.matrix, dmatrix![0.0, 1.0; -4.0, 0.0]);
+        assert_eq!(frozen.matrix, DMatrix::from_row_slice(2, 2, &[0.0, 1.0, -4.0, 0.0]));
     }
 }
 
@@ -213,4 +213,14 @@ fn what_crosses_has_the_frequency_and_not_what_grows_all_along() {
     let [change] = &found.changes[..] else { panic!("{:?}", found.changes) };
     assert_eq!(change.unstable, [1, 3]);
     assert!(change.value.abs() < 1e-7 && (change.frequency - 2.0).abs() < 1e-6, "{change:?}");
+}
+
+#[test]
+fn one_number_is_an_eigenvalue_where_it_is_over_its_error() {
+    for (number, known) in [(2e-3, vec![2e-3]), (-2e-3, vec![-2e-3]), (0.5e-3, vec![])] {
+        let [matrix, noise] = [number, 1e-3].map(|x| DMatrix::from_element(1, 1, x));
+        let spectrum = Spectrum::of(&matrix, &noise).expect("a spectrum");
+        let found: Vec<Complex<f64>> = spectrum.blocks[0].eigenvalues.iter().map(|e| e.value).collect();
+        assert_eq!(found, known.into_iter().map(Complex::from).collect::<Vec<_>>(), "{number}");
+    }
 }

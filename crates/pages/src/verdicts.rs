@@ -92,20 +92,3 @@ fn differ(path: &str, old: &Value, new: &Value) -> Option<String> {
         _ => (old != new).then(|| format!("{path}: {old}, now {new}")),
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_changed_verdict_is_found() {
-        let old = json!({ "scenes": { "disc": { "pairs": [{ "verdict": "same", "passes": [0.5, null] }] } } });
-        let mut new = old.clone();
-        assert_eq!(difference_of_verdicts(&old, &new), None);
-        new["scenes"]["disc"]["pairs"][0]["passes"][0] = json!(0.5001);
-        assert_eq!(difference_of_verdicts(&old, &new), None);
-        new["scenes"]["disc"]["pairs"][0]["verdict"] = json!("different");
-        let found = difference_of_verdicts(&old, &new).unwrap();
-        assert!(found.starts_with("/scenes/disc/pairs/0/verdict"), "{found}");
-    }
-}

@@ -11,67 +11,67 @@ const LARGEST: f64 = 1e300;
 /// Values below are treated as zero on a logarithmic axis.
 const SMALLEST: f64 = 1e-300;
 /// Font size of tick labels, in pixels.
-pub(super) const TICK_SIZE: f64 = 12.0;
+pub const TICK_SIZE: f64 = 12.0;
 
 /// Why a value has no place on an axis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum LeftOut {
+pub enum LeftOut {
     NotFinite,
     NotPositive,
 }
 
 /// A range in the measure of an axis; `low < high`, both finite.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Interval {
-    pub(super) low: f64,
-    pub(super) high: f64,
+pub struct Interval {
+    pub low: f64,
+    pub high: f64,
 }
 
 /// Which way an axis runs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Direction {
+pub enum Direction {
     Horizontal,
     Vertical,
 }
 
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Tick {
+pub struct Tick {
     /// Place in the measure of the axis.
-    pub(super) at: f64,
-    pub(super) label: String,
+    pub at: f64,
+    pub label: String,
 }
 
 #[derive(Clone, Debug, Default, PartialEq)]
-pub(super) struct Ticks {
-    pub(super) labelled: Vec<Tick>,
+pub struct Ticks {
+    pub labelled: Vec<Tick>,
     /// Places of the short ticks without label.
-    pub(super) minor: Vec<f64>,
+    pub minor: Vec<f64>,
     /// What every label is to be multiplied by: `×10⁻⁷`.
-    pub(super) factor: Option<String>,
+    pub factor: Option<String>,
 }
 
 impl Interval {
-    pub(super) fn span(self) -> f64 {
+    pub fn span(self) -> f64 {
         self.high - self.low
     }
 
-    pub(super) fn contains(self, at: f64) -> bool {
+    pub fn contains(self, at: f64) -> bool {
         (self.low..=self.high).contains(&at)
     }
 
     /// Place of a measure as a fraction of the length.
-    pub(super) fn fraction(self, at: f64) -> f64 {
+    pub fn fraction(self, at: f64) -> f64 {
         (at - self.low) / self.span()
     }
 
     /// The interval with the same middle and this span.
-    pub(super) fn with_span(self, span: f64) -> Self {
+    pub fn with_span(self, span: f64) -> Self {
         let middle = self.low / 2.0 + self.high / 2.0;
         Self { low: middle - span / 2.0, high: middle + span / 2.0 }
     }
 }
 
-pub(super) fn measure(scale: Scale, value: f64) -> Result<f64, LeftOut> {
+pub fn measure(scale: Scale, value: f64) -> Result<f64, LeftOut> {
     if !value.is_finite() || value.abs() > LARGEST {
         return Err(LeftOut::NotFinite);
     }
@@ -83,7 +83,7 @@ pub(super) fn measure(scale: Scale, value: f64) -> Result<f64, LeftOut> {
 }
 
 /// The range an axis was given.
-pub(super) fn given(axis: &Axis) -> Result<Option<Interval>, PictureError> {
+pub fn given(axis: &Axis) -> Result<Option<Interval>, PictureError> {
     let Some((low, high)) = axis.range else {
         return Ok(None);
     };
@@ -105,7 +105,7 @@ const ROUND_OFF: f64 = 1e-6;
 
 /// The range of what is compared, of the `measures` of some curves: that of all, or on a linear axis of the
 /// first and at least another one, without runaways; with `margin` of its span on both sides.
-pub(super) fn around(scale: Scale, measures: impl Iterator<Item = Vec<f64>>, margin: f64) -> Option<Interval> {
+pub fn around(scale: Scale, measures: impl Iterator<Item = Vec<f64>>, margin: f64) -> Option<Interval> {
     let hull = |a: Interval, b: Interval| Interval { low: a.low.min(b.low), high: a.high.max(b.high) };
     let each = |curve: Vec<f64>| curve.into_iter().map(|at| Interval { low: at, high: at }).reduce(hull);
     let mut curves: Vec<Interval> = measures.filter_map(each).collect();
@@ -138,7 +138,7 @@ pub(super) fn around(scale: Scale, measures: impl Iterator<Item = Vec<f64>>, mar
 }
 
 /// Ticks for an axis of this length in pixels.
-pub(super) fn ticks(scale: Scale, interval: Interval, length: f64, direction: Direction) -> Ticks {
+pub fn ticks(scale: Scale, interval: Interval, length: f64, direction: Direction) -> Ticks {
     match scale {
         Scale::Linear => linear_ticks(interval, length, direction),
         Scale::Log => log_ticks(interval, length, direction),
@@ -156,7 +156,7 @@ fn room(length: f64, direction: Direction) -> usize {
 }
 
 /// Do the labels stand apart?
-fn apart(labelled: &[Tick], interval: Interval, length: f64, direction: Direction) -> bool {
+pub fn apart(labelled: &[Tick], interval: Interval, length: f64, direction: Direction) -> bool {
     labelled.windows(2).all(|pair| {
         let distance = (interval.fraction(pair[1].at) - interval.fraction(pair[0].at)) * length;
         match direction {
@@ -283,64 +283,4 @@ fn narrow_log_ticks(interval: Interval, length: f64, direction: Direction) -> Ti
         }
     }
     Ticks::default()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn labels(scale: Scale, low: f64, high: f64) -> Vec<String> {
-        let interval = Interval { low: measure(scale, low).unwrap(), high: measure(scale, high).unwrap() };
-        let ticks = ticks(scale, interval, 340.0, Direction::Vertical);
-        assert!(apart(&ticks.labelled, interval, 340.0, Direction::Vertical));
-        let mut labels: Vec<String> = ticks.labelled.into_iter().map(|tick| tick.label).collect();
-        labels.extend(ticks.factor);
-        labels
-    }
-
-    #[test]
-    fn linear_labels() {
-        assert_eq!(labels(Scale::Linear, 0.0, 1.0), ["0.0", "0.2", "0.4", "0.6", "0.8", "1.0"]);
-        assert_eq!(labels(Scale::Linear, -12.0, 31.0), ["−10", "0", "10", "20", "30"]);
-        assert_eq!(labels(Scale::Linear, 0.0, 4.2e-7), ["0", "1", "2", "3", "4", "×10⁻⁷"]);
-        assert_eq!(labels(Scale::Linear, -1e300, 1e300).last().unwrap(), "×10³⁰⁰");
-        assert!(labels(Scale::Linear, 1.0, 1.0 + 1e-8).len() >= 3);
-    }
-
-    #[test]
-    fn log_labels() {
-        assert_eq!(labels(Scale::Log, 1e-6, 1e1), ["10⁻⁶", "10⁻⁵", "10⁻⁴", "10⁻³", "10⁻²", "10⁻¹", "10⁰", "10¹"]);
-        assert_eq!(labels(Scale::Log, 3e-15, 2.0), ["10⁻¹⁴", "10⁻¹²", "10⁻¹⁰", "10⁻⁸", "10⁻⁶", "10⁻⁴", "10⁻²", "10⁰"]);
-        assert_eq!(labels(Scale::Log, 0.1, 7.0), ["0.1", "0.2", "0.5", "1", "2", "5"]);
-        assert_eq!(labels(Scale::Log, 1e-7, 7e-6).first().unwrap(), "10⁻⁷");
-        assert!(labels(Scale::Log, 3.0, 4.0).len() >= 3);
-        assert!((3..=10).contains(&labels(Scale::Log, 1e-300, 1e300).len()));
-    }
-
-    #[test]
-    fn ranges() {
-        let same = around(Scale::Linear, [vec![3.0, 3.0]].into_iter(), 0.05).unwrap();
-        assert!(same.low < 3.0 && same.high > 3.0);
-        let zero = around(Scale::Linear, [vec![0.0]].into_iter(), 0.05).unwrap();
-        assert_eq!((zero.low, zero.high), (-1.0, 1.0));
-        assert_eq!(around(Scale::Log, std::iter::empty(), 0.05), None);
-        let of = |scale, ends: &[f64]| {
-            let range = around(scale, ends.iter().map(|&end| vec![0.0, end]), 0.0).unwrap();
-            (range.low, range.high)
-        };
-        assert_eq!(of(Scale::Linear, &[1.0, 8.0, 39.0]), (0.0, 39.0));
-        assert_eq!(of(Scale::Linear, &[1.0, 39.0]), (0.0, 39.0));
-        assert_eq!(of(Scale::Linear, &[41.0, 1.0, 8.0]), (0.0, 41.0));
-        assert_eq!(of(Scale::Linear, &[1.0, 8.0, 41.0, -1000.0]), (0.0, 8.0));
-        assert_eq!(of(Scale::Log, &[1.0, 8.0, 41.0]), (0.0, 41.0));
-        assert_eq!(of(Scale::Linear, &[1e-9, 1e-9, 41.0]), (0.0, 41.0), "round-off is nothing to compare with");
-        assert_eq!(measure(Scale::Log, -1.0), Err(LeftOut::NotPositive));
-        assert_eq!(measure(Scale::Linear, f64::INFINITY), Err(LeftOut::NotFinite));
-        for range in [(1.0, 1.0), (2.0, 1.0), (f64::NAN, 1.0), (1.0, 1.0 + 1e-12), (0.0, f64::MAX)] {
-            let axis = Axis { range: Some(range), ..Axis::linear("x (m)") };
-            assert!(matches!(given(&axis), Err(PictureError::Range { .. })), "{range:?}");
-        }
-        let axis = Axis { range: Some((0.0, 1.0)), ..Axis::log("x (m)") };
-        assert!(matches!(given(&axis), Err(PictureError::Range { .. })));
-    }
 }

@@ -10,7 +10,7 @@ use super::text::{decimal, escape, fit, px, width};
 use super::trace::{Coarseness, Extent, Place, Trace};
 
 /// Limit of the file size, in bytes.
-pub(super) const BUDGET: usize = 60_000;
+pub const BUDGET: usize = 60_000;
 
 impl Picture {
     /// The picture as a complete SVG document.

@@ -22,7 +22,8 @@
 //! `currentColor`, no dashes (each dash is an element, which defeats small files), no `<title>`; its legend
 //! lies within the plot. It would only choose ticks.
 
-mod axis;
+#[doc(hidden)]
+pub mod axis;
 mod bodies;
 mod draw;
 mod error;
@@ -33,14 +34,15 @@ mod plain;
 mod plot;
 mod solid;
 mod style;
-#[cfg(test)]
-mod tests;
-mod text;
-mod trace;
+#[doc(hidden)]
+pub mod text;
+#[doc(hidden)]
+pub mod trace;
 
 pub use bodies::{Bodies, MovingPicture};
+pub use draw::BUDGET;
 pub use error::PictureError;
 pub use heat::HeatMap;
 pub use plot::{Axis, Curve, Panel, Picture, Scale};
 pub use solid::{Camera, Placement, Seen, Solid, Space};
-pub use style::Style;
+pub use style::{BLUE, GREEN, INKS, PURPLE, Stroke, Style, VERMILION};

@@ -1,7 +1,7 @@
 //! Text and numbers as an SVG document holds them.
 
 /// Escape for element content and attribute values. Characters that XML forbids become U+FFFD.
-pub(super) fn escape(text: &str) -> String {
+pub fn escape(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
     for c in text.chars() {
         match c {
@@ -18,7 +18,7 @@ pub(super) fn escape(text: &str) -> String {
 }
 
 /// Width of a text in pixels, rather over than under: the viewer's font is not known.
-pub(super) fn width(text: &str, size: f64) -> f64 {
+pub fn width(text: &str, size: f64) -> f64 {
     text.chars()
         .map(|c| match c {
             'i' | 'j' | 'l' | 'I' | ' ' | '.' | ',' | ':' | ';' | '\'' | '|' | '!' | '(' | ')' => 0.36,
@@ -35,7 +35,7 @@ pub(super) fn width(text: &str, size: f64) -> f64 {
 }
 
 /// The text, cut with an ellipsis where it is wider than `limit` pixels.
-pub(super) fn fit(text: &str, size: f64, limit: f64) -> String {
+pub fn fit(text: &str, size: f64, limit: f64) -> String {
     if width(text, size) <= limit {
         return text.to_owned();
     }
@@ -51,7 +51,7 @@ pub(super) fn fit(text: &str, size: f64, limit: f64) -> String {
 }
 
 /// The text in lines of at most `limit` pixels, broken between words.
-pub(super) fn wrap(text: &str, size: f64, limit: f64) -> Vec<String> {
+pub fn wrap(text: &str, size: f64, limit: f64) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
     for word in text.split_whitespace() {
         match lines.last_mut() {
@@ -66,7 +66,7 @@ pub(super) fn wrap(text: &str, size: f64, limit: f64) -> Vec<String> {
 }
 
 /// A power of ten as it is written by hand: `10⁻⁶`.
-pub(super) fn power_of_ten(exponent: i32) -> String {
+pub fn power_of_ten(exponent: i32) -> String {
     let mut out = String::from("10");
     for c in exponent.to_string().chars() {
         out.push(match c {
@@ -82,7 +82,7 @@ pub(super) fn power_of_ten(exponent: i32) -> String {
 }
 
 /// A number with `decimals` decimals, a true minus sign, and no negative zero.
-pub(super) fn decimal(value: f64, decimals: usize) -> String {
+pub fn decimal(value: f64, decimals: usize) -> String {
     let text = format!("{value:.decimals$}");
     match text.strip_prefix('-') {
         Some(rest) if rest.bytes().all(|b| b == b'0' || b == b'.') => rest.to_owned(),
@@ -92,12 +92,12 @@ pub(super) fn decimal(value: f64, decimals: usize) -> String {
 }
 
 /// Whole tenths of a pixel.
-pub(super) fn tenths(pixels: f64) -> i64 {
+pub fn tenths(pixels: f64) -> i64 {
     (pixels * 10.0).round() as i64
 }
 
 /// Append tenths of a pixel in the shortest form: `-.5`, `3`, `12.5`.
-pub(super) fn push_tenths(out: &mut String, tenths: i64) {
+pub fn push_tenths(out: &mut String, tenths: i64) {
     use std::fmt::Write;
     if tenths < 0 {
         out.push('-');
@@ -112,34 +112,8 @@ pub(super) fn push_tenths(out: &mut String, tenths: i64) {
 }
 
 /// A length or coordinate in pixels, rounded to tenths.
-pub(super) fn px(pixels: f64) -> String {
+pub fn px(pixels: f64) -> String {
     let mut out = String::new();
     push_tenths(&mut out, tenths(pixels));
     out
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn numbers() {
-        assert_eq!(power_of_ten(-16), "10⁻¹⁶");
-        assert_eq!(power_of_ten(0), "10⁰");
-        assert_eq!(power_of_ten(308), "10³⁰⁸");
-        assert_eq!(decimal(-0.04, 1), "0.0");
-        assert_eq!(decimal(-1.25, 2), "−1.25");
-        assert_eq!(px(-0.04), "0");
-        assert_eq!(px(-0.5), "-.5");
-        assert_eq!(px(12.34), "12.3");
-    }
-
-    #[test]
-    fn text_fits() {
-        assert_eq!(escape("a<b & \"c\"\u{1}"), "a&lt;b &amp; &quot;c&quot;\u{fffd}");
-        assert!(width(&fit(&"long ".repeat(40), 12.0, 200.0), 12.0) <= 212.0);
-        let lines = wrap("several words that do not fit on a single line", 12.0, 120.0);
-        assert!(lines.len() > 1 && lines.iter().all(|line| width(line, 12.0) <= 120.0));
-        assert!(wrap("", 12.0, 120.0).is_empty());
-    }
 }

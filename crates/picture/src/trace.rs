@@ -3,43 +3,43 @@
 use super::text::{push_tenths, tenths};
 
 /// A place in pixels, from the top left corner of a plot.
-pub(super) type Place = (f64, f64);
+pub type Place = (f64, f64);
 
 /// Width and height of a plot in pixels.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Extent {
-    pub(super) width: f64,
-    pub(super) height: f64,
+pub struct Extent {
+    pub width: f64,
+    pub height: f64,
 }
 
 /// How far a drawn line may lie from the true one.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Coarseness {
+pub struct Coarseness {
     /// Points closer than this to the line through their neighbours are left out, in pixels.
-    pub(super) tolerance: f64,
+    pub tolerance: f64,
     /// Width of a column, of whose points the first, last, highest and lowest are kept.
-    pub(super) column: f64,
+    pub column: f64,
 }
 
 impl Coarseness {
     /// From what the eye cannot see to what it forgives.
-    pub(super) fn steps() -> [Self; 5] {
+    pub fn steps() -> [Self; 5] {
         [1.0, 2.0, 4.0, 8.0, 16.0].map(|times| Self { tolerance: 0.1 * times, column: 0.5 * times })
     }
 }
 
 /// One curve, ready to draw.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub(super) struct Trace {
+pub struct Trace {
     /// Lines of at least two points.
-    pub(super) lines: Vec<Vec<Place>>,
+    pub lines: Vec<Vec<Place>>,
     /// Points that stand alone.
-    pub(super) dots: Vec<Place>,
+    pub dots: Vec<Place>,
 }
 
 impl Trace {
     /// Clip and thin unbroken runs of points.
-    pub(super) fn new(runs: &[Vec<Place>], extent: Extent, coarseness: Coarseness) -> Self {
+    pub fn new(runs: &[Vec<Place>], extent: Extent, coarseness: Coarseness) -> Self {
         let mut trace = Self::default();
         for run in runs {
             if let [dot] = run.as_slice() {
@@ -60,7 +60,7 @@ impl Trace {
     }
 
     /// The lines as SVG path data.
-    pub(super) fn path(&self) -> String {
+    pub fn path(&self) -> String {
         let mut out = String::new();
         for line in &self.lines {
             let mut last = (0, 0);
@@ -84,7 +84,7 @@ impl Trace {
     }
 
     /// `count` places at equal distances along the curve, moved along by the fraction `phase` of it.
-    pub(super) fn marks(&self, count: u32, phase: f64) -> Vec<Place> {
+    pub fn marks(&self, count: u32, phase: f64) -> Vec<Place> {
         let distance = |pair: &[Place]| (pair[1].0 - pair[0].0).hypot(pair[1].1 - pair[0].1);
         let segments = || self.lines.iter().flat_map(|line| line.windows(2));
         let total: f64 = segments().map(distance).sum();
@@ -105,7 +105,7 @@ impl Trace {
 }
 
 /// The pieces of a line within the plot and as much again on every side.
-fn clip(run: &[Place], extent: Extent) -> Vec<Vec<Place>> {
+pub fn clip(run: &[Place], extent: Extent) -> Vec<Vec<Place>> {
     let mut pieces: Vec<Vec<Place>> = Vec::new();
     let mut joined = false;
     for pair in run.windows(2) {
@@ -203,65 +203,10 @@ fn within_tolerance(line: &[Place], tolerance: f64) -> Vec<Place> {
     line.iter().zip(keep).filter_map(|(point, keep)| keep.then_some(*point)).collect()
 }
 
-fn distance_to_segment(point: Place, from: Place, to: Place) -> f64 {
+pub fn distance_to_segment(point: Place, from: Place, to: Place) -> f64 {
     let (dx, dy) = (to.0 - from.0, to.1 - from.1);
     let (px, py) = (point.0 - from.0, point.1 - from.1);
     let square = dx * dx + dy * dy;
     let part = if square > 0.0 { ((px * dx + py * dy) / square).clamp(0.0, 1.0) } else { 0.0 };
     (px - part * dx).hypot(py - part * dy)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    const EXTENT: Extent = Extent { width: 600.0, height: 300.0 };
-
-    #[test]
-    fn thinning_keeps_the_line_within_tolerance() {
-        let sine: Vec<Place> =
-            (0..5000).map(|i| f64::from(i) * 0.12).map(|x| (x, 150.0 + 100.0 * (x / 60.0).sin())).collect();
-        let trace = Trace::new(std::slice::from_ref(&sine), EXTENT, Coarseness::steps()[0]);
-        let [line] = trace.lines.as_slice() else { panic!("{} lines", trace.lines.len()) };
-        assert!(line.len() < 300, "{} points", line.len());
-        for &point in &sine {
-            let distance =
-                line.windows(2).map(|pair| distance_to_segment(point, pair[0], pair[1])).fold(f64::INFINITY, f64::min);
-            assert!(distance <= 0.25, "{point:?} is off by {distance}");
-        }
-    }
-
-    #[test]
-    fn fast_oscillations_keep_their_height() {
-        let fast: Vec<Place> =
-            (0..200_000).map(|i| (f64::from(i) * 0.003, 150.0 + 100.0 * f64::from(i).sin())).collect();
-        let trace = Trace::new(&[fast], EXTENT, Coarseness::steps()[0]);
-        let line = &trace.lines[0];
-        assert!(line.len() < 5000, "{} points", line.len());
-        let top = line.iter().map(|p| p.1).fold(f64::INFINITY, f64::min);
-        assert!((top - 50.0).abs() < 0.1);
-    }
-
-    #[test]
-    fn clipping_keeps_the_slope_and_splits_lines() {
-        let far = [(-1e6, -1e6), (1e6, 1e6), (f64::INFINITY, 0.0), (300.0, 1e7), (300.0, 100.0)];
-        let pieces = clip(&far, EXTENT);
-        assert_eq!(pieces.len(), 2);
-        let first = &pieces[0];
-        assert!(first.iter().all(|(x, y)| (x - y).abs() < 1e-6 && x.abs() <= 600.0));
-        assert_eq!(pieces[1].last(), Some(&(300.0, 100.0)));
-    }
-
-    #[test]
-    fn path_data_is_short() {
-        let trace = Trace::new(&[vec![(0.0, 0.0), (10.25, 0.5), (9.75, 20.0)]], EXTENT, Coarseness::steps()[0]);
-        assert_eq!(trace.path(), "M0 0l10.3 .5-.5 19.5");
-        assert_eq!(trace.marks(5, 0.5).len(), 5);
-    }
-
-    #[test]
-    fn one_point_is_a_dot() {
-        let trace = Trace::new(&[vec![(5.0, 5.0)], vec![(7.0, 7.0), (7.01, 7.0)]], EXTENT, Coarseness::steps()[0]);
-        assert_eq!((trace.lines.len(), trace.dots.len()), (0, 2));
-    }
 }

@@ -114,14 +114,3 @@ fn printed(kind: &str, object: &Value) -> String {
     let text = format!("{object:#}\n");
     text.replacen('{', &format!("{{\n  \"schema\": \"deltaq/{kind}/{version}\","), 1)
 }
-
-#[cfg(test)]
-mod tests {
-    use super::plain;
-
-    #[test]
-    fn a_terminal_is_told_nothing_that_it_would_obey() {
-        assert_eq!(plain("a\x1b]0;x\x07\u{9b}31m\rb\x7f"), "a\\u{1b}]0;x\\u{7}\\u{9b}31m\\rb\\u{7f}");
-        assert_eq!(plain("x\ty\r\nκ µ\n"), "x\ty\r\nκ µ\n");
-    }
-}

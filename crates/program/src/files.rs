@@ -50,7 +50,7 @@ pub fn may_replace(path: &Path) -> Result<()> {
 }
 
 /// Whether all of a folder is deltaq's: it has the verdicts of the main job.
-fn is_own(folder: &Path) -> bool {
+pub fn is_own(folder: &Path) -> bool {
     let verdicts = fs::read_to_string(folder.join("verdicts.json"));
     verdicts.is_ok_and(|text| text.starts_with("{\n  \"schema\": \"deltaq/verdicts/"))
 }
@@ -155,65 +155,4 @@ fn make_readable(file: &fs::File) -> Result<()> {
 #[cfg(not(unix))]
 fn make_readable(_: &fs::File) -> Result<()> {
     Ok(())
-}
-
-#[cfg(test)]
-mod tests {
-    use super::{File, is_own, may_replace, typeset, write_all, write_one};
-
-    #[test]
-    fn exponents_in_tables_do_not_break() {
-        let page = "about 1e-6\n| 1e-6 at 5.2e-11; e-6, three-2, 2e-x |\n";
-        assert_eq!(typeset(page), "about 1e-6\n| 1e\u{2212}6 at 5.2e\u{2212}11; e-6, three-2, 2e-x |\n");
-    }
-
-    #[test]
-    fn only_files_of_deltaq_are_replaced() {
-        let folder = tempfile::tempdir().unwrap();
-        let at = |name: &str| folder.path().join(name);
-        let files = |text: &str| {
-            [File { path: "a/x.md".into(), text: text.into() }, File { path: "y.svg".into(), text: text.into() }]
-        };
-        write_all(folder.path(), &files("1")).unwrap();
-        write_all(folder.path(), &files("2")).unwrap();
-        std::fs::write(at("z.md"), "mine").unwrap();
-        let more = [&files("3")[..], &[File { path: "z.md".into(), text: "3".into() }]].concat();
-        assert!(
-            write_all(folder.path(), &more)
-                .unwrap_err()
-                .to_string()
-                .contains("z.md is not of deltaq, as far as it and the list `.deltaq` tell")
-        );
-        let texts = ["a/x.md", "y.svg", "z.md"].map(|name| std::fs::read_to_string(at(name)).unwrap());
-        assert_eq!(texts, ["2", "2", "mine"]);
-        // what the main job wrote is its own
-        std::fs::write(at("verdicts.json"), "{\n  \"schema\": \"deltaq/verdicts/1\",").unwrap();
-        assert!(is_own(folder.path()));
-        write_all(folder.path(), &more).unwrap();
-        assert_eq!(std::fs::read_to_string(at("z.md")).unwrap(), "3");
-        // one file
-        std::fs::write(at("mine.json"), "{}").unwrap();
-        assert!(write_one(&at("mine.json"), "{}").is_err());
-        write_one(&at("ours.json"), "{\n  \"schema\": \"deltaq/certificate/2\",").unwrap();
-        write_one(&at("ours.json"), "member,x").unwrap();
-        write_one(&at("ours.json"), "").unwrap();
-    }
-
-    #[cfg(unix)]
-    #[test]
-    fn links_are_not_replaced() {
-        let folder = tempfile::tempdir().unwrap();
-        let at = |name: &str| folder.path().join(name);
-        std::fs::write(at("mine"), "member,").unwrap();
-        for (name, to) in [("x.md", at("mine")), ("y.md", at("nothing"))] {
-            std::os::unix::fs::symlink(to, at(name)).unwrap();
-            let file = File { path: name.into(), text: "1".into() };
-            for written in [write_all(folder.path(), &[file]), write_one(&at(name), "1"), may_replace(&at(name))] {
-                assert!(written.unwrap_err().to_string().contains("is a link"));
-            }
-        }
-        assert_eq!(std::fs::read_to_string(at("mine")).unwrap(), "member,");
-        std::os::unix::fs::symlink("/dev/null", at("null")).unwrap();
-        write_one(&at("null"), "1").unwrap();
-    }
 }

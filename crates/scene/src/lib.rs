@@ -68,6 +68,7 @@ mod write;
 
 pub use error::{SceneError, SceneErrorKind};
 pub use load::SIZE_LIMIT;
+pub use names::find_name;
 pub use number::Number;
 pub use reasons::{NameFault, Unavailable};
 pub use scene::{Filmed, Scene};

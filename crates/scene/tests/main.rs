@@ -4,6 +4,7 @@ mod bytes;
 mod catalogue;
 mod errors;
 mod language;
+mod names;
 mod snapshots;
 mod start;
 mod start_equations;

@@ -3,6 +3,9 @@
 mod algebra;
 mod derivatives;
 mod evaluation;
+mod fractions;
+mod magnitudes;
+mod numbers;
 mod properties;
 mod ranges;
 mod saturation;

@@ -316,8 +316,8 @@ fn solve(
     }
 }
 
-/// Those of [`TOLERANCES`] that a floor allows, sharp ones first; the last one always.
-fn tolerances(floor: f64) -> impl Iterator<Item = f64> {
+/// Tolerances of runs that a floor ([`Case::floor`]) allows, sharp ones first; the last one always.
+pub fn tolerances(floor: f64) -> impl Iterator<Item = f64> {
     let is_allowed =
         move |tolerance: &f64| tolerance * TIGHTER >= FLOOR * floor || *tolerance == TOLERANCES[TOLERANCES.len() - 1];
     TOLERANCES.into_iter().filter(is_allowed)
@@ -325,7 +325,10 @@ fn tolerances(floor: f64) -> impl Iterator<Item = f64> {
 
 /// `10² ε κ` with the condition `κ` of the saddle-point matrix `[𝓛_vv Aᵀ; A 0]` at the start: data with
 /// round-off give accelerations, multipliers, costates to `ε κ`. Near dependence means `κ ∝ 1/angle²`.
-fn floor(system: &System, start: &State, multipliers: &[f64]) -> Result<f64, SolveError> {
+///
+/// # Errors
+/// [`SolveError`] where an entry has no value.
+pub fn floor(system: &System, start: &State, multipliers: &[f64]) -> Result<f64, SolveError> {
     let h = system.constraints.len();
     if h == 0 {
         return Ok(0.0);
@@ -361,6 +364,3 @@ fn finding(theorem: u8, claim: &'static str, gap: &Gap, floor: f64) -> Finding {
     };
     Finding { theorem, claim, word, figure: gap.largest, limit, note }
 }
-
-#[cfg(test)]
-mod tests;

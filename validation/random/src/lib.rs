@@ -21,7 +21,7 @@ mod record;
 mod transform;
 
 pub use build::{DURATION, REMOVAL};
-pub use bulk::{Batch, shrink};
+pub use bulk::{Batch, first_failures, shrink};
 pub use case::{Case, NEAREST, Removed, Which};
 pub use claims::{
     CHECKS, Check, DIVERGES, Divergence, NullTest, broken_null_test, integrals_put_in, make, null_test, theorem_title,
@@ -36,3 +36,9 @@ pub use kind::{Kind, Truth};
 pub use recipe::{LARGEST, MOST, Recipe, draw, draw_recipe, recipes, recipes_of};
 pub use record::{Count, Open, Record, Summary, THOROUGH, milliseconds};
 pub use transform::{Rewritten, Scaling, augmented, recombined};
+
+/// The judgements behind the claims: when measured figures hold, when they fail, and when they say nothing.
+pub mod judged {
+    pub use crate::case::{floor, tolerances};
+    pub use crate::claims::{denied, judge_growth, judge_rate, shows_two_terms, solution, visible};
+}

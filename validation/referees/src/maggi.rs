@@ -29,8 +29,6 @@ use symbolic::{Evaluator, Expr, Symbol};
 
 mod error;
 mod motion;
-#[cfg(test)]
-mod tests;
 
 pub use error::MaggiError;
 pub use motion::{Motion, START_LIMIT};

@@ -9,6 +9,7 @@ mod geometry;
 mod paper;
 mod stationarity;
 
+pub use action::{BUMPS, Jet, bump};
 pub use constants::{Constants, HORIZONS};
 pub use examples::{Example, cone, refusal};
 pub use paper::{Finding, Form, Line, Paper, Variant, Verdict, Which};

@@ -27,7 +27,7 @@ pub enum NotRun {
 const MARKS: [&str; 2] = ["CACHEDIR.TAG", ".rustc_info.json"];
 
 /// Where to keep what can be made again: cargo's target folder; for an installed program the user's cache.
-fn target() -> PathBuf {
+pub fn target() -> PathBuf {
     let program = std::env::current_exe().unwrap_or_default();
     let marked = |folder: &&Path| MARKS.iter().any(|mark| folder.join(mark).exists());
     let built = program.ancestors().find(marked).map(Path::to_path_buf);
@@ -35,7 +35,7 @@ fn target() -> PathBuf {
 }
 
 /// This program's folder in the user's cache (XDG base directories); without a home, among temporary files.
-fn cache(named: Option<PathBuf>, home: Option<PathBuf>) -> PathBuf {
+pub fn cache(named: Option<PathBuf>, home: Option<PathBuf>) -> PathBuf {
     let named = named.filter(|folder| folder.is_absolute());
     let folder = named.or(home.map(|home| home.join(".cache"))).unwrap_or_else(std::env::temp_dir);
     folder.join("deltaq")
@@ -82,23 +82,4 @@ pub(super) fn interpreter(requirements: &str) -> Result<PathBuf, NotRun> {
         moved.map_err(files("an environment"))?;
     }
     Ok(place.join(python))
-}
-
-#[cfg(test)]
-mod tests {
-    #[test]
-    fn the_target_folder_is_the_one_that_this_program_was_built_into() {
-        let (program, target) = (std::env::current_exe().unwrap(), super::target());
-        assert!(target.is_absolute() && program.starts_with(&target), "{} in {}", program.display(), target.display());
-    }
-
-    #[test]
-    fn an_installed_program_keeps_to_the_users_cache() {
-        let (named, home) = (std::env::temp_dir().join("cache"), std::env::temp_dir().join("me"));
-        let in_home = home.join(".cache").join("deltaq");
-        assert_eq!(super::cache(Some(named.clone()), Some(home.clone())), named.join("deltaq"));
-        assert_eq!(super::cache(None, Some(home.clone())), in_home);
-        assert_eq!(super::cache(Some("relative".into()), Some(home)), in_home, "not absolute");
-        assert!(super::cache(None, None).is_absolute());
-    }
 }

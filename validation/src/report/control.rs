@@ -6,17 +6,18 @@ use random::{FoundOut, Unjudged, Word, found_out, referee};
 use substitution::SUBSTITUTION;
 
 /// The control on one scene.
-pub(super) struct Control {
-    name: String,
+pub struct Control {
+    /// Name of the scene, as it is written on the page.
+    pub name: String,
     /// Whether the program calls it Chetaev's motion.
-    is_same: bool,
+    pub is_same: bool,
     /// What Maggi's equations say, if they could be asked.
-    found: Option<FoundOut>,
+    pub found: Option<FoundOut>,
 }
 
 impl Control {
     /// Where both Chetaev's and the control's motion are there.
-    pub(super) fn on(comparison: &Comparison) -> Option<Control> {
+    pub fn on(comparison: &Comparison) -> Option<Control> {
         let (chetaev, control) = (comparison.run(CHETAEV)?, comparison.run(&SUBSTITUTION)?);
         let gap = &comparison.pair(chetaev, control)?.gap;
         let judged = || -> Result<FoundOut, Unjudged> {
@@ -31,7 +32,7 @@ impl Control {
     }
 
     /// A word for the table.
-    pub(super) fn word(&self) -> &'static str {
+    pub fn word(&self) -> &'static str {
         let Some(found) = &self.found else { return "undecided" };
         match (found.word, found.flagged) {
             (Some(Word::Fails), true) => "flagged, though right",
@@ -47,7 +48,7 @@ const FLAGGED: &str = "flagged";
 const RIGHT: &str = "right here";
 
 /// The finding on all scenes.
-pub(super) fn sentence(controls: &[Control]) -> String {
+pub fn sentence(controls: &[Control]) -> String {
     let names = |wanted: &dyn Fn(&&Control) -> bool| {
         controls.iter().filter(wanted).map(|control| control.name.clone()).collect::<Vec<_>>()
     };
@@ -72,20 +73,4 @@ pub(super) fn sentence(controls: &[Control]) -> String {
         enumerate(&called(RIGHT)),
         short(residual)
     )
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn residuals_are_those_of_controls_that_are_right() {
-        let control = |name: &str, flagged: bool, residual: f64| {
-            let found = FoundOut { residual, flagged, word: Some(Word::Holds), note: String::new() };
-            Control { name: name.into(), is_same: !flagged, found: Some(found) }
-        };
-        let said = sentence(&[control("a", true, 0.3), control("b", false, 2e-14), control("c", false, 1e-15)]);
-        assert!(said.contains(" on 1 scene: flagged on 1. "), "{said}");
-        assert!(said.ends_with("called right on b and c, with a residual of at most 2.0e-14."), "{said}");
-    }
 }

@@ -18,18 +18,20 @@ const SCENES: [(&str, f64); 5] =
 const KAPPAS: [f64; 3] = [20.0, 80.0, 320.0];
 
 /// Distances of one scene at one `κ`.
-pub(super) struct Row {
-    scene: &'static str,
-    kappa: f64,
+pub struct Row {
+    /// Name of the scene.
+    pub scene: &'static str,
+    /// `κ`, 1/s.
+    pub kappa: f64,
     /// Of the family from Chetaev, of the family from the law, of slip from Chetaev.
-    distances: [f64; 3],
+    pub distances: [f64; 3],
 }
 
 /// All rows.
 ///
 /// # Errors
 /// Where a motion cannot be computed.
-pub(super) fn rows(quiet: bool) -> Result<Vec<Row>> {
+pub fn rows(quiet: bool) -> Result<Vec<Row>> {
     let asked: Vec<(&'static str, f64, f64)> =
         SCENES.iter().flat_map(|&(name, end)| KAPPAS.map(|kappa| (name, end, kappa))).collect();
     let words = |(name, _, kappa): &(&str, f64, f64)| format!("law of first order, `{name}`, {kappa} 1/s");
@@ -65,13 +67,14 @@ fn row(name: &'static str, end: f64, kappa: f64) -> Result<Row> {
 }
 
 /// Powers of ten of a distance over those of κ, from one `κ` to the next; none for the first of a scene.
-fn exponents(before: Option<&Row>, row: &Row) -> [String; 3] {
+pub fn exponents(before: Option<&Row>, row: &Row) -> [String; 3] {
     let Some(before) = before.filter(|before| before.scene == row.scene) else { return Default::default() };
     let rate = |i: usize| (before.distances[i] / row.distances[i]).ln() / (row.kappa / before.kappa).ln();
     [0, 1, 2].map(|i| if row.distances[i].is_finite() { format!("{:.2}", rate(i)) } else { String::new() })
 }
 
-pub(super) fn table(rows: &[Row]) -> Table {
+/// The table of these rows, with exponents.
+pub fn table(rows: &[Row]) -> Table {
     let columns = ["scene", ">$\\kappa$", ">Chetaev – family", ">as", ">law – family", ">as", ">Chetaev – slip", ">as"];
     let mut table = Table::new(columns);
     for (i, row) in rows.iter().enumerate() {
@@ -80,19 +83,4 @@ pub(super) fn table(rows: &[Row]) -> Table {
         table.cells([row.scene.to_string(), short(row.kappa)].into_iter().chain(cells));
     }
     table
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn exponents_are_of_distance_over_kappa_within_one_scene() {
-        let row = |scene, kappa, distances| Row { scene, kappa, distances };
-        let rows =
-            [row("a", 20.0, [4e-2, 1.6e-1, 1.0]), row("a", 80.0, [1e-2, 1e-2, f64::NAN]), row("b", 20.0, [1.0; 3])];
-        assert_eq!(exponents(Some(&rows[0]), &rows[1]), ["1.00", "2.00", ""]);
-        assert_eq!(exponents(Some(&rows[1]), &rows[2]), ["", "", ""]);
-        assert!(table(&rows).to_string().contains("| a | 80 | 0.01 | 1.00 | 0.01 | 2.00 |"));
-    }
 }

@@ -2,10 +2,10 @@
 
 mod audit_page;
 mod bicycle_page;
-mod control;
+pub mod control;
 mod differences;
 mod equivalence;
-mod law_rows;
+pub mod law_rows;
 mod literature;
 mod overview;
 mod random_page;
@@ -21,8 +21,8 @@ pub use differences::Compared;
 pub use equivalence::EquivalenceReport;
 pub use literature::LiteratureReport;
 pub use overview::overview;
-pub use random_page::{random_files, random_headline, random_verdicts};
-pub use realization_page::RealizationReport;
-pub use referees_section::referees_section;
+pub use random_page::{random_complaint, random_files, random_headline, random_verdicts, word as theorem_word};
+pub use realization_page::{ADDED_MASS, Approach, BOTH, FRICTION, RealizationReport};
+pub use referees_section::{CASADI, referees_section, without_referees};
 pub use scaling_page::{scaling_files, scaling_text};
 pub use stability_page::StabilityReport;

@@ -50,12 +50,18 @@ pub fn random_verdicts(batch: &Batch, records: &[Record]) -> Value {
     json!({ "seed": batch.seed, "systems": summary.systems, "theorems": theorems })
 }
 
-fn word(count: Count) -> &'static str {
+/// The word on a theorem with these verdicts: one in fifty may be undecided, and none may fail.
+pub fn word(count: Count) -> &'static str {
     match count.fails {
         0 if count.undecided as f64 <= UNDECIDED * count.total() as f64 => "holds",
         0 => "undecided",
         _ => "fails",
     }
+}
+
+/// What a command complains of where a claim fails.
+pub fn random_complaint(total: Count) -> Option<String> {
+    (total.fails > 0).then(|| format!("{} of {} verdicts on theorems: a claim fails", total.fails, total.total()))
 }
 
 fn label(theorem: u8) -> String {
@@ -273,22 +279,4 @@ fn exponents(summary: &Summary) -> Result<String> {
     let x = Axis { range: Some((LOWEST, LOWEST + WIDTH * BINS as f64)), ..Axis::linear("exponent of t") };
     let title = "Nonintegrable random systems: how the gap begins";
     Ok(Picture::panels(title, x, panels.collect(), 2).to_svg()?)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn one_in_fifty_verdicts_may_be_undecided_and_none_may_fail() {
-        for ([holds, fails, undecided], expected) in [
-            ([98, 0, 2], "holds"),
-            ([97, 0, 3], "undecided"),
-            ([99, 1, 0], "fails"),
-            ([0, 1, 99], "fails"),
-            ([0, 0, 0], "holds"),
-        ] {
-            assert_eq!(word(Count { holds, fails, undecided }), expected, "{holds}, {fails}, {undecided}");
-        }
-    }
 }

@@ -50,10 +50,13 @@ const STOPS: &str = "stops";
 
 /// What a realization tends to, and the distances from it.
 #[derive(Clone, Debug)]
-struct Approach {
-    name: &'static str,
-    style: Style,
-    distances: Vec<f64>,
+pub struct Approach {
+    /// The realization, and what it tends to.
+    pub name: &'static str,
+    /// How it is drawn.
+    pub style: Style,
+    /// Distances at strengths `N` of 10² to 10⁵; NaN where a run stopped early.
+    pub distances: Vec<f64>,
 }
 
 impl Approach {
@@ -63,7 +66,7 @@ impl Approach {
     }
 
     /// Why there is no rate, or how near it is to 1.
-    fn word(&self) -> &'static str {
+    pub fn word(&self) -> &'static str {
         match self.rate() {
             Some(rate) if RATE.contains(&rate) => "rate 1",
             Some(_) => "other rate",
@@ -81,14 +84,20 @@ impl Approach {
 
 /// What was found on realizations.
 pub struct RealizationReport {
-    scenes: Vec<(String, Vec<Approach>)>,
-    random: Vec<Vec<Approach>>,
-    law: Vec<law_rows::Row>,
+    /// Names of scenes with their realizations.
+    pub scenes: Vec<(String, Vec<Approach>)>,
+    /// Realizations of random systems.
+    pub random: Vec<Vec<Approach>>,
+    /// The family `kappa` beside the law of first order.
+    pub law: Vec<law_rows::Row>,
 }
 
-const FRICTION: &str = "friction, to Chetaev";
-const ADDED_MASS: &str = "added mass, to vakonomic";
-const BOTH: &str = "mass and friction, to κ = 0.5";
+/// Name of the realization by friction.
+pub const FRICTION: &str = "friction, to Chetaev";
+/// Name of the realization by added mass.
+pub const ADDED_MASS: &str = "added mass, to vakonomic";
+/// Name of the realization by both together.
+pub const BOTH: &str = "mass and friction, to κ = 0.5";
 const AUGMENTED: &str = "added mass on the augmented system, to removed constraint";
 
 impl RealizationReport {
@@ -110,7 +119,7 @@ impl RealizationReport {
 
     /// Rates of one realization on the random systems, sorted; how many are too close to tell, and how many
     /// stop.
-    fn random_rates(&self, name: &str) -> (Vec<f64>, [usize; 2]) {
+    pub fn random_rates(&self, name: &str) -> (Vec<f64>, [usize; 2]) {
         let all = self.random.iter().flatten().filter(|a| a.name == name);
         let mut rates: Vec<f64> = all.clone().filter_map(Approach::rate).collect();
         rates.sort_by(f64::total_cmp);
@@ -278,41 +287,4 @@ fn picture(name: &str, approaches: &[Approach]) -> Result<String> {
     let (x, y) = (Axis::log("strength N"), Axis::log("distance in the kinetic metric (m √kg)"));
     let curves = approaches.iter().map(curve).collect();
     Ok(Picture::new(format!("{name}: realizations"), x, y, curves).to_svg()?)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn rates_are_counted_where_they_can_be_told_and_by_how_near_they_are_to_1() {
-        // distances at N = 10³ and 10⁴
-        let approach = |name, [first, second]: [f64; 2]| Approach {
-            name,
-            style: Style::Chetaev,
-            distances: vec![10.0 * first, first, second, 0.1 * second],
-        };
-        let scenes = vec![("sledge".to_string(), vec![approach(FRICTION, [1e-3, 1e-4]), approach(BOTH, [1e-3, 1e-5])])];
-        let random = vec![
-            vec![approach(FRICTION, [1e-3, 1.1e-4]), approach(ADDED_MASS, [1e-7, 1e-8])],
-            vec![approach(FRICTION, [1e-3, 2e-4]), approach(ADDED_MASS, [1e-3, f64::NAN])],
-            vec![approach(ADDED_MASS, [f64::NAN, 1e-4]), approach(FRICTION, [1e-3, f64::NAN])],
-        ];
-        let report = RealizationReport { scenes, random, law: Vec::new() };
-        let headline = report.headline();
-        assert!(
-            headline.ends_with(": in 2 of 4 cases the distance falls as 1/N (measured exponents 0.699 to 2)."),
-            "{headline}"
-        );
-        assert_eq!(report.random_rates(ADDED_MASS), (Vec::new(), [1, 2]));
-        let words: Vec<&str> = report.random.iter().flatten().map(Approach::word).collect();
-        assert_eq!(words, ["rate 1", "too close to tell", "other rate", "stops", "stops", "stops"]);
-        let verdicts = report.verdicts();
-        let of = &verdicts["scenes"]["sledge"];
-        assert_eq!((of[FRICTION].as_str(), of[BOTH].as_str()), (Some("rate 1"), Some("other rate")));
-        assert_eq!(verdicts["random systems off rate 1"], 1);
-        let page = report.page();
-        assert!(page.contains("| friction, to Chetaev | 0.01 | 0.001 | 1.0e-4 | 1.0e-5 | 1 |"), "{page}");
-        assert!(page.contains("| friction, to Chetaev | 0.699 | 0.959 | 0.959 | 2 | 0 | 1 |"), "{page}");
-    }
 }

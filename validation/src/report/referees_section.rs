@@ -15,6 +15,9 @@ const SAME: f64 = 1e-8;
 /// A difference counts as none, too, under this multiple of the error estimates.
 const CERTAINTY: f64 = 10.0;
 
+/// The place in the reports that the overview's line about CasADi leads to.
+pub const CASADI: &str = "scenes/sledge.md#referees";
+
 /// The section, in Markdown; empty where there is nothing to say. Only bounds are printed, powers of ten, so
 /// that the page does not change with the last digit of a difference.
 ///
@@ -38,6 +41,13 @@ pub fn referees_section(comparison: &mut Comparison, casadi: Option<&Outcome>) -
     text += "\nRates are compared at random states near the start, each relative to the largest rate or multiplier of its instant; motions by coordinate, relative to \
              the way; the curves of stationary action come from the discretized action itself, without an equation of motion.\n";
     Ok(text)
+}
+
+/// A committed page without what referees say that are other programs: on pages of scenes their section is
+/// the last one, on the overview a line leads there.
+pub fn without_referees(page: &str) -> String {
+    let before = page.split("\n## Referees\n").next().unwrap_or(page);
+    before.lines().filter(|line| !line.contains(CASADI)).map(|line| format!("{line}\n")).collect()
 }
 
 /// Chetaev's motion by Maggi's equations, in the kinetic metric and relative to the way.

@@ -23,8 +23,10 @@ const DRAWN: [(&str, &str); 2] = [("viscous", "Newton, with friction"), ("added-
 
 /// Every method on some cases.
 pub struct StabilityReport {
-    cells: Vec<Cell>,
-    runs: Vec<LongRun>,
+    /// Answers to the questions of the cases.
+    pub cells: Vec<Cell>,
+    /// Runs of a million steps.
+    pub runs: Vec<LongRun>,
 }
 
 impl StabilityReport {
@@ -47,6 +49,12 @@ impl StabilityReport {
     pub fn count(&self, word: &str) -> usize {
         let verdicts = self.cells.iter().map(|cell| &cell.verdict).chain(self.runs.iter().map(|run| &run.verdict));
         verdicts.filter(|verdict| verdict.word() == word).count()
+    }
+
+    /// What a command complains of where an answer is wrong.
+    pub fn complaint(&self) -> Option<String> {
+        let (wrong, answers) = (self.count("wrong"), self.answers());
+        (wrong > 0).then(|| format!("{wrong} of {answers} cells are wrong"))
     }
 
     /// Every answer with its figures, a line each.
@@ -299,42 +307,4 @@ fn clause_of(cause: &str) -> &str {
 fn kind_of(cause: &str) -> String {
     let figure = |word: &&str| !word.starts_with(|c: char| c.is_ascii_digit());
     clause_of(cause).split(' ').filter(figure).collect::<Vec<_>>().join(" ")
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn every_answer_is_counted_once_by_its_word() {
-        let verdicts = [
-            Verdict::Accurate { error: 1e-9, estimate: 2e-9 },
-            Verdict::Accurate { error: 3e-9, estimate: 4e-9 },
-            Verdict::Accurate { error: 3e-9, estimate: 4e-9 },
-            Verdict::Admitted { error: 0.5, estimate: 0.25 },
-            Verdict::Admitted { error: 0.5, estimate: 0.25 },
-            Verdict::Refused { t: Some(0.75), cause: "a pole".into() },
-            Verdict::Wrong { error: 0.125, estimate: 1e-9, t: 0.5 },
-        ];
-        let cell = |verdict: Verdict| Cell {
-            case: CASES[0].name,
-            point: 1.0,
-            formulation: "Newton".into(),
-            method: Answering::Method(None),
-            verdict,
-            steps: 1,
-        };
-        let report = StabilityReport { cells: verdicts.map(cell).into(), runs: Vec::new() };
-        let headline = report.headline();
-        let counts = ": 3 accurate, 2 inaccurate and said so, 1 refused with time and cause, 1 wrong.";
-        assert!(headline.contains(", 7 answers of ") && headline.ends_with(counts), "{headline}");
-        assert_eq!(report.verdicts()["wrong"], 1);
-        let text = report.text();
-        for (word, count) in [("accurate", 3), ("admitted", 2), ("refused", 1), ("wrong", 1)] {
-            let lines = text.lines().filter(|line| line.split_whitespace().any(|w| w == word)).count();
-            assert_eq!((report.count(word), lines), (count, count), "{word}: {text}");
-        }
-        let last = text.lines().last().expect("lines");
-        assert!(last.ends_with("at t = 5.000e-1: error 1.2e-1, estimate 1.0e-9"), "{last}");
-    }
 }

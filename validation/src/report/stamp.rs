@@ -10,7 +10,7 @@ use anyhow::{Context, Result, bail};
 const BEGINS: &str = "Measured on ";
 
 /// Pages in the folder of reports, and the folders of sources that they speak of.
-const PAGES: [(&str, &[&str]); 10] = [
+pub const PAGES: [(&str, &[&str]); 10] = [
     ("films.md", &["crates/fit/src", "crates/vakonomic/src", "crates/chetaev/src"]),
     ("judge.md", &["validation/judge", "crates/judge/src", "crates/first-order/src"]),
     ("engine.md", &["validation/engine/src", "crates/chetaev/src", "crates/integrate/src", "crates/deltaq/src"]),
@@ -142,7 +142,7 @@ fn collect(folder: &Path, files: &mut Vec<PathBuf>) -> Result<()> {
 }
 
 /// The day of a time in seconds since 1970, by the calendar of Gregory: `2026-11-24`.
-fn date(seconds: u64) -> String {
+pub fn date(seconds: u64) -> String {
     let mut days = seconds / 86_400;
     let is_leap = |year: u64| year.is_multiple_of(4) && (!year.is_multiple_of(100) || year.is_multiple_of(400));
     let (mut year, mut month) = (1970, 1);
@@ -158,68 +158,4 @@ fn date(seconds: u64) -> String {
         month += 1;
     }
     format!("{year}-{month:02}-{:02}", days + 1)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn days_are_those_of_the_calendar() {
-        let known =
-            [(0, "1970-01-01"), (951_782_399, "2000-02-28"), (951_782_400, "2000-02-29"), (951_868_800, "2000-03-01")];
-        for (seconds, day) in known.into_iter().chain([(1_767_225_599, "2025-12-31"), (1_795_478_400, "2026-11-24")]) {
-            assert_eq!(date(seconds), day);
-        }
-    }
-
-    #[test]
-    fn a_page_is_older_as_soon_as_its_code_changes() {
-        let folder = tempfile::tempdir().expect("a folder");
-        let (root, reports) = (folder.path(), folder.path().join("reports"));
-        for (page, folders) in PAGES {
-            for source in folders {
-                fs::create_dir_all(root.join(source).join("deeper")).expect("a folder");
-                fs::write(root.join(source).join("deeper/a.rs"), source).expect("a file");
-            }
-            let page = reports.join(page);
-            fs::create_dir_all(page.parent().expect("a folder")).expect("a folder");
-            fs::write(page, "# A page\n\n1 of 3\n").expect("a page");
-        }
-        let said = |words: &str| -> Vec<String> {
-            let lines = ages(root, &reports).expect("read");
-            lines
-                .iter()
-                .filter(|line| line.contains(words))
-                .map(|line| line.split([' ', ',']).next().unwrap_or("").into())
-                .collect()
-        };
-        assert_eq!(said("does not say when").len(), PAGES.len());
-        for (page, _) in PAGES {
-            write(root, &reports, page).expect("written");
-        }
-        assert_eq!((said("older").len(), said("does not say").len()), (0, 0));
-        let all = PAGES.len();
-        assert!(ages(root, &reports).expect("read")[0].starts_with(&format!("{all} of {all} pages")));
-        // once more: the line is one
-        let page = reports.join("engine.md");
-        let before = fs::read_to_string(&page).expect("a page");
-        write(root, &reports, "engine.md").expect("written");
-        assert_eq!(fs::read_to_string(&page).expect("a page"), before);
-        assert!(before.starts_with("# A page\n\n1 of 3\n\nMeasured on 20"), "{before}");
-        // another text, a file more, a file of another name; what is no source does not count
-        let source = root.join("crates/symbolic/src");
-        let speaking = ["peers.md", "measured/error-vs-time.md", "measured/scaling.md", "measured/machine-code.md"];
-        fs::write(source.join("notes.txt"), "").expect("a file");
-        assert_eq!(said("is older"), Vec::<String>::new());
-        fs::write(source.join("deeper/a.rs"), "crates/symbolic/srd").expect("a file");
-        assert_eq!(said("is older"), speaking);
-        fs::write(source.join("deeper/a.rs"), "crates/symbolic/src").expect("a file");
-        assert_eq!(said("is older"), Vec::<String>::new());
-        fs::rename(source.join("deeper/a.rs"), source.join("a.rs")).expect("moved");
-        assert_eq!(said("is older"), speaking);
-        fs::write(root.join("crates/decision/src/b.rs"), "").expect("a file");
-        assert_eq!(said("is older").len(), 6);
-        assert!(write(root, &reports, "random.md").is_err_and(|error| error.to_string().contains("engine.md")));
-    }
 }

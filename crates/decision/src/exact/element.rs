@@ -38,7 +38,8 @@ impl Modular {
         Modular(field().one)
     }
 
-    pub(crate) fn prime() -> u64 {
+    /// The number `p` of elements of the field.
+    pub fn prime() -> u64 {
         field().prime
     }
 
@@ -47,7 +48,8 @@ impl Modular {
         self.0 == 0
     }
 
-    pub(crate) fn power(self, mut exponent: u64) -> Self {
+    /// `self^exponent`.
+    pub fn power(self, mut exponent: u64) -> Self {
         let (mut base, mut result) = (self, Self::one());
         while exponent > 0 {
             if exponent & 1 == 1 {
@@ -116,32 +118,5 @@ impl Mul for Modular {
     type Output = Self;
     fn mul(self, other: Self) -> Self {
         Modular(reduce(u128::from(self.0) * u128::from(other.0)))
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn multiples_of_rows_are_subtracted_one_as_the_other() {
-        let element = |i: u64| Modular::new(Modular::prime() - 1 - i * i);
-        let rows: Vec<Modular> = (0..19 * 5).map(element).collect();
-        let factors: Vec<Modular> = (0..19).map(|i| if i % 4 == 3 { Modular::ZERO } else { element(40 + i) }).collect();
-        let mut into: Vec<Modular> = (0..5).map(|j| Modular::new(3 * j)).collect();
-        let mut plain = into.clone();
-        for (factor, row) in factors.iter().zip(rows.chunks_exact(5)) {
-            plain.iter_mut().zip(row).for_each(|(x, y)| *x = *x - *factor * *y);
-        }
-        Modular::subtract_multiples(&mut into, &factors, &rows);
-        assert_eq!(into, plain);
-    }
-
-    #[test]
-    fn convolutions_are_sums_of_products() {
-        let a: Vec<Modular> = (0..19).map(|i| Modular::new(Modular::prime() - 1 - i)).collect();
-        let b: Vec<Modular> = (0..19).map(|i| Modular::new(Modular::prime() - 7 - i * i)).collect();
-        let plain = (0..19).fold(Modular::ZERO, |sum, i| sum + a[i] * b[18 - i]);
-        assert_eq!(Modular::convolution(&a, &b), plain);
     }
 }

@@ -209,7 +209,7 @@ impl<C: Coefficient, const N: usize> Sub for Jet<C, N> {
 impl<C: Coefficient, const N: usize> Mul for Jet<C, N> {
     type Output = Self;
     fn mul(self, other: Self) -> Self {
-        let exact = self.exact.zip(other.exact).and_then(|(a, b)| a.mul(b));
+        let exact = self.exact.zip(other.exact).and_then(|(a, b)| a.checked_mul(b));
         let mut product = self.combined(&other, self.terms + other.terms - 1, exact);
         // π in a constant would be lost where it meets a coefficient that varies
         let meets = |a: &Self, b: &Self| a.has_pi() && b.terms > 1;
@@ -228,7 +228,7 @@ impl<C: Coefficient, const N: usize> Mul for Jet<C, N> {
 impl<C: Coefficient, const N: usize> Div for Jet<C, N> {
     type Output = Self;
     fn div(self, other: Self) -> Self {
-        let exact = self.exact.zip(other.exact).and_then(|(a, b)| a.mul(b.recip()?));
+        let exact = self.exact.zip(other.exact).and_then(|(a, b)| a.checked_mul(b.recip()?));
         let constant = other.terms == 1;
         let mut quotient = self.combined(&other, if constant { self.terms } else { N }, exact);
         let Some(over) = other.coefficients[0].inverse() else {

@@ -19,8 +19,7 @@ pub use jet::{Jet, ORDERS};
 pub use linear::{Echelon, inverse, nullspace};
 pub(crate) use linear::{solve, subtract_product};
 pub(crate) use modular::TRIED;
-pub use rational::Exact;
-pub(crate) use rational::PARTS;
+pub use rational::{Exact, PARTS};
 
 /// Why a number has no image in the finite field.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]

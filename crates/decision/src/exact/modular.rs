@@ -91,17 +91,18 @@ impl Powers {
 
 impl Modular {
     /// The image of `e^{iπ turns/720720}`.
-    pub(crate) fn root_of_unity(turns: i64) -> Self {
+    pub fn root_of_unity(turns: i64) -> Self {
         kept().root.power(turns.rem_euclid(2 * PARTS) as u64)
     }
 
     /// `r` and the images of `e^i` and `e`.
-    pub(crate) fn exponents() -> (u64, u64, u64) {
+    pub fn exponents() -> (u64, u64, u64) {
         let circle = Self::new(field().circle);
         (field().order, circle.value(), circle.power(NEPER).value())
     }
 
-    fn integer(x: i128) -> Self {
+    /// The image of an integer.
+    pub fn integer(x: i128) -> Self {
         match i64::try_from(x) {
             Ok(x) if (0..KEPT as i64).contains(&x) => kept().whole[x as usize],
             Ok(x) if x < 0 => -Self::new(x.unsigned_abs()),
@@ -146,12 +147,18 @@ impl Modular {
     }
 
     /// `e^x`.
-    pub(crate) fn exponential(x: Exact) -> Result<Self, Flaw> {
+    ///
+    /// # Errors
+    /// [`Flaw::Pi`] for what is not rational; [`Flaw::Angle`] where the denominator is a multiple of `r`.
+    pub fn exponential(x: Exact) -> Result<Self, Flaw> {
         if x.is_rational() { Ok(kept().neper.power(Self::exponent(x)?)) } else { Err(Flaw::Pi) }
     }
 
     /// `(sin x, cos x)`.
-    pub(crate) fn sine_and_cosine(x: Exact) -> Result<(Self, Self), Flaw> {
+    ///
+    /// # Errors
+    /// [`Flaw::Angle`] where the denominator is a multiple of `r`.
+    pub fn sine_and_cosine(x: Exact) -> Result<(Self, Self), Flaw> {
         let (kept, exponent) = (kept(), Self::exponent(x)?);
         let forward = kept.circle.power(exponent) * Self::root_of_unity(x.turns);
         let backward = kept.circle.power(field().order - exponent) * Self::root_of_unity(-x.turns);
@@ -201,7 +208,10 @@ impl Modular {
     }
 
     /// `√x`, `x > 0` a fraction of squares and primes with roots here; roots of several are independent.
-    pub(crate) fn root(x: Exact) -> Result<(Self, Option<Exact>), Flaw> {
+    ///
+    /// # Errors
+    /// [`Flaw::Root`] for anything else.
+    pub fn root(x: Exact) -> Result<(Self, Option<Exact>), Flaw> {
         if !x.is_rational() || x.fraction.is_negative() {
             return Err(Flaw::Root);
         }
@@ -223,7 +233,7 @@ impl Modular {
             }
             while square_free % (prime * prime) == 0 {
                 square_free /= prime * prime;
-                outside = Exact::ratio(prime, 1).and_then(|p| outside.mul(p)).ok_or(Flaw::Root)?;
+                outside = Exact::ratio(prime, 1).and_then(|p| outside.checked_mul(p)).ok_or(Flaw::Root)?;
             }
             if square_free % prime == 0 {
                 square_free /= prime;
@@ -232,7 +242,7 @@ impl Modular {
         }
         let whole = (square_free as f64).sqrt().round() as i128;
         if whole.checked_mul(whole) == Some(square_free) {
-            outside = Exact::ratio(whole, 1).and_then(|w| outside.mul(w)).ok_or(Flaw::Root)?;
+            outside = Exact::ratio(whole, 1).and_then(|w| outside.checked_mul(w)).ok_or(Flaw::Root)?;
         } else if square_free < TRIED * TRIED {
             roots = roots * of_prime(square_free)?;
         } else {
@@ -240,53 +250,5 @@ impl Modular {
         }
         let value = Self::fraction(outside).ok_or(Flaw::Root)? * roots;
         Ok((value, (roots == Self::one()).then_some(outside)))
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn ratio(n: i128, d: i128) -> Exact {
-        Exact::ratio(n, d).unwrap()
-    }
-
-    #[test]
-    fn images_obey_the_laws_of_their_numbers() {
-        for field in &FIELDS {
-            in_field(field, laws);
-        }
-    }
-
-    fn laws() {
-        assert_eq!(Modular::root_of_unity(PARTS / 2).power(2), -Modular::one());
-        for exponent in [0, 1, 255, 256, 271_828, field().order - 1] {
-            let base = Modular::new(field().circle);
-            assert_eq!(kept().circle.power(exponent), base.power(exponent));
-            assert_eq!(kept().neper.power(exponent), base.power(NEPER).power(exponent));
-        }
-        assert_eq!(Modular::integer(-5) + Modular::integer(5), Modular::ZERO);
-        assert_eq!(Modular::integer(1 << 90), Modular::new(1 << 45) * Modular::new(1 << 45));
-        assert_eq!(Modular::root_of_unity(PARTS), -Modular::one());
-        let of_turns = |turns| Modular::sine_and_cosine(Exact { turns, ..Exact::ZERO }).unwrap();
-        let (sine, cosine) = Modular::sine_and_cosine(ratio(3, 10)).unwrap();
-        assert_eq!(sine * sine + cosine * cosine, Modular::one());
-        assert_eq!(Modular::sine_and_cosine(ratio(3, 5)).unwrap().0, Modular::new(2) * sine * cosine);
-        let root = |n, d| Modular::root(ratio(n, d)).unwrap().0;
-        // roots are those of the angles: sin 60° = √3/2, cos 45° = √2/2, 4 cos 36° = 1 + √5
-        assert_eq!(of_turns(PARTS / 3).0 * Modular::new(2), root(3, 1));
-        assert_eq!(of_turns(PARTS / 3).1 * Modular::new(2), Modular::one());
-        assert_eq!(of_turns(PARTS / 4).1 * Modular::new(2), root(2, 1));
-        assert_eq!(of_turns(PARTS / 5).1 * Modular::new(4), root(5, 1) + Modular::one());
-        // tan(3π/11) + 4 sin(2π/11) = √11
-        let (sine, cosine) = of_turns(3 * PARTS / 11);
-        assert_eq!(sine * cosine.inverse().unwrap() + Modular::new(4) * of_turns(2 * PARTS / 11).0, root(11, 1));
-        for square in [7, 13, 17, 47, 77, 94] {
-            assert_eq!(root(square, 1) * root(square, 1), Modular::integer(square));
-        }
-        assert_eq!(root(2, 1) * root(3, 1), root(6, 1));
-        assert_eq!(Modular::root(ratio(16, 25)).unwrap().1, Some(ratio(4, 5)));
-        let exponential = |n, d| Modular::exponential(ratio(n, d)).unwrap();
-        assert_eq!(exponential(1, 2) * exponential(1, 3), exponential(5, 6));
     }
 }

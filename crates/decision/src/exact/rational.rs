@@ -9,20 +9,24 @@ use super::Flaw;
 
 /// Multiples of `π/PARTS` are known: of `π/d` for every d up to 16, of degrees and of their halves and
 /// quarters.
-pub(crate) const PARTS: i64 = 720_720;
+pub const PARTS: i64 = 720_720;
 /// Number of digits from which a decimal may be a multiple of π in the digits of a double.
 const LONG: usize = 15;
 
 /// `fraction + turns · π/PARTS`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Exact {
-    pub(crate) fraction: Fraction,
-    pub(crate) turns: i64,
+    /// `a`.
+    pub fraction: Fraction,
+    /// `b`, in parts of which [`PARTS`] are 1.
+    pub turns: i64,
 }
 
 impl Exact {
-    pub(crate) const ZERO: Exact = Exact { fraction: Fraction::ZERO, turns: 0 };
-    pub(crate) const ONE: Exact = Exact { fraction: Fraction::ONE, turns: 0 };
+    /// 0.
+    pub const ZERO: Exact = Exact { fraction: Fraction::ZERO, turns: 0 };
+    /// 1.
+    pub const ONE: Exact = Exact { fraction: Fraction::ONE, turns: 0 };
     /// π/2.
     pub(crate) const QUARTER: Exact = Exact { turns: PARTS / 2, ..Exact::ZERO };
 
@@ -31,7 +35,8 @@ impl Exact {
         Fraction::new(numerator, denominator).map(Self::rational)
     }
 
-    pub(crate) fn rational(fraction: Fraction) -> Self {
+    /// A fraction, without π.
+    pub fn rational(fraction: Fraction) -> Self {
         Exact { fraction, turns: 0 }
     }
 
@@ -50,7 +55,7 @@ impl Exact {
     /// # Errors
     /// [`Flaw::Rounded`] for what is a multiple of π to all the digits of a double: neither that multiple nor
     /// these digits may be meant. [`Flaw::Number`] for what does not fit.
-    pub(crate) fn of(x: f64) -> Result<Self, Flaw> {
+    pub fn of(x: f64) -> Result<Self, Flaw> {
         let text = format!("{x:e}");
         let digits = text.split('e').next().unwrap_or_default().bytes().filter(u8::is_ascii_digit).count();
         if digits >= LONG
@@ -68,7 +73,7 @@ impl Exact {
     ///
     /// # Errors
     /// [`Flaw::Pi`] for what is no `a + b π` with moderate fractions, [`Flaw::Turn`] for too fine a `b`.
-    pub(crate) fn of_formula(x: Fraction) -> Result<Self, Flaw> {
+    pub fn of_formula(x: Fraction) -> Result<Self, Flaw> {
         let (above, below) = (i128::from(symbolic::PI.0), i128::from(symbolic::PI.1));
         let (n, d, twos, fives) = x.parts();
         if d % above == 0 {
@@ -125,7 +130,8 @@ impl Exact {
         Exact { fraction: self.fraction.minus(), turns: -self.turns }
     }
 
-    pub(crate) fn mul(self, other: Self) -> Option<Self> {
+    /// The product, where that is such a number and fits.
+    pub fn checked_mul(self, other: Self) -> Option<Self> {
         let (angle, factor) = if self.is_rational() { (other, self) } else { (self, other) };
         if !factor.is_rational() {
             return None;
@@ -135,7 +141,7 @@ impl Exact {
     }
 
     /// `None` for zero, and where π is in it.
-    pub(crate) fn recip(self) -> Option<Self> {
+    pub fn recip(self) -> Option<Self> {
         if self.is_rational() { self.fraction.recip().map(Self::rational) } else { None }
     }
 
@@ -176,32 +182,5 @@ impl fmt::Display for Exact {
             Some((n, d)) if n != 0 => write!(f, "{} + {n}*pi/{d}", self.fraction),
             _ => write!(f, "{}", self.fraction),
         }
-    }
-}
-
-#[cfg(test)]
-#[expect(clippy::approx_constant, reason = "decimals as a scene has them")]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn numbers_are_read_as_they_are_written() {
-        assert_eq!(Exact::of(0.05).ok(), Exact::ratio(1, 20));
-        assert_eq!(Exact::of(-1.5e3).ok(), Exact::ratio(-1500, 1));
-        assert_eq!(Exact::of(1.5707963267948966), Err(Flaw::Rounded));
-        assert_eq!(Exact::of(1.0471975511965976), Err(Flaw::Rounded));
-        assert_eq!(Exact::of(1.5708).ok().and_then(|x| x.recip()), Exact::ratio(2500, 3927));
-        let read = |text: &str| {
-            let g = symbolic::Graph::new();
-            Exact::of_formula(g.as_fraction(g.parse(text, &|_| None, &[]).unwrap()).unwrap())
-        };
-        assert_eq!(Exact::of(2.5e-60).map(|x| x.to_string()), Ok("1/(4*10^59)".into()));
-        let of = |n, d, turns| Ok(Exact { turns, ..Exact::ratio(n, d).unwrap() });
-        assert_eq!(read("30*pi/180"), of(0, 1, PARTS / 6));
-        assert_eq!(read("pi + 1/3"), of(1, 3, PARTS));
-        assert_eq!(read("0.2 - 7*pi/12"), of(1, 5, -7 * PARTS / 12));
-        assert_eq!(read("pi/17"), Err(Flaw::Turn));
-        assert_eq!(read("1/pi"), Err(Flaw::Pi));
-        assert_eq!(read("pi + 1/3").ok().and_then(|x| x.mul(Exact::ratio(1, 2)?)).map(|x| x.turns), Some(PARTS / 2));
     }
 }

@@ -30,10 +30,10 @@ const BISECTIONS: usize = 60;
 const SECTIONS: usize = 40;
 
 /// `∂q(t)/∂x`.
-pub(super) type Matrix<'a> = dyn FnMut(f64) -> Result<DMatrix<f64>, SolveError> + 'a;
+pub type Matrix<'a> = dyn FnMut(f64) -> Result<DMatrix<f64>, SolveError> + 'a;
 
 /// Times at which it is looked at.
-pub(super) fn samples(start: f64, end: f64, steps: &[f64]) -> Vec<f64> {
+pub fn samples(start: f64, end: f64, steps: &[f64]) -> Vec<f64> {
     let mut all: Vec<f64> = (1..=EQUIDISTANT).map(|i| start + (end - start) * i as f64 / EQUIDISTANT as f64).collect();
     for step in steps.windows(2).filter(|step| step[1] > step[0]) {
         all.extend((1..TO_A_STEP).map(|i| step[0] + (step[1] - step[0]) * i as f64 / TO_A_STEP as f64));
@@ -89,7 +89,10 @@ pub(super) fn condition(matrix: &DMatrix<f64>) -> f64 {
 }
 
 /// The times, each with its multiplicity, among `samples`; `None` where the matrix is singular at all.
-pub(super) fn times(matrix: &mut Matrix, samples: &[f64]) -> Result<Option<Vec<(f64, usize)>>, SolveError> {
+///
+/// # Errors
+/// Those of the matrix.
+pub fn times(matrix: &mut Matrix, samples: &[f64]) -> Result<Option<Vec<(f64, usize)>>, SolveError> {
     let mut looks = Vec::new();
     for &t in samples {
         if !looks.is_empty() || smallest(&normalized(matrix(t)?)) > BEGIN {
@@ -178,31 +181,4 @@ pub(super) fn with_errors(kept: &[(f64, usize)], looser: Option<&[(f64, usize)]>
         ConjugateTime { t, error, multiplicity }
     })
     .collect()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn found(matrix: impl Fn(f64) -> [f64; 4]) -> Vec<(f64, usize)> {
-        let mut at = |t: f64| Ok(DMatrix::from_row_slice(2, 2, &matrix(t)));
-        times(&mut at, &samples(0.0, 10.0, &[])).expect("no error").expect("regular somewhere")
-    }
-
-    #[test]
-    fn zeros_are_found_with_their_multiplicities() {
-        let pi = std::f64::consts::PI;
-        let near = |found: &[(f64, usize)], expected: &[(f64, usize)]| {
-            assert_eq!(found.len(), expected.len(), "{found:?}");
-            for (a, b) in found.iter().zip(expected) {
-                assert!((a.0 - b.0).abs() < 1e-7 && a.1 == b.1, "{found:?} for {expected:?}");
-            }
-        };
-        // two oscillators alike: the determinant sin² touches zero
-        near(&found(|t| [t.sin(), 0.0, 0.0, t.sin()]), &[(pi, 2), (2.0 * pi, 2), (3.0 * pi, 2)]);
-        near(&found(|t| [t.sin(), 0.0, 0.0, 1.0]), &[(pi, 1), (2.0 * pi, 1), (3.0 * pi, 1)]);
-        // two zeros between two samples, and a minimum that is none
-        near(&found(|t| [(t - 5.01) * (t - 5.02), 0.0, 0.0, 1.0]), &[(5.01, 1), (5.02, 1)]);
-        near(&found(|t| [(t - 5.013) * (t - 5.013) + 1e-4, 0.0, 0.0, 1.0]), &[]);
-    }
 }

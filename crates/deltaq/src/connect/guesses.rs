@@ -111,33 +111,10 @@ fn shifted(x: &[f64], units: &[f64], by: &[f64], half: f64, moved: usize) -> Vec
 }
 
 /// Point `k` of an additive recurrence in `[−1, 1]ᵈ`: multiples of the powers of `1/φ`, `φ^(d+1) = φ + 1`.
-fn spread(k: usize, d: usize) -> Vec<f64> {
+pub fn spread(k: usize, d: usize) -> Vec<f64> {
     let mut phi = 2.0_f64;
     for _ in 0..60 {
         phi = (1.0 + phi).powf(1.0 / (d + 1) as f64);
     }
     (1..=d).map(|j| 2.0 * (0.5 + k as f64 * phi.powi(-(j as i32))).fract() - 1.0).collect()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// In one dimension multiples of the golden ratio, in two of the powers of 1/1.3247…, `φ³ = φ + 1`.
-    #[test]
-    fn spread_points_lie_on_both_sides_of_the_middle() {
-        let golden = 0.5 * (1.0 + 5_f64.sqrt());
-        for k in 1..40 {
-            let one = spread(k, 1)[0];
-            let known = 2.0 * (0.5 + k as f64 / golden).fract() - 1.0;
-            assert!((one - known).abs() < 1e-12 && (-1.0..1.0).contains(&one), "{k}: {one} {known}");
-            let plastic = 1.324_717_957_244_746;
-            for (j, two) in spread(k, 2).into_iter().enumerate() {
-                let known = 2.0 * (0.5 + k as f64 / f64::powi(plastic, 1 + j as i32)).fract() - 1.0;
-                assert!((two - known).abs() < 1e-12, "{k}, {j}: {two} {known}");
-            }
-        }
-        let mean = (1..100).map(|k| spread(k, 1)[0]).sum::<f64>() / 99.0;
-        assert!(mean.abs() < 0.02, "{mean}");
-    }
 }

@@ -233,6 +233,24 @@ impl Residuals for Search<'_> {
     }
 }
 
+/// What a search from zero finds, and that in its own units; with derivatives that are carried, or without.
+///
+/// # Errors
+/// As of [`natural_constants`].
+pub fn searched(
+    prepared: &mut Prepared,
+    horizon: f64,
+    settings: &Settings,
+    setting: Setting,
+    carries: bool,
+) -> Result<(Shot, Vec<f64>), SolveError> {
+    let mut search = Search::new(prepared, horizon, settings, Some(setting), None)?;
+    search.carries = carries;
+    let shot = search.shoot()?;
+    let constants = search.in_units(&shot.unknowns);
+    Ok((shot, constants))
+}
+
 /// The states that are natural with the first constants: costates of memory variables.
 pub(crate) fn places(equations: &Equations, count: usize) -> Option<Vec<usize>> {
     let constants = equations.free_constants[..count].iter();
@@ -280,56 +298,4 @@ fn at_horizon(
         }
     }
     Ok(AtHorizon { ending, states, steps })
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::{Choice, REMOVED_CONSTRAINT, choices, derive_in_form, setting};
-    use mechanics::ConstantsRule;
-    use scene::Scene;
-
-    /// Runs that a search takes, those with derivatives among them, the constants, and seconds.
-    fn searched(scene: &Scene, choice: &Choice, horizon: f64, carries: bool) -> Option<([usize; 2], Vec<f64>, f64)> {
-        let settings = Settings::default();
-        let equations = derive_in_form(&scene.system, &scene.start, choice, settings.form).ok()?.0;
-        let mut prepared = Prepared::new(setting(scene), equations, &settings).ok()?;
-        if prepared.own_constants().is_empty() {
-            return None;
-        }
-        let clock = crate::clock::Clock::start();
-        let mut search = Search::new(&mut prepared, horizon, &settings, Some(setting(scene)), None).ok()?;
-        search.carries = carries;
-        let shot = search.shoot().ok()?;
-        assert_eq!(shot.exact, if carries { shot.iterations } else { 0 }, "{} {}", scene.name, choice.label);
-        Some(([shot.evaluations, shot.exact], search.in_units(&shot.unknowns), clock.seconds()))
-    }
-
-    /// `cargo test --release -p deltaq --lib natural:: -- --nocapture` prints the table.
-    #[test]
-    fn derivatives_that_are_carried_lead_to_the_same_constants_in_fewer_runs() {
-        let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../catalogue/scenes/");
-        println!("{:<55}{:>12}{:>22}{:>8}{:>6}", "runs", "differences", "carried (with them)", "ms", "ms");
-        let mut compared = 0;
-        for name in ["sledge", "bowl", "three-cylinders"] {
-            let text = std::fs::read_to_string(format!("{folder}{name}.toml")).expect("a scene");
-            let scene = Scene::parse(name, &text).unwrap_or_else(|error| panic!("{error}"));
-            let horizon = scene.start.t + scene.duration;
-            for choice in choices(&scene).into_iter().filter(|c| c.formulation == REMOVED_CONSTRAINT) {
-                let choice = Choice { constants: ConstantsRule::Natural { horizon }, ..choice };
-                let found = [false, true].map(|carries| searched(&scene, &choice, horizon, carries));
-                let [Some((before, old, slow)), Some((after, new, fast))] = found else { continue };
-                let label = format!("{name}, {}", choice.label);
-                let [slow, fast] = [slow, fast].map(|seconds| 1e3 * seconds);
-                let carried = format!("{} ({})", after[0] + after[1], after[1]);
-                println!("{label:<55}{:>12}{carried:>22}{slow:>8.1}{fast:>6.1}", before[0]);
-                for (a, b) in old.iter().zip(&new) {
-                    assert!((a - b).abs() < 1e-8 * (1.0 + a.abs()), "{label}: {old:?}, {new:?}");
-                }
-                assert!(after[0] + after[1] <= before[0], "{label}: {after:?} runs for {before:?}");
-                compared += 1;
-            }
-        }
-        assert!(compared >= 3);
-    }
 }

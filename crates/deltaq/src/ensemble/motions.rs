@@ -186,10 +186,10 @@ fn read_all(reader: &Reader, members: &[EnsembleMember], runs: &[Outcome], optio
 }
 
 /// Instants within the time of all members at which their constraints are looked at.
-const WATCHED: usize = 8;
+pub const WATCHED: usize = 8;
 
 /// The times asked for, in their order, and where an error is estimated, others between them.
-fn instants(members: &[EnsembleMember], times: &[f64], options: &EnsembleOptions) -> Vec<(f64, bool)> {
+pub fn instants(members: &[EnsembleMember], times: &[f64], options: &EnsembleOptions) -> Vec<(f64, bool)> {
     let mut instants: Vec<(f64, bool)> = times.iter().map(|&t| (t, true)).collect();
     let Some(first) = members.first().filter(|_| options.estimate) else { return instants };
     let direction = (first.end - first.t).signum();
@@ -202,40 +202,4 @@ fn instants(members: &[EnsembleMember], times: &[f64], options: &EnsembleOptions
         instants.sort_by(|a, b| (direction * a.0).total_cmp(&(direction * b.0)));
     }
     instants
-}
-
-#[cfg(test)]
-mod tests {
-    use mechanics::{ConstantsRule, State};
-
-    use super::super::EnsembleStart;
-    use super::*;
-
-    fn member(t: f64, end: f64) -> EnsembleMember {
-        let state = State { t, q: Vec::new(), v: Vec::new() };
-        let given = EnsembleStart { state, end, parameters: Vec::new(), constants: ConstantsRule::Zero };
-        EnsembleMember { t, end, y: Vec::new(), constants: Vec::new(), guess: Vec::new(), given }
-    }
-
-    /// From the last start to the first end: from 0.5 to 2, or back.
-    #[test]
-    fn constraints_are_looked_at_between_the_times_asked_for() {
-        let options = EnsembleOptions::default();
-        for (members, times) in
-            [([member(0.0, 2.0), member(0.5, 3.0)], [1.05, 1.6]), ([member(2.0, 0.0), member(3.0, 0.5)], [1.6, 1.05])]
-        {
-            let found = instants(&members, &times, &options);
-            let asked: Vec<f64> = found.iter().filter(|(_, asked)| *asked).map(|(t, _)| *t).collect();
-            assert_eq!(asked, times);
-            let back = times[0] > times[1];
-            for (i, (t, _)) in found.iter().filter(|(_, asked)| !asked).enumerate() {
-                let part = (i + 1) as f64 / (WATCHED + 1) as f64;
-                let known = if back { 2.0 - 1.5 * part } else { 0.5 + 1.5 * part };
-                assert!((t - known).abs() < 1e-14, "{i}: {t} {known}");
-            }
-            assert_eq!(found.len(), WATCHED + 2);
-            assert!(found.windows(2).all(|pair| (pair[0].0 < pair[1].0) != back), "{found:?}");
-            assert_eq!(instants(&members, &times, &EnsembleOptions { estimate: false, ..options }).len(), 2);
-        }
-    }
 }

@@ -25,7 +25,7 @@ impl Differences {
     }
 
     /// The minimum at this tolerance, with derivatives carried or by differences.
-    fn least(
+    pub fn least(
         &mut self,
         (tolerance, least_gain): (f64, f64),
         limits: &Settings,
@@ -88,55 +88,5 @@ impl Residuals for Squares<'_> {
             }
         }
         Ok(true)
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::{Choice, Metric, VAKONOMIC, choices, derive_in_form, setting, solve_choice};
-    use mechanics::ConstantsRule;
-    use scene::Scene;
-
-    /// `cargo test --release -p deltaq --lib squares:: -- --nocapture` prints the table.
-    #[test]
-    fn fits_with_derivatives_that_are_carried_end_at_the_same_constants_in_fewer_runs() {
-        let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../catalogue/scenes/");
-        println!(
-            "{:<20}{:>10}{:>14}{:>22}{:>8}{:>8}",
-            "fit of mu0", "constants", "differences", "carried (with them)", "ms", "ms"
-        );
-        for (name, goal) in [("heisenberg", &[0.7][..]), ("disc", &[0.3, -0.2]), ("trailer", &[0.4, 0.1])] {
-            let text = std::fs::read_to_string(format!("{folder}{name}.toml")).expect("a scene");
-            let mut scene = Scene::parse(name, &text).unwrap_or_else(|error| panic!("{error}"));
-            scene.duration = 2.0;
-            let vakonomic = choices(&scene).into_iter().find(|c| c.formulation == VAKONOMIC).expect("vakonomic");
-            let goal: Vec<f64> = (0..scene.multipliers.len()).map(|i| goal[i % goal.len()]).collect();
-            let given = Choice { constants: ConstantsRule::Given(goal.clone()), ..vakonomic.clone() };
-            let settings = Settings::default();
-            let mut target = solve_choice(&scene, &given, &settings).expect("a motion");
-            let equations =
-                derive_in_form(&scene.system, &scene.start, &vakonomic, settings.form).expect("equations").0;
-            let mut metric = Metric::new(&scene.system).expect("a metric");
-            let guess: Vec<f64> = goal.iter().map(|mu| mu * 0.6 + 0.05).collect();
-            let mut searched = |carries: bool| {
-                let differences =
-                    Differences::new(setting(&scene), &equations, &mut target, INSTANTS, &mut metric, &settings);
-                let mut differences = differences.expect("differences");
-                let clock = crate::clock::Clock::start();
-                let shot = differences.least((1e-13, 0.0), &settings, &guess, carries).expect("a fit");
-                (shot, 1e3 * clock.seconds())
-            };
-            let ((old, slow), (new, fast)) = (searched(false), searched(true));
-            let carried = format!("{} ({})", new.evaluations + new.exact, new.exact);
-            println!("{name:<20}{:>10}{:>14}{carried:>22}{slow:>8.1}{fast:>8.1}", goal.len(), old.evaluations);
-            assert_eq!((old.exact, new.exact), (0, new.iterations), "{name}");
-            assert!(new.evaluations + new.exact < old.evaluations, "{name}: {new:?}, {old:?}");
-            for shot in [&old, &new] {
-                for (found, mu) in shot.unknowns.iter().zip(&goal) {
-                    assert!((found - mu).abs() < 1e-8, "{name}: {shot:?} for {goal:?}");
-                }
-            }
-        }
     }
 }

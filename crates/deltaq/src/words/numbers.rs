@@ -40,19 +40,3 @@ pub fn enumerate(items: &[String]) -> String {
         [first @ .., last] => format!("{} and {last}", first.join(", ")),
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn short_numbers() {
-        let cases =
-            [(0.0, "0"), (0.12345, "0.123"), (12.0, "12"), (1.0e-7, "1.0e-7"), (-2.71328, "-2.71"), (2500.0, "2500")];
-        for (x, text) in cases {
-            assert_eq!(short(x), text);
-        }
-        assert_eq!(enumerate(&["a".into(), "b".into(), "c".into()]), "a, b and c");
-        assert_eq!([None, Some(0.12345)].map(or_dash), ["–", "0.123"]);
-    }
-}

@@ -16,3 +16,4 @@ mod pivots;
 mod search;
 
 pub use chosen::{Collected, Plan};
+pub use pivots::{Entry, Order, POINTS, Pattern, Strategy};

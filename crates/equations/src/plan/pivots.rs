@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use mechanics::elimination::{Pivot, SparseMatrix};
 
 /// Points at which pivots are tried: at the first none may be small, at the others it is better if none is.
-pub(crate) const POINTS: usize = 10;
+pub const POINTS: usize = 10;
 pub(crate) const NEAR: usize = 2;
 
 /// A pivot is no smaller than this part of the largest entry under it, …
@@ -24,16 +24,16 @@ const SMALL: usize = 4;
 
 /// An entry in numbers.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Entry {
+pub struct Entry {
     /// Its values at the points.
-    pub(crate) values: [f64; POINTS],
+    pub values: [f64; POINTS],
     /// Whether it is a number, parameters put in.
-    pub(crate) constant: bool,
+    pub constant: bool,
 }
 
 /// Strategy for the choice of the next pivot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Strategy {
+pub enum Strategy {
     /// On the diagonal; both sides of it stay the same.
     Symmetric,
     /// Anywhere.
@@ -44,15 +44,16 @@ pub(crate) enum Strategy {
 
 /// Pivots as (row, column), in order.
 #[derive(Clone, Debug)]
-pub(crate) struct Order {
-    pub(crate) pivots: Vec<(usize, usize)>,
+pub struct Order {
+    /// The pivots.
+    pub pivots: Vec<(usize, usize)>,
     /// Multiplications of elimination and back-substitution, about.
-    pub(crate) operations: usize,
+    pub operations: usize,
 }
 
 /// A sparse matrix in numbers, scaled.
 #[derive(Clone, Debug)]
-pub(crate) struct Pattern {
+pub struct Pattern {
     matrix: SparseMatrix<Entry>,
     /// Scale of each row at the first point, columns scaled before.
     pub(crate) row_scale: Vec<f64>,
@@ -60,7 +61,7 @@ pub(crate) struct Pattern {
 
 impl Pattern {
     /// Scales columns, then rows, to largest entries of 1, as the numerical solve does; `None` if impossible.
-    pub(crate) fn new(mut rows: Vec<BTreeMap<usize, Entry>>) -> Option<Self> {
+    pub fn new(mut rows: Vec<BTreeMap<usize, Entry>>) -> Option<Self> {
         let mut row_scale = Vec::new();
         for point in 0..POINTS {
             match scale(&mut rows, point) {
@@ -76,7 +77,7 @@ impl Pattern {
     /// Finds pivots one after the other by what they cost (Markowitz' count), among those that are not small.
     ///
     /// `None` where all that are left are small, or the elimination takes more than `most` operations.
-    pub(crate) fn order(&self, strategy: Strategy, unneeded: &[bool], most: usize) -> Option<Order> {
+    pub fn order(&self, strategy: Strategy, unneeded: &[bool], most: usize) -> Option<Order> {
         let n = self.matrix.rows().len();
         let mut matrix = self.matrix.clone();
         let mut order = Order { pivots: Vec::with_capacity(n), operations: 0 };
@@ -159,52 +160,5 @@ fn eliminate(matrix: &mut SparseMatrix<Entry>, p: usize, c: usize) {
             }
             entry.constant &= under.constant && right.constant && pivot.constant;
         }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn pattern(rows: &[&[f64]]) -> Option<Pattern> {
-        let entry = |&x: &f64| Entry { values: [x; POINTS], constant: true };
-        let row =
-            |row: &&[f64]| row.iter().enumerate().filter(|(_, x)| **x != 0.0).map(|(j, x)| (j, entry(x))).collect();
-        Pattern::new(rows.iter().map(row).collect())
-    }
-
-    #[test]
-    fn a_band_is_eliminated_in_so_many_operations_as_it_has_rows() {
-        let operations = |n: usize| {
-            let row = |i: usize| (0..n).map(move |j| [2.1, -1.0][i.abs_diff(j).min(1)] * f64::from(i.abs_diff(j) < 2));
-            let rows: Vec<Vec<f64>> = (0..n).map(|i| row(i).collect()).collect();
-            let rows: Vec<&[f64]> = rows.iter().map(Vec::as_slice).collect();
-            pattern(&rows).unwrap().order(Strategy::Symmetric, &vec![false; n], usize::MAX).unwrap().operations
-        };
-        assert_eq!(operations(40) - operations(30), operations(30) - operations(20));
-    }
-
-    #[test]
-    fn small_pivots_are_left_alone() {
-        let light = pattern(&[&[1e-9, 0.0, 1.0], &[0.0, 1.0, 1.0], &[1.0, 1.0, 0.0]]).unwrap();
-        for strategy in [Strategy::Symmetric, Strategy::Sparse] {
-            let found = light.order(strategy, &[false; 3], 1000).unwrap();
-            assert_ne!(found.pivots[0], (0, 0), "{strategy:?}");
-        }
-        let dependent = pattern(&[&[1.0, 2.0], &[0.5, 1.0]]).unwrap();
-        assert!(dependent.order(Strategy::Sparse, &[false; 2], 1000).is_none());
-        assert!(
-            pattern(&[&[1.0, 0.0], &[1.0, 0.0]])
-                .is_some_and(|p| p.order(Strategy::Sparse, &[false; 2], 1000).is_none())
-        );
-    }
-
-    #[test]
-    fn an_elimination_that_takes_too_long_is_given_up() {
-        let rows = [[3.0, 1.0, 1.0], [1.0, 3.0, 1.0], [1.0, 1.0, 3.0]];
-        let rows: Vec<&[f64]> = rows.iter().map(|r| &r[..]).collect();
-        let full = pattern(&rows).unwrap();
-        assert!(full.order(Strategy::Sparse, &[false; 3], 1000).is_some());
-        assert!(full.order(Strategy::Sparse, &[false; 3], 5).is_none());
     }
 }

@@ -142,37 +142,16 @@ pub(super) fn fit(case: &mut Case) -> Result<(), CheckError> {
 }
 
 /// The gap, over this duration, from which on the mismatch `least` has to be seen.
-fn visible(least: f64, duration: f64) -> f64 {
+pub fn visible(least: f64, duration: f64) -> f64 {
     SEEN * least * duration.powf(1.5)
 }
 
 /// A fit has to leave a gap, where one that is `visible` would be seen.
-fn denied(found: &mut Findings, after: &Gap, visible: f64, note: String) {
+pub fn denied(found: &mut Findings, after: &Gap, visible: f64, note: String) {
     let (claim, apart) = ("a fit does not find what the decision denies", after.certain_from.is_some());
     if apart || after.points.iter().all(|p| p.limit < visible) {
         found.require(9, claim, apart, note);
     } else {
         found.undecided(9, claim, "the motions are too close to tell");
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::{Word, draw_recipe};
-
-    /// A mismatch of 2 over a time of 4 makes a gap of 16; a thousandth of it has to be seen.
-    #[test]
-    fn a_fit_is_denied_where_a_thousandth_of_the_gap_would_be_seen() {
-        let mut case = Case::new(draw_recipe(1, 0, &[Kind::Linear]), "fits").unwrap_or_else(|e| panic!("{e}"));
-        let mut none = case.gap(Which::Chetaev, Which::Chetaev).expect("a gap");
-        for (part, close) in [(0.3, Word::Fails), (3.0, Word::Undecided)] {
-            none.points.iter_mut().for_each(|p| p.limit = part * 1.6e-2);
-            for (certain_from, word) in [(Some(1.0), Word::Holds), (None, close)] {
-                let (mut found, after) = (Findings::default(), Gap { certain_from, ..none.clone() });
-                denied(&mut found, &after, visible(2.0, 4.0), String::new());
-                assert_eq!(found.word(9), Some(word), "{part}, {certain_from:?}");
-            }
-        }
     }
 }

@@ -101,7 +101,10 @@ fn own_error(motion: &mut Motion, metric: &mut Metric) -> Result<f64, SolveError
 }
 
 /// The last two distances must be about ten apart; `measured` gives distance and own error at powers of ten.
-fn judge(
+///
+/// # Errors
+/// Those of `measured`.
+pub fn judge(
     case: &mut Case,
     claim: &'static str,
     what: &'static str,
@@ -157,9 +160,9 @@ fn judge(
 /// What two terms tell of the distance before those they are taken from; of `1/N²` they would tell 1.2 of it.
 const TOLD: std::ops::RangeInclusive<f64> = 0.85..=1.15;
 
-/// Whether the last of [`MORE`] distances are `|a/N + b/N²|`, and `a/N` the larger term at last. Where the
-/// two nearly cancel, as after a switch that is faster than `1/N`, a quotient is not ten yet.
-fn shows_two_terms(distances: &[f64]) -> bool {
+/// Whether the last of four distances, at powers of ten, are `|a/N + b/N²|`, and `a/N` the larger term at
+/// last. Where the two nearly cancel, as after a switch that is faster than `1/N`, a quotient is not ten yet.
+pub fn shows_two_terms(distances: &[f64]) -> bool {
     let [.., first, before, last] = distances[..] else { return false };
     // a + b at last, 10 a + 100 b before
     let with_sign = |sign: f64| {
@@ -169,65 +172,4 @@ fn shows_two_terms(distances: &[f64]) -> bool {
         a.abs() > b.abs() && TOLD.contains(&part)
     };
     distances.len() == MORE as usize && [1.0, -1.0].into_iter().any(with_sign)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::{Word, draw_recipe};
-
-    const N: f64 = 10.0;
-
-    /// What is said where distances at 10ⁿ are these, and motions are off by `own`; none where nothing is.
-    fn word(own: f64, distance: impl Fn(f64) -> f64) -> Option<Word> {
-        let mut case = Case::new(draw_recipe(1, 0, &[Kind::Free]), "rates").unwrap_or_else(|e| panic!("{e}"));
-        judge(&mut case, "a rate", "rates", |_, power| Ok([distance(N * power), own])).expect("distances");
-        case.found.word(8)
-    }
-
-    #[test]
-    fn a_distance_falls_at_last_by_seven_to_fourteen() {
-        for (rate, fails) in [(6.5, true), (7.5, false), (13.0, false), (15.5, true)] {
-            let found = word(0.0, |n| 1e-2 * f64::powf(n, -f64::log10(rate)));
-            assert_eq!(found, Some(if fails { Word::Fails } else { Word::Holds }), "{rate}");
-        }
-    }
-
-    #[test]
-    fn a_distance_near_its_own_error_or_hardly_to_be_seen_shows_no_rate() {
-        // of distances 10⁻¹, 10⁻², 1 the rate is wrong
-        for (own, said) in [(0.5e-3, Word::Fails), (2e-3, Word::Undecided)] {
-            assert_eq!(word(own, |n| if n > 500.0 { 1.0 } else { n.recip() }), Some(said), "{own}");
-        }
-        for (before, said) in [(0.5e-7, None), (2e-7, Some(Word::Fails))] {
-            assert_eq!(word(0.0, |n| if n > 500.0 { 1.0 } else { before }), said, "{before}");
-        }
-    }
-
-    #[test]
-    fn two_terms_tell_the_distance_before_to_a_seventh() {
-        for (off, shows) in [(0.8, false), (0.9, true), (1.1, true), (1.2, false)] {
-            // with b = −8 a, which cancels at the second of them
-            let distances: Vec<f64> =
-                (1..=MORE).map(|power| 10_f64.powi(power)).map(|n| 1.0 / n - 8.0 / (n * n)).collect();
-            let [_, first, before, last] = distances[..] else { panic!("{distances:?}") };
-            assert_eq!(shows_two_terms(&[1.0, first / off, before, last]), shows, "{off}");
-        }
-    }
-
-    #[test]
-    fn only_a_distance_that_falls_like_1_over_n_shows_two_terms() {
-        let of = |distance: &dyn Fn(f64) -> f64| -> Vec<f64> {
-            (1..=MORE).map(|power| distance(10_f64.powi(power)).abs()).collect()
-        };
-        // measured: random system 304 of seed 2223
-        assert!(shows_two_terms(&[7.39e-4, 6.73e-6, 1.190e-7, 1.923e-8]));
-        assert!(shows_two_terms(&of(&|n| 2e-4 / n - 8e-2 / (n * n))));
-        for distance in
-            [|_: f64| 1.0, |n: f64| n.powf(-0.5), |n: f64| n.powi(-2), |n: f64| 1.0 + 1.0 / n, |n: f64| n.powf(-1.4)]
-        {
-            assert!(!shows_two_terms(&of(&distance)), "{:?}", of(&distance));
-        }
-        assert!(!shows_two_terms(&of(&|n| 1.0 / n)[1..]));
-    }
 }

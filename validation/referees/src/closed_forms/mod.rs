@@ -1,11 +1,9 @@
 //! Motions in closed form, to measure solvers against.
 //!
 //! Nothing here calls a solver. Removable limits (a sledge without turn, a particle without drift) are
-//! reached without cancellation. Unit tests put each motion into its equations by central differences.
+//! reached without cancellation. Tests put each motion into its equations by central differences.
 
 mod points;
-#[cfg(test)]
-mod tests;
 
 pub use points::{Particle, Pendulum, jacobi};
 

@@ -21,7 +21,7 @@ use pages::{Headline, scene_files, verdicts};
 use program::{Answer, File, TextOrJson, parallel, pretty, write_all, write_own};
 use validation::casadi_job::{self, Outcome};
 use validation::kept_references;
-use validation::report::{overview, referees_section};
+use validation::report::{CASADI, overview, referees_section};
 
 /// A compared scene with its page and pictures.
 pub struct SceneReport {
@@ -45,9 +45,6 @@ const ENSEMBLE_REPEATS: usize = 2;
 
 /// The rank of the scenes among [`JOBS`]: they are first to answer.
 const SCENES_FIRST: usize = 0;
-
-/// The place in the reports that the overview's line about CasADi leads to.
-pub(crate) const CASADI: &str = "scenes/sledge.md#referees";
 
 /// The rank of the references that errors are taken against.
 const REFERENCES_THEN: usize = 1;

@@ -11,6 +11,7 @@ use crate::cli::RandomArguments;
 use program::Answer;
 use program::File;
 use random::{Batch, Count, Kind, Record, Summary, milliseconds, theorem_title};
+use validation::report::random_complaint;
 
 /// Puts random systems to the test.
 pub(crate) fn run(arguments: &RandomArguments, quiet: bool) -> Result<Answer> {
@@ -61,7 +62,7 @@ fn told(batch: &Batch, records: &[Record], seconds: Option<f64>, arguments: &Ran
     };
     let json = || json!({ "batch": batch, "summary": summary, "open": open, "counterexamples": paths });
     let text = arguments.output.answer("random", || Ok(files), text, json)?;
-    Ok(Answer { text, complaint: complaint(summary.total()) })
+    Ok(Answer { text, complaint: random_complaint(summary.total()) })
 }
 
 /// Where the time went.
@@ -87,11 +88,7 @@ fn one(batch: &Batch, index: u64, arguments: &RandomArguments) -> Result<Answer>
     };
     let json = || json!({ "batch": batch, "record": record, "scene": scene.to_toml() });
     let text = arguments.output.answer("random-system", || Ok(vec![file(&scene)]), text, json)?;
-    Ok(Answer { text, complaint: complaint(summary.total()) })
-}
-
-fn complaint(total: Count) -> Option<String> {
-    (total.fails > 0).then(|| format!("{} of {} verdicts on theorems: a claim fails", total.fails, total.total()))
+    Ok(Answer { text, complaint: random_complaint(summary.total()) })
 }
 
 /// `T5`; what must hold within each formulation has no theorem.
@@ -123,16 +120,4 @@ fn opened(name: &str, record: &Record) -> String {
 
 fn file(scene: &Scene) -> File {
     File { path: format!("{}.toml", scene.name).into(), text: scene.to_toml() }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_claim_that_fails_is_a_complaint_and_one_that_is_undecided_is_none() {
-        let count = |holds, fails, undecided| complaint(Count { holds, fails, undecided });
-        assert_eq!(count(3, 0, 2), None);
-        assert_eq!(count(3, 1, 2), Some("1 of 6 verdicts on theorems: a claim fails".into()));
-    }
 }

@@ -6,10 +6,10 @@ use anyhow::{Context, Result, bail};
 use clap::ValueEnum;
 use pages::difference_of_verdicts;
 use serde_json::Value;
-use validation::report::{Compared, stamp};
+use validation::report::{Compared, stamp, without_referees};
 
 use crate::cli::{ReportsArguments, Section};
-use crate::main_job::{CASADI, Results, sources};
+use crate::main_job::{Results, sources};
 use program::pretty;
 
 const MEND: &str = "`cargo run --release` writes the reports anew";
@@ -85,24 +85,4 @@ fn stamp(arguments: &ReportsArguments) -> Result<String> {
 /// Runs the command.
 pub(crate) fn run(arguments: &ReportsArguments) -> Result<String> {
     if arguments.check { check(arguments) } else { stamp(arguments) }
-}
-
-/// A committed page without what referees say that are other programs: on pages of scenes their section is
-/// the last one, on the overview a line leads there.
-fn without_referees(page: &str) -> String {
-    let before = page.split("\n## Referees\n").next().unwrap_or(page);
-    before.lines().filter(|line| !line.contains(CASADI)).map(|line| format!("{line}\n")).collect()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn only_what_referees_say_is_left_out() {
-        let page = "# Scene\n\nWith sliders, here.\n";
-        assert_eq!(without_referees(&format!("{page}\n## Referees\n\n| CasADi |\n")), page);
-        let overview = "- A line. [More](a.md).\n- Referees. [More](scenes/sledge.md#referees).\n- B.\n";
-        assert_eq!(without_referees(overview), "- A line. [More](a.md).\n- B.\n");
-    }
 }

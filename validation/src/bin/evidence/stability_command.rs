@@ -19,23 +19,8 @@ pub(crate) fn run(arguments: &StabilityArguments, quiet: bool) -> Result<Answer>
     let chosen = |name: &str| arguments.cases.is_empty() || arguments.cases.iter().any(|asked| asked == name);
     let clock = Instant::now();
     let report = StabilityReport::new(chosen, quiet)?;
-    let (answers, wrong, seconds) = (report.answers(), report.count("wrong"), clock.elapsed().as_secs_f64());
+    let (answers, seconds) = (report.answers(), clock.elapsed().as_secs_f64());
     let text = || report.text() + &format!("\n{answers} cells, {seconds:.1} s\n");
     let text = arguments.output.answer("stability", || report.files(), text, || json!({ "cells": report.json() }))?;
-    Ok(Answer { text, complaint: complaint(wrong, answers) })
-}
-
-fn complaint(wrong: usize, answers: usize) -> Option<String> {
-    (wrong > 0).then(|| format!("{wrong} of {answers} cells are wrong"))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::complaint;
-
-    #[test]
-    fn a_wrong_cell_is_a_complaint() {
-        assert_eq!(complaint(0, 7), None);
-        assert_eq!(complaint(2, 7), Some("2 of 7 cells are wrong".into()));
-    }
+    Ok(Answer { text, complaint: report.complaint() })
 }

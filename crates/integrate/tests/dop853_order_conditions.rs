@@ -3,7 +3,8 @@
 //! For a rooted tree τ, `Φ_i(τ) = Π_children Σ_j a_ij Φ_j(child)` and `γ(τ) = |τ| Π γ(child)`. Order p means
 //! `Σ_i b_i Φ_i(τ) = 1/γ(τ)` for all |τ| ≤ p; in a dense output, `Σ_i b_i(θ) Φ_i(τ) = θ^|τ|/γ(τ)`.
 
-use crate::dop853_tableau::*;
+use integrate::dense::{Basis, evaluate_segment};
+use integrate::dop853_tableau::*;
 
 struct Tree {
     size: usize,
@@ -144,7 +145,7 @@ fn the_dense_output_has_order_seven_and_no_more() {
             }
         }
         let mut b = [0.0; STAGES];
-        crate::dense::evaluate_segment(crate::dense::Basis::Nested, &coefficients, theta, &mut b);
+        evaluate_segment(Basis::Nested, &coefficients, theta, &mut b);
         for size in 1..=7 {
             let violation = violation(&trees, size, &b, theta);
             assert!(violation < 1e-13, "θ = {theta}, trees of size {size}: {violation:e}");

@@ -1,6 +1,6 @@
 //! Every motion put into its equations of motion by central differences.
 
-use super::*;
+use referees::closed_forms::*;
 
 /// First derivative by an eight-point central difference, error `O(h⁸)`.
 fn derivative<const N: usize>(f: impl Fn(f64) -> [f64; N], t: f64) -> [f64; N] {

@@ -1,9 +1,9 @@
 //! Limits that all claims share.
 
-use deltaq::{choices, compare_motions, solve_choice};
-
-use super::*;
-use crate::{Kind, draw_recipe};
+use deltaq::{Metric, Settings, choices, compare_motions, solve_choice};
+use random::judged::{floor, tolerances};
+use random::{Case, Kind, Removed, Word, draw_recipe};
+use scene::Scene;
 
 /// A particle whose `y` is held, under a push.
 fn particle(push: f64) -> Scene {
@@ -53,8 +53,10 @@ fn gaps_count_over_the_floor_only() {
     });
     let mut metric = Metric::new(&particle(0.0).system).expect("a metric");
     let gap = compare_motions(&mut one, &mut other, &mut metric).expect("a gap");
+    let mut case = Case::new(draw_recipe(1, 0, &[Kind::Free]), "gaps").unwrap_or_else(|e| panic!("{e}"));
     for (floor, word) in [(0.0, Word::Fails), (0.5e-6, Word::Fails), (2e-6, Word::Holds)] {
-        let found = finding(1, "same", &gap, floor);
+        case.note(1, "same", &gap, floor);
+        let found = case.found.findings.last().expect("a finding");
         assert_eq!(found.word, word, "{floor:e}: {found:?}");
         assert!((found.figure - 1e-6).abs() < 1e-10, "{found:?}");
     }

@@ -1,18 +1,16 @@
 //! Members against single runs of scenes that are derived and compiled for themselves.
 
+use deltaq::{
+    CHETAEV, Choice, Ending, Ensemble, EnsembleMember, EnsembleOptions, EnsembleStart, MemberRun, REMOVED_CONSTRAINT,
+    Settings, SolveError, VAKONOMIC, choices, constants_of, solve_choice,
+};
 use equations::Formulation;
+use integrate::Method;
 use mechanics::ConstantsRule;
 use scene::Scene;
 use symbolic::LANES;
 
-use super::{Ensemble, EnsembleMember, EnsembleOptions, EnsembleStart};
-use crate::{
-    CHETAEV, Choice, Ending, MemberRun, REMOVED_CONSTRAINT, Settings, SolveError, VAKONOMIC, choices, constants_of,
-    solve_choice,
-};
-use integrate::Method;
-
-const SLEDGE: &str = include_str!("../../../catalogue/scenes/sledge.toml");
+const SLEDGE: &str = include_str!("../../catalogue/scenes/sledge.toml");
 
 /// Two states, the first unbounded at `t = 1 / u₀`: `x' = u`, `u' = b u²` by a force of its own.
 const BLOW_UP: &str = r#"
@@ -77,9 +75,13 @@ fn run(ensemble: &Ensemble, members: &[EnsembleMember], times: &[f64], threads: 
 fn ready(scenes: &[Scene], formulation: &Formulation, parameters: &[&str]) -> (Ensemble, Vec<EnsembleMember>) {
     let choice = choice(&scenes[0], formulation);
     let mut ensemble = Ensemble::new(&scenes[0], &choice, parameters, &settings()).unwrap();
-    let start = |scene| EnsembleStart::of(scene, parameters, constants_of(&choice, scene));
+    let start = |scene| start_of(scene, &choice, parameters);
     let members = scenes.iter().map(|scene| ensemble.member_at(&start(scene)).unwrap()).collect();
     (ensemble, members)
+}
+
+fn start_of(scene: &Scene, choice: &Choice, parameters: &[&str]) -> EnsembleStart {
+    EnsembleStart::of(scene, parameters, constants_of(choice, scene))
 }
 
 #[test]
@@ -191,9 +193,13 @@ fn members_that_fail_at_the_start_do_not_disturb_the_others() {
     let times = [0.7];
     let expected = run(&ensemble, &members, &times, 1);
     // a start that is no number, and one without a length
-    let broken = |member: &EnsembleMember, i: usize| match i % 2 {
-        0 => EnsembleMember { y: member.y.iter().map(|_| f64::NAN).collect(), ..member.clone() },
-        _ => EnsembleMember { end: member.t, ..member.clone() },
+    let vakonomic = choice(&scenes[0], VAKONOMIC);
+    let mut broken = |member: &EnsembleMember, i: usize| match i % 2 {
+        0 => member.clone().starting_at(vec![f64::NAN; member.start().len()]),
+        _ => {
+            let start = start_of(&scenes[i], &vakonomic, &["alpha", "k"]);
+            ensemble.member_at(&EnsembleStart { end: start.state.t, ..start }).unwrap()
+        }
     };
     let mut order = Vec::new();
     for (i, member) in members.split_off(0).into_iter().enumerate() {
@@ -233,7 +239,7 @@ fn starts_and_natural_constants_do_not_depend_on_threads_and_order() {
         assert_eq!(ensemble.member(row).unwrap(), *member);
     }
     // P_x = g sin α (T − t), of the scene's own slope: parameters are those of the ensemble
-    let natural = members.iter().map(|member| member.constants[0] - 9.81 * 0.4_f64.sin() * 10.0);
+    let natural = members.iter().map(|member| member.constants()[0] - 9.81 * 0.4_f64.sin() * 10.0);
     assert!(natural.fold(0.0, |a: f64, x| a.max(x.abs())) < 1e-8);
     let started = vec![Ok(members[0].clone()), Err("no start".into())];
     let refused = ensemble.answers(started, &[0.5], &EnsembleOptions::default());

@@ -1,6 +1,6 @@
 //! Whole pictures.
 
-use super::*;
+use picture::{Axis, Curve, Panel, Picture, PictureError, Scale, Style};
 
 fn curve(style: Style, points: impl IntoIterator<Item = (f64, f64)>) -> Curve {
     Curve { label: format!("{style:?}"), style, points: points.into_iter().collect() }
@@ -161,7 +161,8 @@ fn nothing_to_draw_is_an_error() {
         let error = picture(vec![curve(Style::Chetaev, points)]).to_svg().unwrap_err();
         assert!(matches!(error, PictureError::NothingToDraw { .. }), "{error}");
     }
-    let log = Picture { x: Axis::log("t (s)"), ..picture(vec![curve(Style::Chetaev, [(0.0, 1.0), (-1.0, 1.0)])]) };
+    let points = vec![curve(Style::Chetaev, [(0.0, 1.0), (-1.0, 1.0)])];
+    let log = Picture::new("Knife edge", Axis::log("t (s)"), Axis::linear("x (m)"), points);
     match log.to_svg().unwrap_err() {
         PictureError::NothingToDraw { not_positive, not_finite, axis, .. } => {
             assert_eq!((not_positive, not_finite, axis.as_str()), (2, 0, "t (s)"));
@@ -174,13 +175,14 @@ fn nothing_to_draw_is_an_error() {
 
 #[test]
 fn given_ranges_stand_in_for_points() {
-    let mut empty = picture(vec![]);
-    empty.x.range = Some((0.0, 10.0));
-    empty.panels[0].y.range = Some((-1.0, 1.0));
-    let texts = texts(&empty.to_svg().unwrap());
+    let empty = |ends: (f64, f64)| {
+        let x = Axis { range: Some((0.0, 10.0)), ..Axis::linear("t (s)") };
+        let y = Axis { range: Some(ends), ..Axis::linear("x (m)") };
+        Picture::new("Knife edge", x, y, vec![])
+    };
+    let texts = texts(&empty((-1.0, 1.0)).to_svg().unwrap());
     assert!(has(&texts, "10") && has(&texts, "−1.0"), "{texts:?}");
-    empty.panels[0].y.range = Some((1.0, -1.0));
-    assert!(matches!(empty.to_svg(), Err(PictureError::Range { .. })));
+    assert!(matches!(empty((1.0, -1.0)).to_svg(), Err(PictureError::Range { .. })));
 }
 
 #[test]

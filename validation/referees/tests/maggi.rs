@@ -2,13 +2,12 @@
 
 use integrate::Status;
 use mechanics::{State, System};
+use referees::closed_forms::{Sledge, SledgeState};
+use referees::maggi::{Maggi, MaggiError, Residual};
 use scene::Scene;
 
-use super::{Maggi, MaggiError, Residual, dot};
-use crate::closed_forms::{Sledge, SledgeState};
-
-const SLEDGE: &str = include_str!("../../../../crates/catalogue/scenes/sledge.toml");
-const APPELL_HAMEL: &str = include_str!("../../../../crates/catalogue/scenes/appell-hamel.toml");
+const SLEDGE: &str = include_str!("../../../crates/catalogue/scenes/sledge.toml");
+const APPELL_HAMEL: &str = include_str!("../../../crates/catalogue/scenes/appell-hamel.toml");
 
 /// Everything at once: a mass matrix that depends on the configuration, a gyroscopic term, time in L and in
 /// f, a force, two affine constraints.
@@ -143,6 +142,10 @@ fn general_accelerations_are_least_constrained() {
         let seen = maggi.residual(t, &q, &v, &wrong).unwrap();
         assert!(seen.constraint < 1e-15 && seen.dynamics > 1e-6, "point {k}: {seen:?}");
     }
+}
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
 fn length_of(a: &[f64]) -> f64 {

@@ -1,10 +1,9 @@
 //! Tests of every error, and of properties that the order does not show.
 
+use discrete::{Discrete, DiscreteError, RemovedStart, START_LIMIT};
 use mechanics::{State, System};
 use scene::Scene;
 use symbolic::Graph;
-
-use super::*;
 
 pub(crate) fn scene(name: &str) -> Scene {
     let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../crates/catalogue/scenes");

@@ -1,0 +1,5 @@
+//! Discrete motions: one program, one module per subject.
+
+mod compositions;
+mod refusals;
+mod structure;

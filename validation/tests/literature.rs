@@ -1,0 +1,48 @@
+//! Published claims: the page and its data.
+
+use validation::report::LiteratureReport;
+
+#[test]
+fn every_claim_has_the_word_that_its_data_expect_and_the_headline_counts_the_table() {
+    let report = LiteratureReport::new(true).unwrap_or_else(|e| panic!("{e:#}"));
+    let page = report.files().remove(0).text;
+    let rows: Vec<&str> = page.lines().filter(|line| line.starts_with("| ") && line.ends_with("** |")).collect();
+    let count = |word: &str| rows.iter().filter(|row| row.ends_with(&format!("| **{word}** |"))).count();
+    let [confirmed, qualified, contradicted, refuted, open] =
+        ["confirmed", "qualified", "contradicted", "refuted", "open"].map(count);
+    assert_eq!(confirmed + qualified + contradicted + refuted + open, rows.len());
+    let expected = format!(
+        "Of {} published claims, as abstracts or memory have them, {confirmed} are confirmed on the scenes here, {qualified} hold under a \
+         condition, {contradicted} are contradicted in the reading given here, {refuted} are refuted, {open} are open.",
+        rows.len()
+    );
+    assert_eq!(report.headline(), expected);
+}
+
+#[test]
+fn the_word_follows_from_what_was_found() {
+    let claim = |word: &str, more: &str| {
+        let head = "[[claim]]\nsource = ''\nread = ''\nabout = ''\nsays = ''\n";
+        let data = format!("{head}word = '{word}'\n{more}");
+        LiteratureReport::of(&data, true).map(|_| ()).map_err(|e| e.to_string())
+    };
+    let case = |scene: &str, claimed: &str, outside: bool| {
+        format!("[[claim.case]]\nscene = '{scene}'\nclaimed = '{claimed}'\noutside = {outside}\n")
+    };
+    let mixed = case("disc", "some", false) + &case("sledge", "some", true);
+    assert_eq!(claim("open", ""), Ok(()));
+    assert_eq!(claim("confirmed", &case("disc", "one", false)), Ok(()));
+    assert_eq!(claim("contradicted", &case("sledge", "some", false)), Ok(()));
+    assert_eq!(claim("contradicted", &mixed), Ok(()));
+    assert_eq!(claim("refuted", &format!("in_full = true\n{mixed}")), Ok(()));
+    assert_eq!(claim("qualified", &format!("condition = ''\n{mixed}")), Ok(()));
+    let told = claim("confirmed", &mixed).expect_err("a word that does not follow");
+    assert!(told.contains("it is contradicted"), "{told}");
+    let along = "along = { formulation = 'vakonomik', quantity = 'x', during = [0, 1], between = [0, 1] }\n";
+    let data = format!(
+        "[[claim]]\nsource = ''\nread = ''\nabout = ''\nsays = ''\nword = 'open'\n{}{along}",
+        case("disc", "yes", false)
+    );
+    let told = LiteratureReport::of(&data, true).err().map(|error| format!("{error:#}")).expect("no such formulation");
+    assert!(told.contains("`vakonomik`, did you mean `vakonomic`?"), "{told}");
+}
