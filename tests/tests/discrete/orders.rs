@@ -8,7 +8,7 @@ use discrete::Composition;
 use equations::Formulation;
 use mechanics::ConstantsRule;
 use scene::Scene;
-use validation::scaling::exponent;
+use bench::exponent;
 
 /// Errors under this times the size of the motion are round-off; over [`COARSE`] they tell no order yet.
 const PLATEAU: f64 = 2e-13;
