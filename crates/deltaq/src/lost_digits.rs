@@ -30,7 +30,7 @@ pub type Rates<'a> = dyn FnMut(f64, &[f64], &mut [f64]) -> bool + 'a;
 pub enum RoundOff {
     /// No more than the difference of the runs, or than the rounding of numbers.
     Small,
-    /// To be put into the rates: `d` and `η` of [`crate::disturbed::disturbed`].
+    /// To be put into the rates: `d` and `η` of `disturbed`.
     Counts(Vec<f64>),
     /// Too large for any error estimate.
     Doubted(Doubt),

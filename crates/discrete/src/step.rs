@@ -110,7 +110,7 @@ impl Node {
     }
 }
 
-/// A compiled [`Principle`].
+/// A compiled `Principle`.
 #[derive(Clone, Debug)]
 pub struct Step {
     /// Length of `x`.

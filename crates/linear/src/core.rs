@@ -13,8 +13,8 @@ const ITERATIONS: usize = 200;
 const TURNS: usize = 5;
 
 /// A block without its null space, and its eigenvalues.
-pub(crate) struct Core {
-    pub(crate) values: Vec<Complex<f64>>,
+pub struct Core {
+    pub values: Vec<Complex<f64>>,
     /// How far arithmetic lets entries of the block be off.
     pub(crate) arithmetic: DMatrix<f64>,
     /// Without the null space, balanced, and how far its entries are off.
@@ -24,7 +24,7 @@ pub(crate) struct Core {
 
 impl Core {
     /// `None` where the QR algorithm does not converge.
-    pub(crate) fn of(block: DMatrix<f64>, noise: DMatrix<f64>) -> Option<Core> {
+    pub fn of(block: DMatrix<f64>, noise: DMatrix<f64>) -> Option<Core> {
         let n = block.nrows();
         if n == 1 {
             // one number is what it is

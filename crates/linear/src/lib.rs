@@ -49,7 +49,8 @@
 //! **What it refuses.** A start that is not steady, with the state that moves, its rate and the limit
 //! ([`LinearError`]). It knows no formulation: a new one is linearized without a line here.
 
-mod core;
+#[doc(hidden)]
+pub mod core;
 mod discs;
 mod error;
 mod find;

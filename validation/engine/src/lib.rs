@@ -25,5 +25,5 @@ pub use error::EngineError;
 pub use page::files;
 pub use pose::{EulerAngles, Pose};
 pub use setup::{Ball, Mapping, Setup, Surface};
-pub use study::{FAR, Finding, Ladder, Level, NEAR, ORDER, SAMPLES, Study, Target};
+pub use study::{FAR, Finding, Ladder, Level, NEAR, ORDER, SAMPLES, Study, Target, order};
 pub use world::{Contacts, Run, Trajectory};

@@ -244,18 +244,7 @@ impl Finding {
 }
 
 /// Slope of `ln distance` over `ln dt`, first target; NaN for fewer than three levels.
-fn order(levels: &[Level]) -> f64 {
+pub fn order(levels: &[Level]) -> f64 {
     let points: Vec<(f64, f64)> = levels.iter().map(|level| (level.dt, level.distances[0])).collect();
     exponent(&points).map_or(f64::NAN, |fit| fit.value)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_order_of_a_power_is_its_exponent() {
-        let level = |dt: f64| Level { dt, distances: vec![3.0 * dt.powf(1.5)], extrapolated: None, off_surface: 0.0 };
-        assert!((order(&[level(0.1), level(0.05), level(0.01)]) - 1.5).abs() < 1e-12);
-    }
 }

@@ -236,7 +236,7 @@ impl Residuals for Search<'_> {
 /// What a search from zero finds, and that in its own units; with derivatives that are carried, or without.
 ///
 /// # Errors
-/// As of [`natural_constants`].
+/// A horizon before the start, no natural condition, and what a search ends with.
 pub fn searched(
     prepared: &mut Prepared,
     horizon: f64,
