@@ -4,7 +4,7 @@ use deltaq::{
     CHETAEV, Choice, Ending, Motion, Setting, Settings, Stepping, VAKONOMIC, VAKONOMIC_COSTATE, default_constants,
     derive, derive_at, setting, solve,
 };
-use diffsol_methods::{BDF, ESDIRK34, EVERY, TR_BDF2};
+use diffsol_methods::{ESDIRK34, EVERY, TR_BDF2};
 use equations::{Equations, Formulation};
 use integrate::Method;
 use mechanics::{ConstantsRule, Recombination};

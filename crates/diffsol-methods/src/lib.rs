@@ -43,6 +43,8 @@ mod stepper;
 use integrate::stepping::System;
 use integrate::{LinkedMethod, Method, Options, Solution, Start};
 
+use stepper::Diffsol;
+
 /// Tsitouras' explicit Runge–Kutta method of order 5(4).
 pub const TSIT45: Method = Method::Linked(&Diffsol::Tsit45);
 /// Backward differentiation formulas of variable order 1 to 5.
@@ -54,14 +56,6 @@ pub const ESDIRK34: Method = Method::Linked(&Diffsol::Esdirk34);
 
 /// Every method: those of [`integrate`] and those here, explicit ones first.
 pub const EVERY: [Method; 7] = [Method::Taylor, Method::Dop853, TSIT45, Method::Radau5, BDF, TR_BDF2, ESDIRK34];
-
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
-enum Diffsol {
-    Tsit45,
-    Bdf,
-    TrBdf2,
-    Esdirk34,
-}
 
 impl LinkedMethod for Diffsol {
     fn name(&self) -> &'static str {

@@ -14,8 +14,6 @@ use integrate::stepping::{self, Attempt, Failure, Stepper, System, check_finite,
 use integrate::{Options, Solution, Start, StopCause};
 use nalgebra::DMatrix;
 
-use crate::Diffsol;
-
 type Linear = NalgebraLU<f64>;
 type States = NalgebraVec<f64>;
 
@@ -28,6 +26,15 @@ const MULTISTEP_MOVE: f64 = 1000.0;
 const ITERATION: f64 = 0.02;
 /// Limits of diffsol on failures; a run that meets them is stuck, the step size being bounded from below.
 const LIBRARY_FAILURES: usize = 100_000;
+
+/// A method of diffsol.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub(crate) enum Diffsol {
+    Tsit45,
+    Bdf,
+    TrBdf2,
+    Esdirk34,
+}
 
 /// Integrates with one of diffsol's methods.
 pub(crate) fn run(method: Diffsol, system: &System, start: &Start, end: f64, options: &Options) -> Solution {

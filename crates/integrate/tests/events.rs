@@ -2,7 +2,7 @@
 
 use crate::problems::*;
 use diffsol_methods::{EVERY, TR_BDF2};
-use integrate::{EvaluationError, Method, Options, Status, StopCause, find_root};
+use integrate::{EvaluationError, Options, Status, StopCause, find_root};
 
 /// θ'' = −sin θ.
 fn pendulum() -> Case {

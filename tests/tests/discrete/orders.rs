@@ -1,5 +1,6 @@
 //! Orders of discrete principles and compositions: error against step, above the plateau of round-off.
 
+use bench::exponent;
 use catalogue::find;
 use deltaq::{
     CHETAEV, Choice, Motion, REMOVED_CONSTRAINT, Settings, Steps, VAKONOMIC, choices, solve_by_steps, solve_choice,
@@ -8,7 +9,6 @@ use discrete::Composition;
 use equations::Formulation;
 use mechanics::ConstantsRule;
 use scene::Scene;
-use bench::exponent;
 
 /// Errors under this times the size of the motion are round-off; over [`COARSE`] they tell no order yet.
 const PLATEAU: f64 = 2e-13;
