@@ -162,6 +162,7 @@ impl Comparison {
                 let names = constant_names(&motion.equations).into_iter();
                 found.constants = names.zip(motion.constants.iter().copied()).collect();
                 found.gap = pair.gap.clone();
+                found.by_half = found.gap.largest;
             }
         }
     }
@@ -250,7 +251,7 @@ mod tests {
         let own = comparison.pair(target, run).expect("a pair").gap.clone();
         let fit = |largest: f64| {
             let gap = crate::Gap { largest, ..own.clone() };
-            let fitted = FittedMotion { constants: vec![("mu0_1".into(), 0.625)], gap, starts: 3 };
+            let fitted = FittedMotion { constants: vec![("mu0_1".into(), 0.625)], by_half: gap.largest, gap, starts: 3 };
             Fit { run, target, fitted: Some(fitted), by_identity: false }
         };
         comparison.fits = vec![fit(0.5 * own.largest), fit(2.0 * own.largest)];
