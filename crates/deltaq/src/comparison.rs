@@ -251,7 +251,8 @@ mod tests {
         let own = comparison.pair(target, run).expect("a pair").gap.clone();
         let fit = |largest: f64| {
             let gap = crate::Gap { largest, ..own.clone() };
-            let fitted = FittedMotion { constants: vec![("mu0_1".into(), 0.625)], by_half: gap.largest, gap, starts: 3 };
+            let fitted =
+                FittedMotion { constants: vec![("mu0_1".into(), 0.625)], by_half: gap.largest, gap, starts: 3 };
             Fit { run, target, fitted: Some(fitted), by_identity: false }
         };
         comparison.fits = vec![fit(0.5 * own.largest), fit(2.0 * own.largest)];

@@ -33,7 +33,7 @@ const TIMES: usize = 2;
 const FEW_STEPS: usize = 50;
 
 /// Where the search comes this close, relative to the length of the way, it is refined at the full tolerance.
-const CLOSE: f64 = 1e-4;
+pub(crate) const CLOSE: f64 = 1e-4;
 
 /// Integrates `equations` with free constants for which the sum of squares
 ///

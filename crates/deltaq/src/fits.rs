@@ -5,6 +5,7 @@ use equations::{Formulation, FreeConstant};
 use mechanics::ConstantsRule;
 use scene::Scene;
 
+use crate::fit::CLOSE;
 use crate::fit::search::{Aim, Found, search};
 use crate::gap::{Gap, Verdict, compare_motions};
 use crate::runs::{Decided, Pair, Run};
@@ -42,16 +43,18 @@ pub struct FittedMotion {
     pub constants: Vec<(String, f64)>,
     /// The gap that remains.
     pub gap: Gap,
-    /// From how many values of the constants the gap was made smaller; 0 for an identity.
+    /// From how many values of the constants the gap was made smaller, of which the best is told; 0 for an
+    /// identity.
     pub starts: usize,
     /// The largest gap that was found from the first half of these starts.
     pub by_half: f64,
 }
 
 impl FittedMotion {
-    /// Whether half of the starts find the same gap to one percent.
+    /// Whether half of the starts find the same gap to one percent; where nothing is left, nothing has to be
+    /// settled.
     pub fn is_settled(&self) -> bool {
-        self.by_half <= 1.01 * self.gap.largest
+        self.gap.verdict != Verdict::Different || self.by_half <= 1.01 * self.gap.largest
     }
 }
 
@@ -220,8 +223,8 @@ fn fit_run(
     };
     let (mut motion, mut gap) = gap_of(&constants)?;
     let by_half = if by_half == constants { gap.largest } else { gap_of(&by_half)?.1.largest };
-    let searched = starts > 0;
-    if searched && gap.verdict == Verdict::Different && gap.largest <= unknown(scene, &mut motion, metric, settings)? {
+    let is_close = starts > 0 && gap.verdict == Verdict::Different && gap.largest < CLOSE * gap.scale;
+    if is_close && gap.largest <= unknown(scene, &mut motion, metric, settings)? {
         let because =
             "a search knows the constants to ten digits, and what is left is less than they leave open".into();
         gap.verdict = Verdict::Undecided { because };

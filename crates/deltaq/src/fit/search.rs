@@ -4,9 +4,9 @@
 //! minimize  max_k |r_k| ,   r_k = R_k (q(t_k; C) − q_target(t_k)) ,   RᵀR = |M| ,   over C .
 //! ```
 //!
-//! There are many minima. Guesses are brought to the minimum of `Σ |r_k|²` over a beginning of the motion, and
-//! over longer and longer parts of it: what a long way folds, a short one does not. By how much parts grow
-//! decides where that leads, and differs from start to start. Other starts are drawn. From the best ends
+//! There are many minima. Guesses are brought to the minimum of `Σ |r_k|²` over a beginning of the motion,
+//! and over longer and longer parts of it: what a long way folds, a short one does not. By how much parts
+//! grow decides where that leads, and differs from start to start. Other starts are drawn. From the best ends
 //! `Σ |r_k|^p` is minimized for larger and larger `p`. The first half of the starts is a search of its own:
 //! where that comes to another gap, the number of starts matters.
 
@@ -23,8 +23,8 @@ const STARTS: [usize; 2] = [24, 96];
 /// One start of so many is a guess.
 const GUESSES: usize = 3;
 
-/// Guesses are compared after this part of the motion, and the better half of them is followed. The first part
-/// that one is fitted to is at least that long; the next ones are longer by a factor between these.
+/// Guesses are compared after this part of the motion, and the better half of them is followed. The first
+/// part that one is fitted to is at least that long; the next ones are longer by a factor between these.
 const BEGINNING: f64 = 0.4;
 const EARLIEST: f64 = 0.05;
 const LONGER: [f64; 2] = [1.2, 2.0];
@@ -32,9 +32,9 @@ const LONGER: [f64; 2] = [1.2, 2.0];
 /// Drawn starts are followed whose gap is at most this many times that of the best guess.
 const DRAWN: f64 = 1.2;
 
-/// The powers after the second, and how many times the least gap a minimum may have to be taken to the next.
+/// The powers after the second. The largest of `k` gaps at a minimum for the power `p` is at most `k^(1/p)`
+/// times the least near it: ends that are farther from the best are left.
 const POWERS: [f64; 3] = [8.0, 32.0, 128.0];
-const BEYOND: f64 = 2.0;
 
 /// Drawn starts are from this to that many times the size of the constants away, evenly in the logarithm.
 const REACH: [f64; 2] = [1e-2, 4.0];
@@ -115,7 +115,7 @@ pub(crate) fn search(
             let whole = differences.grown(&constants, BEGINNING * longer, longer, 1.0);
             if differences.is_close(&whole, 1.0) {
                 let constants = differences.squares(&whole, settings).unwrap_or(whole);
-                return Ok(Some(Found { by_half: constants.clone(), constants, starts: i + 1 }));
+                return Ok(Some(Found { by_half: constants.clone(), constants, starts: aim.guesses.len().max(i + 1) }));
             }
         }
         guessed.push(Candidate { start: i, constants, gap });
@@ -132,7 +132,8 @@ pub(crate) fn search(
         end.gap = differences.largest(&end.constants, 1.0, FINE);
     }
     for power in POWERS {
-        let limit = BEYOND * ends.iter().fold(f64::INFINITY, |least, end| least.min(end.gap));
+        let beyond = ((LOOKED_AT / FINE) as f64).powf(1.0 / power);
+        let limit = beyond * ends.iter().fold(f64::INFINITY, |least, end| least.min(end.gap));
         for end in ends.iter_mut().filter(|end| end.gap <= limit) {
             let sum = Power { power, scale: end.gap, stride: FINE, part: 1.0 };
             let constants = differences.minimum(&end.constants, &sum);
@@ -174,8 +175,8 @@ impl Differences {
     }
 }
 
-/// Guesses, among them some along the directions; and drawn starts around zero and around `near`, spread evenly
-/// (Roberts' sequence).
+/// Guesses, among them some along the directions; and drawn starts around zero and around `near`, spread
+/// evenly (Roberts' sequence).
 fn starts(aim: &Aim, near: &[f64], sizes: &[f64], count: usize) -> Vec<Start> {
     let n = sizes.len();
     let size = |direction: &[f64]| direction.iter().zip(sizes).map(|(d, s)| (d * s).abs()).fold(0.0, f64::max);

@@ -1,4 +1,4 @@
-//! The constants for which the sum of squares is least, with exact derivatives where these cost less.
+//! The constants for which the sum of squares, or of higher powers, is least, with exact derivatives.
 
 use integrate::{BoundaryError, Options, Residuals, ShootOptions, Shot, Status, fit};
 use nalgebra::DVector;
@@ -77,7 +77,8 @@ struct Weighted<'a> {
 
 impl Residuals for Weighted<'_> {
     fn residual(&mut self, constants: &[f64], residual: &mut [f64]) -> Result<(), BoundaryError> {
-        let differences = self.differences.fill(constants, self.power.part, self.power.stride, self.tolerance, self.limits)?;
+        let differences =
+            self.differences.fill(constants, self.power.part, self.power.stride, self.tolerance, self.limits)?;
         residual.copy_from_slice(differences.as_slice());
         for apart in residual.chunks_exact_mut(self.differences.dimension()) {
             let weight = self.power.weight(norm(apart));
@@ -177,6 +178,7 @@ mod tests {
                 };
                 (shot, 1e3 * clock.seconds())
             };
+            let ((old, slow), (new, fast)) = (searched(false), searched(true));
             let carried = format!("{} ({})", new.evaluations + new.exact, new.exact);
             println!("{name:<20}{:>10}{:>14}{carried:>22}{slow:>8.1}{fast:>8.1}", goal.len(), old.evaluations);
             assert_eq!((old.exact, new.exact), (0, new.iterations), "{name}");
