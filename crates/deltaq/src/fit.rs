@@ -24,8 +24,10 @@ const LOOKED_AT: usize = 300;
 const COARSE: usize = 4;
 const FINE: usize = 2;
 
-/// Tolerance of the integrations while constants are searched, and the limit on their steps.
-const SEARCH_TOLERANCE: f64 = 1e-6;
+/// Tolerance of the integrations while constants are searched, of a search from many starts, and the limit on
+/// their steps.
+const SEARCH_TOLERANCE: f64 = 1e-7;
+const MANY_TOLERANCE: f64 = 1e-6;
 const SEARCH_STEPS: usize = 5_000;
 
 /// Other motions may take so many times the steps of the best guess: they are far from it.
@@ -119,7 +121,7 @@ impl Differences {
     /// Steps times operations of the motion with these constants. From now on motions may take a few times the
     /// steps.
     fn limit_steps(&mut self, constants: &[f64]) -> usize {
-        let options = self.coarse.options(SEARCH_TOLERANCE);
+        let options = self.coarse.options(self.tolerance);
         self.prepared.set_constants(constants);
         let Ok(run) = self.prepared.integrate(self.end, &options) else { return 0 };
         let steps = run.solution.work.steps + run.solution.work.rejected;

@@ -13,7 +13,7 @@
 use equations::Equations;
 
 use super::squares::Power;
-use super::{COARSE, Differences, FINE, LOOKED_AT};
+use super::{COARSE, Differences, FINE, LOOKED_AT, MANY_TOLERANCE};
 use crate::{Metric, Motion, Setting, Settings, SolveError};
 
 /// Number of starts: as many as this work allows (steps times operations times runs), within these bounds.
@@ -93,6 +93,7 @@ pub(crate) fn search(
     settings: &Settings,
 ) -> Result<Option<Found>, SolveError> {
     let mut differences = Differences::new(setting, equations, target, LOOKED_AT, metric, settings)?;
+    differences.tolerance = MANY_TOLERANCE;
     let Some(first) = differences.closest(aim.guesses) else { return Ok(None) };
     let work = differences.limit_steps(&first) * (1 + first.len());
     let mut count = (WORK / work.max(1)).clamp(STARTS[0], STARTS[1]);
