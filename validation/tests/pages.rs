@@ -52,8 +52,12 @@ fn the_tables_of_a_scene_say_what_its_rows_are() {
     };
     let mut sledge = compared("sledge", 1.5, &settings);
     let gap = sledge.pairs[0].gap.clone();
-    let fitted =
-        FittedMotion { constants: vec![("mu0_1".into(), 0.25)], gap: deltaq::Gap { largest: 0.125, ..gap }, starts: 7 };
+    let fitted = FittedMotion {
+        constants: vec![("mu0_1".into(), 0.25)],
+        gap: deltaq::Gap { largest: 0.125, ..gap },
+        starts: 7,
+        by_half: 0.126,
+    };
     let vakonomic = sledge.run(VAKONOMIC).expect("a run");
     sledge.fits.push(Fit { run: vakonomic, target: 0, fitted: Some(fitted), by_identity: false });
     let page = scene_page(&mut sledge, &[]).expect("a page");
@@ -91,7 +95,8 @@ fn the_tables_of_a_scene_say_what_its_rows_are() {
     }
     let rows = table(&page, "### With other free constants");
     says(&rows[0]["largest gap before"], Some(sledge.pairs[0].gap.largest));
-    says(&rows[0]["largest gap reached"], Some(0.125));
+    says(&rows[0]["largest gap, best found"], Some(0.125));
+    says(&rows[0]["from half of the starts"], Some(0.126));
     assert_eq!((&rows[0]["by"][..], rows.len()), ("search from 7 starts", 1));
 
     let mut metric = Metric::new(&sledge.scene.system).expect("a metric");

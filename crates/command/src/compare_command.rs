@@ -2,6 +2,7 @@
 
 use anyhow::{Context, Result, ensure};
 use console::Term;
+use deltaq::words::at_most;
 use deltaq::{Comparison, Extent, Fits, Settings, choices_among};
 use scene::Scene;
 use serde_json::{Value, json};
@@ -129,7 +130,9 @@ fn json_of(comparison: &Comparison) -> Value {
         let Some(fitted) = &fit.fitted else { continue };
         let found = &mut scene["fits"][i];
         found["constants"] = fitted.constants.iter().map(|(name, c)| (name.clone(), json!(c))).collect();
-        (found["largest"], found["starts"]) = (json!(fitted.gap.largest), json!(fitted.starts));
+        let told = |gap: f64| json!(if fitted.is_settled() { gap } else { at_most(gap) });
+        (found["largest"], found["by half"]) = (told(fitted.gap.largest), told(fitted.by_half));
+        (found["settled"], found["starts"]) = (json!(fitted.is_settled()), json!(fitted.starts));
     }
     scene
 }

@@ -343,6 +343,7 @@ fn a_fit_in_json_is_that_of_the_page() {
     let number = |text: &str| text.trim().parse::<f64>().expect("a number");
     let near = |told: f64, value: &Value| (told / value.as_f64().expect("a number") - 1.0).abs() < 0.06;
     assert!(near(number(cells[6]), &fit["largest"]), "{cells:?}, {fit}");
+    assert!(near(number(cells[7]), &fit["by half"]) && fit["settled"] == true, "{cells:?}, {fit}");
     assert!(
         near(number(cells[4].split_once(" = ").expect("a constant").1), &fit["constants"]["mu0_1"]),
         "{cells:?}, {fit}"

@@ -129,7 +129,7 @@ fn a_snake_of_fourteen_links_is_compared_soon() {
 fn ctrl_c_prints_what_there_is() {
     use crate::support::command;
     use std::process::{Command, Stdio};
-    for (format, words) in [("text", "sledge: "), ("json", "\"schema\": \"deltaq/compare/1\"")] {
+    for (format, words) in [("text", "sledge: "), ("json", "\"schema\": \"deltaq/compare/2\"")] {
         // far longer than anybody waits
         let call = ["compare", "sledge", "--set", "duration=3000", "--tolerance", "1e-14", "--format", format];
         let child = command(&call).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().expect("it runs");

@@ -162,6 +162,7 @@ impl Comparison {
                 let names = constant_names(&motion.equations).into_iter();
                 found.constants = names.zip(motion.constants.iter().copied()).collect();
                 found.gap = pair.gap.clone();
+                found.by_half = found.gap.largest;
             }
         }
     }

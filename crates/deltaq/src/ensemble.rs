@@ -53,8 +53,6 @@ pub struct Ensemble {
     metric: Metric,
     /// The equations once more, in whose words a member says why it stopped: for all threads.
     words: Arc<Mutex<Equations>>,
-    /// Only members that come to their end are asked for: see [`Ensemble::only_complete`].
-    only_complete: bool,
 }
 
 /// What a member starts from.
@@ -140,25 +138,12 @@ impl Ensemble {
         let metric = Metric::varying(&system, &by_name.parameters())?;
         let words = Arc::new(Mutex::new(equations.clone()));
         let end = setting(scene).end;
-        Ok(Ensemble { by_name, lanes, system, end, settings, metric, words, only_complete: false })
+        Ok(Ensemble { by_name, lanes, system, end, settings, metric, words })
     }
 
     /// Members end at `end`, and not where the scene does.
     pub fn until(self, end: f64) -> Self {
         Ensemble { end, ..self }
-    }
-
-    /// Members take at most this many steps.
-    pub fn at_most(mut self, max_steps: usize) -> Self {
-        self.settings.max_steps = max_steps;
-        self
-    }
-
-    /// Members that take too many or too short steps in lanes are given up, and not integrated again to see
-    /// how far they come.
-    pub fn only_complete(mut self) -> Self {
-        self.only_complete = true;
-        self
     }
 
     /// Why no member can be integrated in company, if that is so.

@@ -3,7 +3,10 @@
 //! "Different" means different for *every* choice of free constants (T9), so a comparison searches for
 //! others.
 
+pub(crate) mod search;
 mod squares;
+
+pub use squares::Power;
 
 use equations::Equations;
 use integrate::BoundaryError;
@@ -18,15 +21,23 @@ use crate::{Metric, Motion, Prepared, Setting, Settings, SolveError, TIGHTER, so
 /// Instants at which the sum of squares is taken.
 pub const INSTANTS: usize = 40;
 
-/// Tolerance of the integrations while constants are searched, and the limit on their steps.
-pub(crate) const SEARCH_TOLERANCE: f64 = 1e-7;
+/// Instants of a search for the least gap; of these every fourth for a first look, elsewhere every second.
+const LOOKED_AT: usize = 300;
+const COARSE: usize = 4;
+const FINE: usize = 2;
+
+/// Tolerance of the integrations while constants are searched, of a search from many starts, and the limit on
+/// their steps.
+const SEARCH_TOLERANCE: f64 = 1e-7;
+const MANY_TOLERANCE: f64 = 1e-6;
 const SEARCH_STEPS: usize = 5_000;
 
-/// Readings that take as long as a step.
-const READINGS: usize = 4;
+/// Other motions may take so many times the steps of the best guess: they are far from it.
+const TIMES: usize = 2;
+const FEW_STEPS: usize = 50;
 
 /// Where the search comes this close, relative to the length of the way, it is refined at the full tolerance.
-const CLOSE: f64 = 1e-4;
+pub(crate) const CLOSE: f64 = 1e-4;
 
 /// Integrates `equations` with free constants for which the sum of squares
 ///
@@ -53,16 +64,11 @@ pub fn best_fit(
     }
     let end = target.end();
     let mut differences = Differences::new(setting, equations, target, INSTANTS, metric, settings)?;
-    let mut begun =
-        |guess: &Vec<f64>| -> f64 { differences.at(guess, 1.0, 1).map_or(f64::INFINITY, |apart| apart.norm_squared()) };
-    let closest = match guesses {
-        [only] => Some(only),
-        several => {
-            let distances: Vec<f64> = several.iter().map(&mut begun).collect();
-            several.iter().zip(distances).min_by(|a, b| a.1.total_cmp(&b.1)).map(|(guess, _)| guess)
-        }
+    let constants = match guesses {
+        [only] => Some(only.clone()),
+        several => differences.closest(several),
     };
-    let Some(constants) = closest.and_then(|guess| differences.squares(guess, settings)) else { return Ok(None) };
+    let Some(constants) = constants.and_then(|guess| differences.squares(&guess, settings)) else { return Ok(None) };
     let rule = ConstantsRule::Given(constants);
     Ok(Some(solve(Setting { end, ..setting }, equations.clone(), &rule, settings)?))
 }
@@ -84,8 +90,6 @@ pub struct Differences {
     end: f64,
     /// The last run with what it was of: a step of a descent begins where the one before has looked.
     last: Option<(Asked, SingleRun)>,
-    /// Steps and readings so far, times the operations of an evaluation.
-    pub(crate) work: usize,
 }
 
 impl Differences {
@@ -116,51 +120,35 @@ impl Differences {
         let states = &equations.states;
         let place = |&q: &Expr| states.iter().position(|y| equations.graph.as_symbol(q) == Some(y.symbol));
         let places = equations.coordinates.iter().map(place).collect();
-        let (tolerance, last, work) = (SEARCH_TOLERANCE, None, 0);
-        Ok(Differences { prepared, coarse, tolerance, goal, origin, places, start, end, last, work })
+        let (tolerance, last) = (SEARCH_TOLERANCE, None);
+        Ok(Differences { prepared, coarse, tolerance, goal, origin, places, start, end, last })
     }
 
-    /// Motions may take no more than this many times the steps of those with these constants.
-    pub(crate) fn limit_steps(&mut self, constants: &[f64], times: usize) {
-        let options = self.coarse.options(SEARCH_TOLERANCE);
+    /// Steps times operations of the motion with these constants. From now on motions may take a few times the
+    /// steps.
+    fn limit_steps(&mut self, constants: &[f64]) -> usize {
+        let options = self.coarse.options(self.tolerance);
         self.prepared.set_constants(constants);
-        if let Ok(run) = self.prepared.integrate(self.end, &options) {
-            let steps = run.solution.work.steps + run.solution.work.rejected;
-            self.coarse.max_steps = self.coarse.max_steps.min(times * steps.max(10));
-        }
+        let Ok(run) = self.prepared.integrate(self.end, &options) else { return 0 };
+        let steps = run.solution.work.steps + run.solution.work.rejected;
+        self.coarse.max_steps = self.coarse.max_steps.min(TIMES * steps.max(FEW_STEPS));
+        steps * self.prepared.compiled.cost()[1].operations()
     }
 
     /// From now on motions are integrated as finely as the one that is to be met.
-    pub(crate) fn refine(&mut self, settings: &Settings) {
+    fn refine(&mut self, settings: &Settings) {
         self.tolerance = settings.tolerance * TIGHTER;
     }
 
-    /// Steps that a motion may take.
-    pub(crate) fn max_steps(&self) -> usize {
-        self.coarse.max_steps
-    }
-
-    /// Where this part of the motion ends, and every `stride`-th instant of it.
-    pub(crate) fn times(&self, part: f64, stride: usize) -> (f64, Vec<f64>) {
-        let times = (1..=self.instants(part, stride)).map(|k| self.goal[k * stride - 1].0).collect();
-        (self.start + (self.end - self.start) * part, times)
-    }
-
-    /// Counts work that was done elsewhere.
-    pub(crate) fn did(&mut self, steps: usize, readings: usize) {
-        self.work += (steps + readings / READINGS) * self.prepared.compiled.cost()[1].operations();
-    }
-
-    /// The largest gap of these coordinates at every `stride`-th instant, as many as there are.
-    pub(crate) fn gap_of<'a>(&self, motion: impl Iterator<Item = &'a [f64]>, stride: usize) -> f64 {
-        let instants = self.goal.chunks_exact(stride).map(|instants| &instants[stride - 1]);
-        let each = motion.zip(instants);
-        let gaps = each.map(|(now, (_, q, factor))| (factor * (DVector::from_column_slice(now) - q)).norm());
-        gaps.fold(0.0, larger)
+    /// The guess with the least sum of squares; `None` where none of them leads to a motion.
+    fn closest(&mut self, guesses: &[Vec<f64>]) -> Option<Vec<f64>> {
+        let mut distance = |guess: &Vec<f64>| self.at(guess, 1.0, 1).map(|apart| (apart.norm_squared(), guess.clone()));
+        let all: Vec<(f64, Vec<f64>)> = guesses.iter().filter_map(&mut distance).collect();
+        all.into_iter().min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, guess)| guess)
     }
 
     /// Number of coordinates.
-    pub(crate) fn dimension(&self) -> usize {
+    pub fn dimension(&self) -> usize {
         self.origin.len()
     }
 
@@ -170,18 +158,22 @@ impl Differences {
     }
 
     /// The Euclidean length of the way of the target to these instants.
-    pub(crate) fn way(&self, part: f64, stride: usize) -> f64 {
+    pub fn way(&self, part: f64, stride: usize) -> f64 {
         let to = (1..=self.instants(part, stride)).map(|k| &self.goal[k * stride - 1]);
         to.map(|(_, q, factor)| (factor * (q - &self.origin)).norm_squared()).sum::<f64>().sqrt()
     }
 
-    /// Whether what is left of differences is so small that it may be nothing.
-    pub(crate) fn is_close(&self, largest: f64) -> bool {
-        largest < CLOSE * self.way(1.0, 1) / (self.goal.len() as f64).sqrt()
+    /// Whether what these constants leave of differences is so small that it may be nothing.
+    fn is_close(&mut self, constants: &[f64], part: f64) -> bool {
+        let count = self.instants(part, 1) as f64;
+        self.largest(constants, part, FINE) < CLOSE * self.way(part, 1) / count.sqrt()
     }
 
-    /// All differences with these constants, or why there are none.
-    fn fill(
+    /// All differences with these constants.
+    ///
+    /// # Errors
+    /// Why there are none.
+    pub fn fill(
         &mut self,
         constants: &[f64],
         part: f64,
@@ -201,8 +193,6 @@ impl Differences {
             _ => prepared.integrate(end, &options).map_err(|e| broken(e.to_string()))?,
         };
         let (_, run) = last.insert((asked, run));
-        let done = run.solution.work;
-        self.work += (done.steps + done.rejected + count / READINGS) * prepared.compiled.cost()[1].operations();
         run.solution.completed()?;
         let mut differences = DVector::zeros(count * n);
         let mut states = vec![0.0; prepared.compiled.dimension()];
@@ -220,18 +210,42 @@ impl Differences {
     }
 
     /// All differences with these constants, coarsely until [`Differences::refine`]; `None` without a motion.
-    pub(crate) fn at(&mut self, constants: &[f64], part: f64, stride: usize) -> Option<DVector<f64>> {
+    fn at(&mut self, constants: &[f64], part: f64, stride: usize) -> Option<DVector<f64>> {
         let coarse = self.coarse.clone();
         self.fill(constants, part, stride, self.tolerance, &coarse).ok()
     }
 
-    /// The largest gap at these instants as of [`Differences::at`]; infinite without a motion.
-    pub(crate) fn largest(&mut self, constants: &[f64], part: f64, stride: usize) -> f64 {
+    /// The largest gap up to this part of the motion, at every `stride`-th instant; infinite without a motion.
+    fn largest(&mut self, constants: &[f64], part: f64, stride: usize) -> f64 {
         let n = self.dimension();
         let lengths = |all: DVector<f64>| {
             let squares = all.as_slice().chunks_exact(n).map(|d| d.iter().map(|x| x * x).sum::<f64>());
             squares.fold(0.0, larger).sqrt()
         };
         self.at(constants, part, stride).map_or(f64::INFINITY, lengths)
+    }
+
+    /// For each constant the change by which the first tenth of the motion changes as much as it is long.
+    fn sizes_at(&mut self, from: &[f64]) -> Vec<f64> {
+        const PART: f64 = 0.1;
+        let way = self.way(PART, COARSE);
+        let Some(at) = self.at(from, PART, COARSE) else { return vec![1.0; from.len()] };
+        let mut size = |j: usize| {
+            let mut size = 1.0_f64;
+            let (mut grown, mut shrunk) = (false, false);
+            for _ in 0..30 {
+                let mut moved = from.to_vec();
+                moved[j] += size;
+                let change = self.at(&moved, PART, COARSE);
+                let change = change.map_or(f64::INFINITY, |there| (there - &at).norm());
+                (grown, shrunk) = (grown || change <= way, shrunk || change > way);
+                if grown && shrunk {
+                    break;
+                }
+                size *= if change > way { 0.25 } else { 4.0 };
+            }
+            size.max(from[j].abs())
+        };
+        (0..from.len()).map(&mut size).collect()
     }
 }

@@ -1,21 +1,18 @@
 //! Fits of the free constants of one run to the motion of another.
 
-use equations::{Equations, Formulation, FreeConstant};
+use decision::AffineSet;
+use equations::{Formulation, FreeConstant};
 use mechanics::ConstantsRule;
 use scene::Scene;
 
-use crate::fit::SEARCH_TOLERANCE;
+use crate::fit::CLOSE;
+use crate::fit::search::{Aim, Found, search};
 use crate::gap::{Gap, Verdict, compare_motions};
-use crate::gap_search::{Aim, Closest, WORK, closest};
 use crate::runs::{Decided, Pair, Run};
-use crate::screening::Screening;
 use crate::{
-    Answer, CHETAEV, Choice, Ensemble, Metric, Motion, REMOVED_CONSTRAINT, Setting, Settings, SolveError, VAKONOMIC,
+    Answer, CHETAEV, Choice, Metric, Motion, REMOVED_CONSTRAINT, Setting, Settings, SolveError, VAKONOMIC,
     constant_names, costates_of, derive_at, multipliers_of, setting, solve,
 };
-
-/// Divisor of the work limit of all searches, except that of a vakonomic motion for Chetaev's.
-const LESS: usize = 4;
 
 /// Which free constants are fitted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -46,8 +43,19 @@ pub struct FittedMotion {
     pub constants: Vec<(String, f64)>,
     /// The gap that remains.
     pub gap: Gap,
-    /// From how many values of the constants its largest value was searched; 0 for an identity.
+    /// From how many values of the constants the gap was made smaller, of which the best is told; 0 for an
+    /// identity.
     pub starts: usize,
+    /// The largest gap that was found from the first half of these starts.
+    pub by_half: f64,
+}
+
+impl FittedMotion {
+    /// Whether half of the starts find the same gap to one percent; where nothing is left, nothing has to be
+    /// settled.
+    pub fn is_settled(&self) -> bool {
+        self.gap.verdict != Verdict::Different || self.by_half <= 1.01 * self.gap.largest
+    }
 }
 
 /// Fits one run's free constants to another wherever the two differ: vakonomic to Chetaev, the first removed
@@ -89,17 +97,22 @@ pub(crate) fn fits(
     for (run, target) in wanted {
         let pair = |p: &&Pair| (p.first, p.second) == (target.min(run), target.max(run));
         if pairs.iter().find(pair).is_some_and(|p| p.gap.certain_from.is_some()) {
-            let known = by_identity(scene, &runs[run].choice, &runs[target], &fits)?;
-            let by_identity = known.is_some();
-            let mut known = known.map(|costates| (costates, 0));
-            if let (None, Some(&first)) = (&known, vakonomic.first()) {
-                known =
-                    by_multipliers(scene, runs, [first, run, target], may_vanish((first, target)), metric, settings)?;
+            let identity = by_identity(scene, &runs[run].choice, &runs[target], &fits)?;
+            let by_identity = identity.is_some();
+            let mut start = identity.map(|constants| Start::Known(Found::given(constants)));
+            if let (None, Some(&first)) = (&start, vakonomic.first()) {
+                let may_vanish = may_vanish((first, target));
+                let found = by_multipliers(scene, runs, [first, run, target], may_vanish, metric, settings)?;
+                start = found.map(Start::Known);
             }
-            let nearest = answer((run, target)).map(|found| found.decision.set.point.clone());
-            let may_vanish = may_vanish((run, target));
-            let start = known.map_or(Start::Search { nearest, may_vanish }, Start::Known);
-            if let Some(fitted) = fit_run(scene, runs, run, target, start, metric, settings)? {
+            let set = answer((run, target)).map(|found| found.decision.set.clone());
+            let start = start.unwrap_or_else(|| Start::Search { set, may_vanish: may_vanish((run, target)) });
+            if let Some(mut fitted) = fit_run(scene, runs, run, target, start, metric, settings)? {
+                // one family: what is nearest was searched before, in other constants
+                let same = fits.first().filter(|_| by_identity && runs[target].choice.formulation == CHETAEV);
+                if let (Some(fitted), Some(before)) = (&mut fitted, same.and_then(|fit: &Fit| fit.fitted.as_ref())) {
+                    fitted.by_half = before.by_half;
+                }
                 fits.push(Fit { run, target, fitted, by_identity });
             }
         }
@@ -137,7 +150,7 @@ fn by_multipliers(
     may_vanish: bool,
     metric: &mut Metric,
     settings: &Settings,
-) -> Result<Option<(Vec<f64>, usize)>, SolveError> {
+) -> Result<Option<Found>, SolveError> {
     let (Some(removal), Ok(family)) = (runs[run].choice.removal.clone(), &runs[vakonomic].outcome) else {
         return Ok(None);
     };
@@ -146,32 +159,24 @@ fn by_multipliers(
         return Ok(None);
     }
     let (equations, guesses) = (family.equations.clone(), [zero, family.constants.clone()]);
-    let screening = screening(scene, &runs[vakonomic].choice, &equations, settings);
-    let aim = Aim { guesses: &guesses, screening, limit: WORK / LESS, may_vanish };
+    let aim = Aim { guesses: &guesses, directions: &[], may_vanish };
     let Ok(goal) = &mut runs[target].outcome else { return Ok(None) };
-    let found = closest(setting(scene), &equations, goal, aim, metric, settings)?;
-    let Some(Closest { motion, starts }) = found else { return Ok(None) };
-    Ok(costates_of(scene, &removal, &motion.constants)?.map(|costates| (costates, starts)))
-}
-
-/// The motions of a choice over its free constants, in lanes; `None` where these are no numbers of a start.
-fn screening(scene: &Scene, choice: &Choice, equations: &Equations, settings: &Settings) -> Option<Screening> {
-    let names = constant_names(equations);
-    let names: Vec<&str> = names.iter().map(String::as_str).collect();
-    let choice = Choice { constants: ConstantsRule::Zero, ..choice.clone() };
-    let settings = Settings { tolerance: SEARCH_TOLERANCE, ..settings.clone() };
-    Ensemble::new(scene, &choice, &names, &settings).ok().map(Screening::new)
+    let Some(found) = search(setting(scene), &equations, goal, &aim, metric, settings)? else { return Ok(None) };
+    let costates = |multipliers: &[f64]| costates_of(scene, &removal, multipliers);
+    let (Some(constants), Some(by_half)) = (costates(&found.constants)?, costates(&found.by_half)?) else {
+        return Ok(None);
+    };
+    Ok(Some(Found { constants, by_half, ..found }))
 }
 
 /// Where the constants of a fit come from.
 pub enum Start {
-    /// They are these, one per memory variable, found from this number of starts.
-    Known((Vec<f64>, usize)),
-    /// They are searched, from the least-norm element of the decided set or the nearest miss, from zero
-    /// where nothing was decided; or from those of the run, where these are closer.
+    /// They are these, one per memory variable.
+    Known(Found),
+    /// They are searched, from the decided set or the nearest miss on; from zero on where nothing was decided.
     Search {
-        /// That element, or the nearest miss.
-        nearest: Option<Vec<f64>>,
+        /// That set.
+        set: Option<AffineSet>,
         /// Whether the gap may vanish.
         may_vanish: bool,
     },
@@ -207,35 +212,34 @@ pub fn fit_run(
     if constants.is_empty() {
         return Ok(None);
     }
-    let is_principal = [run, target].map(|i| runs[i].choice.formulation) == [VAKONOMIC, CHETAEV];
-    let choice = runs[run].choice.clone();
-    let searched = !matches!(start, Start::Known((_, 0)));
     let Ok(goal) = &mut runs[target].outcome else { return Ok(None) };
     let found = match start {
-        Start::Known((values, starts)) => {
-            let within = Setting { end: goal.end(), ..setting(scene) };
-            let motion = solve(within, equations, &ConstantsRule::Given(values), settings)?;
-            Some(Closest { motion, starts })
-        }
-        Start::Search { nearest, may_vanish } => {
-            let nearest = nearest.filter(|nearest| nearest.len() == constants.len());
-            let guesses = [nearest.unwrap_or_else(|| vec![0.0; constants.len()]), constants];
-            let limit = if is_principal { WORK } else { WORK / LESS };
-            let screening = screening(scene, &choice, &equations, settings);
-            let aim = Aim { guesses: &guesses, screening, limit, may_vanish };
-            closest(setting(scene), &equations, goal, aim, metric, settings)?
+        Start::Known(found) => Some(found),
+        Start::Search { set, may_vanish } => {
+            let set = set.filter(|set| set.point.len() == constants.len());
+            let (point, directions) = set.map_or((vec![0.0; constants.len()], vec![]), |s| (s.point, s.directions));
+            let aim = Aim { guesses: &[point, constants], directions: &directions, may_vanish };
+            search(setting(scene), &equations, goal, &aim, metric, settings)?
         }
     };
-    let Some(Closest { mut motion, starts }) = found else { return Ok(Some(None)) };
-    let mut gap = compare_motions(goal, &mut motion, metric)?;
-    if searched && gap.verdict == Verdict::Different && gap.largest <= unknown(scene, &mut motion, metric, settings)? {
+    let Some(Found { constants, by_half, starts }) = found else { return Ok(Some(None)) };
+    let within = Setting { end: goal.end(), ..setting(scene) };
+    let mut gap_of = |constants: &[f64]| -> Result<(Motion, Gap), SolveError> {
+        let mut motion = solve(within, equations.clone(), &ConstantsRule::Given(constants.to_vec()), settings)?;
+        let gap = compare_motions(goal, &mut motion, metric)?;
+        Ok((motion, gap))
+    };
+    let (mut motion, mut gap) = gap_of(&constants)?;
+    let by_half = if by_half == constants { gap.largest } else { gap_of(&by_half)?.1.largest };
+    let is_close = starts > 0 && gap.verdict == Verdict::Different && gap.largest < CLOSE * gap.scale;
+    if is_close && gap.largest <= unknown(scene, &mut motion, metric, settings)? {
         let because =
             "a search knows the constants to ten digits, and what is left is less than they leave open".into();
         gap.verdict = Verdict::Undecided { because };
     }
     let names = constant_names(&motion.equations);
     let constants = names.into_iter().zip(motion.constants.clone()).collect();
-    Ok(Some(Some(FittedMotion { constants, gap, starts })))
+    Ok(Some(Some(FittedMotion { constants, gap, starts, by_half })))
 }
 
 /// The part of the constants to which a search knows them.

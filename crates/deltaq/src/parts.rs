@@ -3,7 +3,8 @@
 pub use crate::connect::{merge, samples, spread, times};
 pub use crate::constants::searched;
 pub use crate::ensemble::{WATCHED, instants};
-pub use crate::fit::{Differences, INSTANTS};
+pub use crate::fit::search::Found;
+pub use crate::fit::{Differences, INSTANTS, Power};
 pub use crate::fits::{Start, fit_run, unknown};
 pub use crate::last_digits::{move_digits, signs};
 pub use crate::lost_digits::{Looked, RoundOff, is_small, largest, look, round_off};

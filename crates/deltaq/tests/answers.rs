@@ -176,10 +176,18 @@ fn what_is_said_of_a_mismatch_and_of_constants_has_its_numbers() {
     let [run, target] = [VAKONOMIC, CHETAEV].map(|own| disc.run(own).expect("a run"));
     let gap = Gap { largest: 0.375, ..disc.pair(run, target).expect("a pair").gap.clone() };
     let constants = vec![("mu0_1".to_string(), 0.5), ("mu0_2".to_string(), -2.0)];
-    let fitted = FittedMotion { constants, gap, starts: 11 };
+    let fitted = FittedMotion { constants, gap, starts: 11, by_half: 0.378 };
+    assert!(fitted.is_settled());
     disc.fits.push(Fit { run, target, fitted: Some(fitted), by_identity: false });
     let sure = Headline::of(&disc).sure;
-    let told = "A gap of 0.375 was reached, the largest of the run, at μ₀ = (0.50000, -2.0000), from 11 starts.";
+    let told = "The best found of 11 starts, μ₀ = (0.50000, -2.0000), leaves a largest gap of 0.375; half of the starts: 0.378.";
+    assert!(sure.contains(told), "{sure}");
+    // one that depends on the number of starts has no digits
+    let fit = disc.fits.last_mut().and_then(|fit| fit.fitted.as_mut()).expect("a fit");
+    fit.by_half = 0.41;
+    assert!(!fit.is_settled());
+    let sure = Headline::of(&disc).sure;
+    let told = "leaves a largest gap of at most 0.4 (not settled); half of the starts: 0.5.";
     assert!(sure.contains(told), "{sure}");
 }
 

@@ -120,25 +120,6 @@ fn members_that_stop_do_so_alone_and_where_they_should() {
 }
 
 #[test]
-fn members_that_take_too_many_steps_are_given_up_where_only_complete_ones_are_asked_for() {
-    let speeds = [0.5, 4.0, 0.1, 2.0, -1.0, 8.0, 0.3, 0.2];
-    let scenes: Vec<Scene> = speeds.iter().map(|&u| scene(BLOW_UP, &[("x'", u), ("b", 1.0)])).collect();
-    let (ensemble, members) = ready(&scenes, CHETAEV, &["b"]);
-    let ensemble = ensemble.at_most(20);
-    let [all, complete] = [ensemble.clone(), ensemble.only_complete()].map(|e| run(&e, &members, &[0.1, 1.5], 1));
-    for ((u, all), complete) in speeds.into_iter().zip(all).zip(complete) {
-        match all.ending {
-            Ending::Completed => assert!(all == complete && u < 0.6, "{u}"),
-            Ending::Stopped { .. } => {
-                assert!(u > 0.6 && all.alone.is_some() && all.states.len() == 1, "{u}: {all:?}");
-                assert!(matches!(complete.ending, Ending::Stopped { .. }), "{u}: {complete:?}");
-                assert!(complete.alone.is_none() && complete.states.is_empty(), "{u}: {complete:?}");
-            }
-        }
-    }
-}
-
-#[test]
 fn what_is_no_member_is_refused() {
     let base = scene(SLEDGE, &[]);
     let chetaev = choice(&base, CHETAEV);

@@ -2,11 +2,12 @@
 
 use std::time::Instant;
 
-use deltaq::parts::{Differences, INSTANTS, Start, fit_run, keep_closer, unknown};
+use deltaq::parts::{Differences, Found, INSTANTS, Power, Start, fit_run, keep_closer, unknown};
 use deltaq::{
     Choice, Fit, Fits, FittedMotion, Gap, Metric, Run, Settings, VAKONOMIC, choices, compare_motions, compare_unfitted,
     derive_in_form, setting, solve_choice,
 };
+use integrate::{ShootOptions, fit};
 use mechanics::ConstantsRule;
 use scene::Scene;
 
@@ -42,7 +43,7 @@ fn the_constants_of_a_search_are_known_to_ten_digits_and_those_of_an_identity_to
     assert!((found - known).abs() < 0.05 * known, "{found:e}, {known:e}");
     for (off, starts, word) in [(0.3, 7, "undecided"), (0.3, 0, "different"), (4.0, 7, "different")] {
         let mut runs = [run(&scene, 1.5), run(&scene, 2.0)];
-        let start = Start::Known((vec![2.0 * (1.0 + off * 1e-10)], starts));
+        let start = Start::Known(Found { starts, ..Found::given(vec![2.0 * (1.0 + off * 1e-10)]) });
         let fitted = fit_run(&scene, &mut runs, 0, 1, start, &mut metric, &settings()).expect("no error");
         let fitted = fitted.expect("a constant").expect("a motion");
         assert_eq!(fitted.gap.verdict.word(), word, "{off}, {starts}: {:?}", fitted.gap.verdict);
@@ -59,7 +60,7 @@ fn constants_that_a_search_has_found_stay_only_where_they_come_closer() {
     let own = comparison.pair(target, run).expect("a pair").gap.clone();
     let fit = |largest: f64| {
         let gap = Gap { largest, ..own.clone() };
-        let fitted = FittedMotion { constants: vec![("mu0_1".into(), 0.625)], gap, starts: 3 };
+        let fitted = FittedMotion { constants: vec![("mu0_1".into(), 0.625)], by_half: gap.largest, gap, starts: 3 };
         Fit { run, target, fitted: Some(fitted), by_identity: false }
     };
     comparison.fits = vec![fit(0.5 * own.largest), fit(2.0 * own.largest)];
@@ -107,7 +108,18 @@ fn fits_with_derivatives_that_are_carried_end_at_the_same_constants_in_fewer_run
                 Differences::new(setting(&scene), &equations, &mut target, INSTANTS, &mut metric, &settings);
             let mut differences = differences.expect("differences");
             let clock = Instant::now();
-            let shot = differences.least((1e-13, 0.0), &settings, &guess, carries).expect("a fit");
+            let count = INSTANTS * differences.dimension();
+            let shot = if carries {
+                let squares = Power { power: 2.0, scale: 1.0, stride: 1, part: 1.0 };
+                differences.least((1e-13, 0.0), &settings, &guess, &squares).expect("a fit")
+            } else {
+                let full = ShootOptions::with_tolerance(1e-13 * differences.way(1.0, 1));
+                let mut plain = |constants: &[f64], residual: &mut [f64]| {
+                    residual.copy_from_slice(differences.fill(constants, 1.0, 1, 1e-13, &settings)?.as_slice());
+                    Ok(())
+                };
+                fit(&mut plain, count, &guess, &full).expect("a fit")
+            };
             (shot, 1e3 * clock.elapsed().as_secs_f64())
         };
         let ((old, slow), (new, fast)) = (searched(false), searched(true));

@@ -55,7 +55,7 @@ pub(crate) fn family(
         _ => format!("= a + s (b − a), s from 0 to {END}"),
     };
     let band = format!("vakonomic, μ₀ {which}{failed}");
-    let met = if decided.is_some() { "is Chetaev's" } else { "comes nearest to Chetaev's" };
+    let met = if decided.is_some() { "is Chetaev's" } else { "is the nearest found to Chetaev's" };
     let point = format!("vakonomic, μ₀ = {} {met}", words(&b));
     let curve = |(i, motion): (usize, Result<MemberMotion, String>)| {
         let (label, style) = if i + 1 < rows.len() { (&band, Style::Family) } else { (&point, Style::Member(1)) };

@@ -4,7 +4,7 @@ use anyhow::Result;
 use deltaq::{ChartChange, Comparison, Ending, Pair, Verdict};
 
 use crate::table::Table;
-use deltaq::words::{enumerate, or_dash, precise, short, unseen};
+use deltaq::words::{by_half, enumerate, or_dash, precise, reached, short, unseen};
 
 /// Times at which invariants and residuals are sampled.
 const SAMPLES: usize = 400;
@@ -121,17 +121,17 @@ pub(crate) fn growth(comparison: &Comparison) -> Table {
 
 /// What free constants that a search has found leave of a gap.
 pub(crate) fn fits(comparison: &Comparison) -> Table {
-    let columns = ["motion", "fitted to", "by", "free constants", "largest gap before", "largest gap reached"];
-    let mut table = Table::new(columns.into_iter().chain(["verdict after"]));
+    let columns = ["motion", "fitted to", "by", "free constants", "largest gap before", "largest gap, best found"];
+    let mut table = Table::new(columns.into_iter().chain(["from half of the starts", "verdict after"]));
     for fit in &comparison.fits {
         let label = |i: usize| comparison.runs[i].choice.label.clone();
         let before = comparison.pair(fit.run, fit.target).map(|p| p.gap.largest);
-        let (constants, left, verdict) = match &fit.fitted {
-            None => ("no constants lead to the end".into(), "–".into(), "–".into()),
+        let (constants, left, half, verdict) = match &fit.fitted {
+            None => ("no constants lead to the end".into(), "–".into(), "–".into(), "–".into()),
             Some(fitted) => {
                 let constants: Vec<String> =
                     fitted.constants.iter().map(|(n, c)| format!("{n} = {}", precise(*c))).collect();
-                (constants.join(", "), short(fitted.gap.largest), verdict_words(&fitted.gap))
+                (constants.join(", "), reached(fitted), by_half(fitted), verdict_words(&fitted.gap))
             }
         };
         let how = match &fit.fitted {
@@ -139,7 +139,7 @@ pub(crate) fn fits(comparison: &Comparison) -> Table {
             Some(fitted) => format!("search from {} starts", fitted.starts),
             None => "search".into(),
         };
-        table.row(&[&label(fit.run), &label(fit.target), &how, &constants, &or_dash(before), &left, &verdict]);
+        table.row(&[&label(fit.run), &label(fit.target), &how, &constants, &or_dash(before), &left, &half, &verdict]);
     }
     table
 }

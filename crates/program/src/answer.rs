@@ -110,7 +110,7 @@ pub fn sorted(mut object: Value) -> Value {
 }
 
 fn printed(kind: &str, object: &Value) -> String {
-    let version = if matches!(kind, "solve" | "linearize" | "certificate") { 2 } else { 1 };
+    let version = if matches!(kind, "solve" | "linearize" | "certificate" | "compare") { 2 } else { 1 };
     let text = format!("{object:#}\n");
     text.replacen('{', &format!("{{\n  \"schema\": \"deltaq/{kind}/{version}\","), 1)
 }

@@ -1,5 +1,6 @@
 //! All formulations of a system, pair by pair.
 
+use deltaq::words::at_most;
 use deltaq::{Answer, Fits, Gap, Membership, THRESHOLDS, Verdict};
 use numpy::PyArrayDyn;
 use pyo3::exceptions::PyKeyError;
@@ -102,18 +103,26 @@ pub(crate) struct Fit {
     constants: Option<Py<PyDict>>,
     /// "same", "different" or "undecided" of what is left; None as for `constants`.
     verdict: Option<String>,
-    /// Largest gap that is left; None as for `constants`.
+    /// Largest gap that is left, the least that was found; None as for `constants`.
     largest_gap: Option<f64>,
+    /// The same from half of the starts; None as for `constants`.
+    largest_gap_by_half: Option<f64>,
+    /// Whether both are the same to 1 percent: if not, digits mean nothing; None as for `constants`.
+    settled: Option<bool>,
+    /// Number of starts of the search, 0 for an identity; None as for `constants`.
+    starts: Option<usize>,
     /// Whether the constants follow from those of the target, and nothing was searched.
     by_identity: bool,
 }
 
-kept!(Fit: run target constants verdict largest_gap by_identity);
+kept!(Fit: run target constants verdict largest_gap largest_gap_by_half settled starts by_identity);
 
 #[pymethods]
 impl Fit {
     fn __repr__(&self) -> String {
-        let left = self.largest_gap.map_or("no motion".into(), |gap| format!("gap left {gap:.3e}"));
+        let word = if self.settled == Some(false) { " at most" } else { "" };
+        let told = |gap: f64| if word.is_empty() { format!("{gap:.3e}") } else { format!("{:.0e}", at_most(gap)) };
+        let left = self.largest_gap.map_or("no motion".into(), |gap| format!("gap left{word} {}", told(gap)));
         format!("<deltaq.Fit {} to {}: {left}>", self.run, self.target)
     }
 }
@@ -319,6 +328,9 @@ impl Comparison {
                 constants: constants.transpose()?,
                 verdict: f.fitted.as_ref().map(|m| words(&m.gap).0.into()),
                 largest_gap: f.fitted.as_ref().map(|m| m.gap.largest),
+                largest_gap_by_half: f.fitted.as_ref().map(|m| m.by_half),
+                settled: f.fitted.as_ref().map(deltaq::FittedMotion::is_settled),
+                starts: f.fitted.as_ref().map(|m| m.starts),
                 by_identity: f.by_identity,
             };
             Py::new(py, fit)

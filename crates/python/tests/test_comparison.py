@@ -52,7 +52,8 @@ def test_runs_and_fits(sledge, comparison):
     assert all(run.error is None and run.motion.status in ("completed", "stopped") for run in comparison.runs)
     fit = next(fit for fit in comparison.fits if (fit.run, fit.target) == ("vakonomic", "Chetaev"))
     assert list(fit.constants) == ["mu0_1"]
-    assert fit.largest_gap > 0.1 and fit.verdict == "different"
+    assert fit.largest_gap > 0.1 and fit.verdict == "different" and fit.starts > 2
+    assert fit.largest_gap_by_half >= fit.largest_gap and fit.settled == (fit.largest_gap_by_half <= 1.01 * fit.largest_gap)
     # no farther than the motion that starts without multipliers, in the kinetic metric diag(1, 1, k^2)
     system, t = sledge.system(duration=3.0), np.linspace(0, 3, 401)
     goal = system.solve("chetaev", t).coordinates

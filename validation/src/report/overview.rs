@@ -5,7 +5,7 @@ use equations::Formulation;
 use mechanics::Integrability;
 
 use crate::report::control::{self, Control};
-use deltaq::words::{enumerate, short};
+use deltaq::words::{enumerate, reached, short};
 use pages::{Table, fill, membership};
 
 /// One page: verdict matrix, findings, further pages (`further`: a line and a path), how to regenerate.
@@ -53,7 +53,7 @@ fn matrix(comparisons: &[Comparison], controls: &[Option<Control>]) -> Table {
             None => "–".into(),
             Some(None) => "no fit".into(),
             Some(Some(fitted)) if fitted.gap.verdict == Verdict::Same => "=".to_string(),
-            Some(Some(fitted)) => short(fitted.gap.largest),
+            Some(Some(fitted)) => reached(fitted),
         };
         let control = control.as_ref().map_or("–", Control::word);
         let integrable = match c.integrability {
@@ -141,7 +141,7 @@ fn constants_of_removal(integrable: &[&Comparison]) -> Option<String> {
     let constants: Vec<String> = fitted.constants.iter().map(|(name, x)| format!("{name} = {}", short(*x))).collect();
     let left = match fitted.gap.verdict {
         Verdict::Same => "close it".to_string(),
-        _ => format!("leave {}", short(fitted.gap.largest)),
+        _ => format!("leave {}", reached(fitted)),
     };
     Some(format!(
         "**Removal needs its constants fixed even there.** On `{scene}`, whose parameters are not coordinates, the scene's \

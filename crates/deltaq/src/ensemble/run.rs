@@ -4,7 +4,7 @@ use std::sync::{Mutex, PoisonError};
 
 use equations::{Compiled, Equations, LaneEquations, Plan};
 use integrate::{
-    Interrupt, LANES, Lane, LaneProblem, LaneStart, Left, Options, ProjectionReport, Start, Status, StopCause, Work,
+    Interrupt, LANES, Lane, LaneProblem, LaneStart, Options, ProjectionReport, Start, Status, StopCause, Work,
 };
 
 use super::threads::{Take, shared};
@@ -124,7 +124,6 @@ impl Ensemble {
             lanes,
             words: &self.words,
             left: Mutex::default(),
-            only_complete: self.only_complete,
         };
         let group = if task.lanes.is_ok() { LANES } else { 1 };
         let results = shared(threads, members.len(), group, |take| task.work(take));
@@ -178,7 +177,6 @@ struct Task<'a> {
     words: &'a Mutex<Equations>,
     /// Those that have to go alone, and why: for whichever thread has no lanes to fill any more.
     left: Mutex<Vec<(usize, String)>>,
-    only_complete: bool,
 }
 
 impl Task<'_> {
@@ -218,10 +216,6 @@ impl Task<'_> {
                     let states = run.states.chunks_exact(n).map(<[f64]>::to_vec).collect();
                     let (work, projection) = (run.work, run.projection);
                     done.push((index, Ok(MemberRun { states, work, projection, ..MemberRun::default() })));
-                }
-                Err(why @ (Left::TooManySteps | Left::StepTooSmall)) if self.only_complete => {
-                    let (t, cause) = (self.members[index].t, why.to_string());
-                    done.push((index, Ok(MemberRun { ending: Ending::Stopped { t, cause }, ..MemberRun::default() })));
                 }
                 Err(why) => {
                     self.left.lock().unwrap_or_else(PoisonError::into_inner).push((index, why.to_string()));

@@ -1,7 +1,7 @@
 //! Words for the decisions: is there a `μ₀` with which the vakonomic motion is Chetaev's, and the like.
 
-use super::numbers::{precise, short};
-use crate::{Answer, CHETAEV, Comparison, Decided, Membership, VAKONOMIC};
+use super::numbers::{at_most, precise, short};
+use crate::{Answer, CHETAEV, Comparison, Decided, FittedMotion, Membership, VAKONOMIC};
 
 /// Sentences for the head of the page of a scene, about multipliers and Chetaev's motion.
 pub(super) fn sentences(comparison: &Comparison) -> Vec<String> {
@@ -101,7 +101,7 @@ fn up_to(until: Option<f64>) -> String {
     until.map_or(String::new(), |t| format!(" up to t = {}, after which round-off is too loud", precise(t)))
 }
 
-/// What a search over `μ₀` has come to, where there is none that leaves nothing: smaller gaps may exist.
+/// The best that a search over `μ₀` has found, where there is none that leaves nothing: smaller gaps may exist.
 fn gap_reached(comparison: &Comparison, answer: &Answer) -> Option<String> {
     if matches!(answer, Answer::SomeProved | Answer::Some { .. }) {
         return None;
@@ -109,11 +109,26 @@ fn gap_reached(comparison: &Comparison, answer: &Answer) -> Option<String> {
     let (run, target) = (comparison.run(VAKONOMIC)?, comparison.run(CHETAEV)?);
     let fitted = comparison.fits.iter().find(|f| f.run == run && f.target == target)?.fitted.as_ref()?;
     let constants: Vec<String> = fitted.constants.iter().map(|(_, c)| precise(*c)).collect();
-    let (constants, gap) = (constants.join(", "), short(fitted.gap.largest));
+    let (constants, gap) = (constants.join(", "), reached(fitted));
     Some(format!(
-        "A gap of {gap} was reached, the largest of the run, at μ₀ = ({constants}), from {} starts.",
-        fitted.starts
+        "The best found of {} starts, μ₀ = ({constants}), leaves a largest gap of {gap}; half of the starts: {}.",
+        fitted.starts,
+        by_half(fitted)
     ))
+}
+
+/// The largest gap that fitted constants leave; where it depends on the number of starts, without digits.
+pub fn reached(fitted: &FittedMotion) -> String {
+    match fitted.is_settled() {
+        true => short(fitted.gap.largest),
+        false => format!("at most {} (not settled)", short(at_most(fitted.gap.largest))),
+    }
+}
+
+/// The same from half of the starts.
+pub fn by_half(fitted: &FittedMotion) -> String {
+    let largest = fitted.by_half.max(fitted.gap.largest);
+    short(if fitted.is_settled() { largest } else { at_most(largest) })
 }
 
 /// How far it was looked, for a yes that is not proved.

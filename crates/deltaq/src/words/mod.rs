@@ -4,6 +4,6 @@ mod decision;
 mod headline;
 mod numbers;
 
-pub use decision::{decisions, how_far, sentence};
+pub use decision::{by_half, decisions, how_far, reached, sentence};
 pub use headline::{Headline, rows, unseen};
-pub use numbers::{enumerate, or_dash, precise, short};
+pub use numbers::{at_most, enumerate, or_dash, precise, short};

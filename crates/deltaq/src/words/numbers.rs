@@ -15,6 +15,14 @@ pub fn short(x: f64) -> String {
     }
 }
 
+/// One digit, rounded up: what a number is at most. `0` for zero.
+pub fn at_most(x: f64) -> f64 {
+    let unit = 10f64.powf(x.abs().log10().floor());
+    // what the division makes of a whole number is not rounded up again
+    let digits = (x / unit * (1.0 - 1e-12)).ceil();
+    if x == 0.0 || !x.is_finite() { x } else { format!("{:.0e}", digits * unit).parse().unwrap_or(x) }
+}
+
 /// Five significant digits.
 pub fn precise(x: f64) -> String {
     if x == 0.0 {

@@ -1025,7 +1025,13 @@ class Fit:
     verdict: Final[_Verdict | None]
     """"same", "different" or "undecided" of what is left; None as for `constants`."""
     largest_gap: Final[float | None]
-    """Largest gap that is left; None as for `constants`."""
+    """Largest gap that is left, the least that was found; None as for `constants`."""
+    largest_gap_by_half: Final[float | None]
+    """The same from half of the starts; None as for `constants`."""
+    settled: Final[bool | None]
+    """Whether both are the same to 1 percent: if not, digits mean nothing; None as for `constants`."""
+    starts: Final[int | None]
+    """Number of starts of the search, 0 for an identity; None as for `constants`."""
     by_identity: Final[bool]
     """Whether the constants follow from those of the target, and nothing was searched."""
 
