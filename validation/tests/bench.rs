@@ -7,7 +7,7 @@ use integrate::Method;
 use validation::{REFERENCES, kept_references};
 
 fn effort(max_steps: usize) -> Effort {
-    Effort { methods: EVERY.to_vec(), seconds: 1e-6, repeats: 1, max_steps, patience: 0.05 }
+    Effort { methods: EVERY.to_vec(), every: 1, seconds: 1e-6, repeats: 1, max_steps, patience: 0.05 }
 }
 
 #[test]

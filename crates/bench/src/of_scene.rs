@@ -33,6 +33,8 @@ pub const TARGETS: [f64; 4] = [1e-6, 1e-9, 1e-10, 1e-11];
 pub struct Effort {
     /// The methods that are measured.
     pub methods: Vec<Method>,
+    /// Tolerances are powers of ten: all from 1e-3 on for 1, every second one for 2.
+    pub every: usize,
     /// Runs of one setting are repeated until they took this many seconds together, but for those that take
     /// over four times as long as a run of another method with no larger error.
     pub seconds: f64,
@@ -47,14 +49,16 @@ pub struct Effort {
 
 impl Effort {
     /// For the main job, which has other things to do as well.
-    pub fn brief(methods: &[Method]) -> Effort {
-        Effort { methods: methods.to_vec(), seconds: 0.0015, repeats: 2, max_steps: 50_000, patience: 0.008 }
+    pub fn brief(methods: &[Method], every: usize) -> Effort {
+        let methods = methods.to_vec();
+        Effort { methods, every, seconds: 0.0015, repeats: 2, max_steps: 50_000, patience: 0.008 }
     }
 }
 
 impl Default for Effort {
     fn default() -> Self {
-        Effort { methods: Method::ALL.to_vec(), seconds: 0.02, repeats: 3, max_steps: 200_000, patience: 0.5 }
+        let methods = Method::ALL.to_vec();
+        Effort { methods, every: 1, seconds: 0.02, repeats: 3, max_steps: 200_000, patience: 0.5 }
     }
 }
 

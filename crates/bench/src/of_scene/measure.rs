@@ -55,7 +55,7 @@ impl Series {
         let reaches = matches!(method, Method::Taylor | Method::Dop853);
         let patience = if reaches { 4.0 * effort.patience } else { effort.patience };
         let mut points = Vec::new();
-        for exponent in 3..=method.tightest() {
+        for exponent in (3..=method.tightest()).step_by(effort.every) {
             let mut options = Options::with_tolerance(10.0_f64.powi(-exponent));
             options.method = method;
             options.max_steps = effort.max_steps;

@@ -68,8 +68,8 @@ pub(crate) struct Results {
 
 impl Results {
     /// What works at the same time shares the threads: so none is idle while a section comes to its end.
-    /// Errors are set against run times where `timed`.
-    pub(crate) fn of(sections: &[Section], names: &[&str], timed: bool, quiet: bool) -> Result<Results> {
+    /// Errors are set against run times where `timed`: at every so many powers of ten.
+    pub(crate) fn of(sections: &[Section], names: &[&str], timed: Option<usize>, quiet: bool) -> Result<Results> {
         let asked = |section: &Section| sections.contains(section);
         let (scenes, prepared, parts, casadi) = std::thread::scope(|scope| {
             // mostly another process
@@ -77,7 +77,7 @@ impl Results {
             let scenes = || parallel::in_turn(SCENES_FIRST, || compare_all(names, quiet));
             let scenes = asked(&Section::Scenes).then(|| scope.spawn(scenes));
             let prepared = || parallel::in_turn(REFERENCES_THEN, || references(names, &[], &kept_references()?, quiet));
-            let prepared = (timed && asked(&Section::ErrorVsTime)).then(|| scope.spawn(prepared));
+            let prepared = (timed.is_some() && asked(&Section::ErrorVsTime)).then(|| scope.spawn(prepared));
             let jobs = JOBS.iter().filter(|(section, ..)| asked(section));
             let jobs: Vec<_> =
                 jobs.map(|(_, rank, job)| scope.spawn(|| parallel::in_turn(*rank, || job(quiet)))).collect();
@@ -90,7 +90,8 @@ impl Results {
             Ok::<_, anyhow::Error>((scenes, prepared, parts, referee.map(finished).transpose()?))
         })?;
         // last, and one after the other: nothing else is to run beside what is timed
-        let measured = prepared.map(|prepared| Results::measured(prepared, names, quiet)).transpose()?;
+        let measured =
+            prepared.map(|prepared| Results::measured(prepared, timed.unwrap_or(1), names, quiet)).transpose()?;
         let casadi_not_run = match &casadi {
             Some(Outcome::NotRun(reason)) => Some(reason.to_string()),
             _ => None,
@@ -101,8 +102,8 @@ impl Results {
         Ok(results)
     }
 
-    fn measured(prepared: Vec<bench::Prepared>, names: &[&str], quiet: bool) -> Result<Part> {
-        let benches = bench_all(prepared, &Effort::brief(&EVERY), quiet)?;
+    fn measured(prepared: Vec<bench::Prepared>, every: usize, names: &[&str], quiet: bool) -> Result<Part> {
+        let benches = bench_all(prepared, &Effort::brief(&EVERY, every), quiet)?;
         let mut ensembles = Vec::new();
         if names.contains(&bench::ENSEMBLE_SCENE) {
             ensembles = bench::ensemble_throughput(bench::FEW_MEMBERS, ENSEMBLE_TOLERANCE, ENSEMBLE_REPEATS)?;
@@ -206,7 +207,9 @@ pub(crate) fn run(arguments: &JobArguments, quiet: bool) -> Result<String> {
     let complete = all_scenes && Section::value_variants().iter().all(|s| sections.contains(s));
     let names: Vec<&str> =
         known.into_iter().filter(|n| all_scenes || arguments.scenes.iter().any(|s| s == n)).collect();
-    let mut results = Results::of(sections, &names, true, quiet)?;
+    // pages that are kept have every power of ten
+    let every = if arguments.measured.is_some() { 1 } else { 2 };
+    let mut results = Results::of(sections, &names, Some(every), quiet)?;
     results.comparisons.iter().try_for_each(Comparison::is_sound)?;
     let mut files = results.files();
     if complete {
@@ -225,7 +228,7 @@ pub(crate) fn run(arguments: &JobArguments, quiet: bool) -> Result<String> {
     let mut measured = results.measured.take();
     if let Some(part) = &mut measured {
         let pages = part.files.iter_mut().filter(|file| file.path.extension().is_some_and(|e| e == "md"));
-        pages.for_each(|page| page.text += &provenance(clock.elapsed().as_secs_f64()));
+        pages.for_each(|page| page.text += &(thinned(every) + &provenance(clock.elapsed().as_secs_f64())));
         write(&arguments.measured)(&folder, &part.files)?;
     }
     let untold = if quiet { &results.comparisons[..] } else { &[] };
@@ -291,6 +294,14 @@ fn compare_all(names: &[&str], quiet: bool) -> Result<Vec<SceneReport>> {
 }
 
 /// Version and commit of the program, the machine, and how long the job took until then.
+/// What is said of tolerances that were left out.
+fn thinned(every: usize) -> String {
+    if every == 1 {
+        return String::new();
+    }
+    "\nMeasured at every second power of ten as tolerance; `--measured FOLDER` takes every one.\n".into()
+}
+
 fn provenance(seconds: f64) -> String {
     let describe = || Command::new("git").args(["describe", "--always", "--dirty"]).output().ok();
     let commit = sources()
