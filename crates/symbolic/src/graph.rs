@@ -17,9 +17,16 @@ use std::cell::RefCell;
 /// let x = g.variable(g.symbol("x"));
 /// assert_eq!(g.mul(x, g.add(x, x)), g.mul(g.integer(2), g.powi(x, 2)));
 /// ```
-#[derive(Clone, Default)]
+#[derive(Default)]
 pub struct Graph {
     pub(crate) arena: RefCell<Arena>,
+}
+
+/// Derived, it would be compiled in the crates that call it, and as little optimized as these.
+impl Clone for Graph {
+    fn clone(&self) -> Self {
+        Graph { arena: self.arena.clone() }
+    }
 }
 
 impl std::fmt::Debug for Graph {
