@@ -124,8 +124,8 @@ impl Differences {
         Ok(Differences { prepared, coarse, tolerance, goal, origin, places, start, end, last })
     }
 
-    /// Steps times operations of the motion with these constants. From now on motions may take a few times the
-    /// steps.
+    /// Steps times operations of the motion with these constants. From now on motions may take a few times
+    /// the steps.
     fn limit_steps(&mut self, constants: &[f64]) -> usize {
         let options = self.coarse.options(self.tolerance);
         self.prepared.set_constants(constants);
@@ -215,7 +215,7 @@ impl Differences {
         self.fill(constants, part, stride, self.tolerance, &coarse).ok()
     }
 
-    /// The largest gap up to this part of the motion, at every `stride`-th instant; infinite without a motion.
+    /// The largest gap up to this part of the motion, at every `stride`-th instant; infinite without one.
     fn largest(&mut self, constants: &[f64], part: f64, stride: usize) -> f64 {
         let n = self.dimension();
         let lengths = |all: DVector<f64>| {

@@ -173,7 +173,7 @@ fn by_multipliers(
 pub enum Start {
     /// They are these, one per memory variable.
     Known(Found),
-    /// They are searched, from the decided set or the nearest miss on; from zero on where nothing was decided.
+    /// They are searched, from the decided set or the nearest miss on; from zero where nothing was decided.
     Search {
         /// That set.
         set: Option<AffineSet>,

@@ -11,8 +11,9 @@
 //! crate of its own, because diffsol brings fifty others: who does not name these methods compiles none.
 //!
 //! Where states are projected, all but [`BDF`] continue from the projected state, at one evaluation per step.
-//! [`BDF`] uses several previous steps and would have to restart, so that its own solution is left unprojected
-//! until the projection moves the state by more than 1000 tolerances; stored states are always projected.
+//! [`BDF`] uses several previous steps and would have to restart, so that its own solution is left
+//! unprojected until the projection moves the state by more than 1000 tolerances; stored states are always
+//! projected.
 //!
 //! ```
 //! use integrate::{EvaluationError, Options, Problem, Start, integrate};

@@ -77,8 +77,8 @@ pub fn check_finite(values: &[f64]) -> Result<(), Failure> {
     Err(Failure::NotFinite { component })
 }
 
-/// A problem, shared by the time loop and the stepper: every call is counted, every value checked. The interior
-/// mutability serves libraries whose closures are `Fn`.
+/// A problem, shared by the time loop and the stepper: every call is counted, every value checked. The
+/// interior mutability serves libraries whose closures are `Fn`.
 pub struct System<'p> {
     /// No step is longer.
     pub(crate) longest: f64,

@@ -101,7 +101,7 @@ fn up_to(until: Option<f64>) -> String {
     until.map_or(String::new(), |t| format!(" up to t = {}, after which round-off is too loud", precise(t)))
 }
 
-/// The best that a search over `μ₀` has found, where there is none that leaves nothing: smaller gaps may exist.
+/// The best that a search over `μ₀` has found, where none leaves nothing: smaller gaps may exist.
 fn gap_reached(comparison: &Comparison, answer: &Answer) -> Option<String> {
     if matches!(answer, Answer::SomeProved | Answer::Some { .. }) {
         return None;
