@@ -86,6 +86,12 @@ pub(crate) fn all() -> Vec<Check> {
             python::check,
         ),
         check(
+            "engine-fits",
+            "the crate of the physics engine compiles",
+            "cargo check --release --package engine --all-targets",
+            engine_fits,
+        ),
+        check(
             "doctests",
             "examples in the documentation",
             "cargo test --release --doc --package PACKAGE, with the name from above",
@@ -247,9 +253,16 @@ pub(crate) fn chore(outcome: Result<Outcome>) -> ExitCode {
     }
 }
 
-/// Writes `reports/engine.md`. No check: what it runs is another program, at a length of its own.
+/// Tests the physics engine's crate and writes `reports/engine.md`. No check: what it runs is another program,
+/// at a length of its own.
 pub(crate) fn engine() -> Result<Outcome> {
+    succeed(cargo().args(["test", "--release", "--package", "engine"]))?;
     succeed(cargo().args(["run", "--release", "--package", "engine"]))
+}
+
+/// The physics engine is not built for the checks; what it is made of has to fit all the same.
+fn engine_fits() -> Result<Outcome> {
+    succeed(cargo().args(["check", "--release", "--package", "engine", "--all-targets", "--quiet"]))
 }
 
 fn fmt() -> Result<Outcome> {
