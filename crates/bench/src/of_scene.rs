@@ -33,7 +33,7 @@ pub const TARGETS: [f64; 4] = [1e-6, 1e-9, 1e-10, 1e-11];
 pub struct Effort {
     /// The methods that are measured.
     pub methods: Vec<Method>,
-    /// Tolerances are powers of ten: all from 1e-3 on for 1, every second one for 2.
+    /// Tolerances are powers of ten: all from 1e-3 on for 1, every third one for 3.
     pub every: usize,
     /// Runs of one setting are repeated until they took this many seconds together, but for those that take
     /// over four times as long as a run of another method with no larger error.

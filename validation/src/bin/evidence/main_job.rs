@@ -208,7 +208,7 @@ pub(crate) fn run(arguments: &JobArguments, quiet: bool) -> Result<String> {
     let names: Vec<&str> =
         known.into_iter().filter(|n| all_scenes || arguments.scenes.iter().any(|s| s == n)).collect();
     // pages that are kept have every power of ten
-    let every = if arguments.measured.is_some() { 1 } else { 2 };
+    let every = if arguments.measured.is_some() { 1 } else { 3 };
     let mut results = Results::of(sections, &names, Some(every), quiet)?;
     results.comparisons.iter().try_for_each(Comparison::is_sound)?;
     let mut files = results.files();
@@ -299,7 +299,7 @@ fn thinned(every: usize) -> String {
     if every == 1 {
         return String::new();
     }
-    "\nMeasured at every second power of ten as tolerance; `--measured FOLDER` takes every one.\n".into()
+    "\nMeasured at every third power of ten as tolerance; `--measured FOLDER` takes every one.\n".into()
 }
 
 fn provenance(seconds: f64) -> String {
