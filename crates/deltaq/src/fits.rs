@@ -46,7 +46,8 @@ pub struct FittedMotion {
     /// From how many values of the constants the gap was made smaller, of which the best is told; 0 for an
     /// identity.
     pub starts: usize,
-    /// The largest gap that was found from the first half of these starts.
+    /// The largest gap that was found from the first half of these starts; infinite where these lead to no
+    /// motion over the whole horizon.
     pub by_half: f64,
 }
 
@@ -223,14 +224,20 @@ pub fn fit_run(
         }
     };
     let Some(Found { constants, by_half, starts }) = found else { return Ok(Some(None)) };
-    let within = Setting { end: goal.end(), ..setting(scene) };
+    let end = goal.end();
+    let within = Setting { end, ..setting(scene) };
     let mut gap_of = |constants: &[f64]| -> Result<(Motion, Gap), SolveError> {
         let mut motion = solve(within, equations.clone(), &ConstantsRule::Given(constants.to_vec()), settings)?;
         let gap = compare_motions(goal, &mut motion, metric)?;
         Ok((motion, gap))
     };
     let (mut motion, mut gap) = gap_of(&constants)?;
-    let by_half = if by_half == constants { gap.largest } else { gap_of(&by_half)?.1.largest };
+    // a gap up to where a motion breaks off is not that of the whole
+    if gap.end != end {
+        return Ok(Some(None));
+    }
+    let largest = |gap: &Gap| if gap.end == end { gap.largest } else { f64::INFINITY };
+    let by_half = if by_half == constants { gap.largest } else { largest(&gap_of(&by_half)?.1) };
     let is_close = starts > 0 && gap.verdict == Verdict::Different && gap.largest < CLOSE * gap.scale;
     if is_close && gap.largest <= unknown(scene, &mut motion, metric, settings)? {
         let because =

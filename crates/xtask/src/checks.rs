@@ -26,7 +26,8 @@ pub(crate) struct Check {
 /// The last check that runs alone: all after it need what the build has made, and run in pairs.
 const LAST_ALONE: &str = "lint";
 
-/// All checks, cheap ones first, and of those in pairs long ones: name, what it is about, what mends it.
+/// All checks, cheap ones first; of those in pairs first the ones that wait or have one thread, so that
+/// another can be beside them: name, what it is about, what mends it.
 pub(crate) fn all() -> Vec<Check> {
     let check = |name, about, mend, run: fn() -> Result<Outcome>| Check { name, about, mend, run };
     vec![
@@ -62,10 +63,10 @@ pub(crate) fn all() -> Vec<Check> {
             lint::check,
         ),
         check(
-            "tests",
-            "unit, crate, property and verification tests",
-            "cargo test --release --package PACKAGE TEST, with the names from above",
-            tests,
+            "python",
+            "the Python module does what its tests say",
+            "pip install ./crates/python, then pytest in that folder; it needs Python 3.11 or newer with venv",
+            python::check,
         ),
         check(
             "page",
@@ -74,16 +75,16 @@ pub(crate) fn all() -> Vec<Check> {
             explore::check,
         ),
         check(
+            "tests",
+            "unit, crate, property and verification tests",
+            "cargo test --release --package PACKAGE TEST, with the names from above",
+            tests,
+        ),
+        check(
             "reports",
             "the committed reports are those a fresh run writes",
             "cargo run --release, then look at what changed and commit it",
             reports,
-        ),
-        check(
-            "python",
-            "the Python module does what its tests say",
-            "pip install ./crates/python, then pytest in that folder; it needs Python 3.11 or newer with venv",
-            python::check,
         ),
         check(
             "engine-fits",

@@ -128,6 +128,9 @@ pub fn reached(fitted: &FittedMotion) -> String {
 /// The same from half of the starts.
 pub fn by_half(fitted: &FittedMotion) -> String {
     let largest = fitted.by_half.max(fitted.gap.largest);
+    if largest.is_infinite() {
+        return "no motion".into();
+    }
     short(if fitted.is_settled() { largest } else { at_most(largest) })
 }
 
