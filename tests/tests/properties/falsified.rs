@@ -1,6 +1,7 @@
 //! Every claim is seen to fail once: on a system where it is false, or on motions of wrong equations.
 //!
-//! `cargo test --release --workspace --test tests falsified:: -- --nocapture` prints what is said.
+//! `cargo test --release --workspace --exclude engine --test tests falsified:: -- --nocapture` prints what is
+//! said.
 
 use std::collections::BTreeSet;
 use std::mem::swap;
