@@ -18,13 +18,9 @@ pub const MAX_STEPS: usize = 8_000;
 
 /// Tolerance of the looser run, as the order of the method allows within [`MAX_STEPS`].
 pub fn tolerance(method: Option<Method>) -> f64 {
-    let one_of = |methods: &[Method]| method.is_some_and(|method| methods.contains(&method));
-    match () {
-        () if one_of(&[TSIT45, BDF]) => 1e-8,
-        () if one_of(&[ESDIRK34, Method::Radau5]) => 1e-7,
-        () if one_of(&[TR_BDF2]) => 1e-5,
-        () => 1e-10,
-    }
+    const LOOSER: [(Method, f64); 5] =
+        [(TSIT45, 1e-8), (BDF, 1e-8), (ESDIRK34, 1e-7), (Method::Radau5, 1e-7), (TR_BDF2, 1e-5)];
+    LOOSER.iter().find(|(own, _)| Some(*own) == method).map_or(1e-10, |(_, tolerance)| *tolerance)
 }
 
 /// Who answers a question.
