@@ -4,12 +4,13 @@ use std::fmt::Write;
 
 use anyhow::{Result, bail};
 use deltaq::{
-    Choice, Chosen, ChosenForm, EquationStyle, Form, Prepared, Settings, SolveError, choices, code, derive_at,
-    derive_in_form, equations_text, forms, integrability, prepare, setting, shared_text, system_text,
+    Choice, Chosen, ChosenForm, EquationStyle, FORMS, FORMULATIONS, Form, Prepared, Settings, SolveError,
+    choices_among, code, derive_at, derive_in_form, equations_text, forms, integrability, prepare, setting,
+    shared_text, system_text,
 };
-use equations::{Cost, Equations};
+use equations::{Cost, Equations, Formulation};
 use integrate::Method;
-use mechanics::ConstantsRule;
+use mechanics::{ConstantsRule, Integrability};
 use scene::Scene;
 use serde_json::json;
 
@@ -42,17 +43,17 @@ pub(crate) fn run(arguments: &ShowArguments) -> Result<String> {
     }
     let scene = arguments.scene.find()?;
     let style = if arguments.latex { EquationStyle::Latex } else { EquationStyle::Plain };
-    let integrability = integrability(&scene)?.to_string();
     let mut equations = Vec::new();
     let asked = &arguments.formulation;
-    let all: Vec<Choice> = choices(&scene).into_iter().chain(forms(&scene)).collect();
-    if let Some(other) = asked.iter().find(|own| all.iter().all(|choice| choice.formulation != **own)) {
-        let mut known: Vec<&str> = all.iter().map(|choice| choice.formulation.name).collect();
-        known.dedup();
+    let suits = |own: &&Formulation| own.needs.are_met_by(&scene.system);
+    let known: Vec<&Formulation> = FORMULATIONS.iter().chain(FORMS).copied().filter(suits).collect();
+    if let Some(other) = asked.iter().find(|own| !known.contains(own)) {
+        let known: Vec<&str> = known.iter().map(|own| own.name).collect();
         bail!("--formulation {}: this scene has {}", other.name, known.join(", "));
     }
-    let wanted = |choice: &Choice| asked.is_empty() || asked.contains(&choice.formulation);
-    let all: Vec<Choice> = all.into_iter().filter(wanted).collect();
+    let wanted = |own: &Formulation| asked.is_empty() || asked.iter().any(|one| *one == own);
+    let forms = forms(&scene).into_iter().filter(|choice| wanted(choice.formulation));
+    let all: Vec<Choice> = choices_among(&scene, wanted).into_iter().chain(forms).collect();
     if let Some(language) = arguments.code {
         if asked.len() > 1 {
             bail!(
@@ -85,6 +86,7 @@ pub(crate) fn run(arguments: &ShowArguments) -> Result<String> {
         };
         equations.push((choice, derived, integrated));
     }
+    let integrability = about_integrability(&scene, asked.is_empty())?;
     if arguments.format == TextOrJson::Json {
         let g = &scene.system.graph;
         let given = [&[scene.system.lagrangian], &scene.system.constraints[..]].concat();
@@ -123,6 +125,17 @@ pub(crate) fn run(arguments: &ShowArguments) -> Result<String> {
         let _ = write!(text, "\n## {}\n\n{derived}", choice.label);
     }
     Ok(text)
+}
+
+/// Whether the constraints are integrable. Ranks take far longer than brackets, and who asks for the equations
+/// of some formulations does not wait for them.
+fn about_integrability(scene: &Scene, by_ranks: bool) -> Result<String> {
+    if by_ranks {
+        return Ok(integrability(scene)?.to_string());
+    }
+    let verdict = mechanics::integrability(&scene.system.clone(), &scene.start, scene.start.t + scene.duration)?;
+    let hint = if matches!(verdict, Integrability::Undecided { .. }) { "; without --formulation ranks decide" } else { "" };
+    Ok(format!("{verdict}{hint}"))
 }
 
 /// In which form the equations are evaluated, why, and what that costs.

@@ -121,6 +121,8 @@ impl Dynamics {
     /// # Errors
     /// [`DecisionError::Unsuited`] where unknowns stand nonlinearly or velocities are unknowns.
     pub fn new(system: &System, equations: &Equations) -> Result<Self, DecisionError> {
+        // new expressions, which the copy has to know
+        let steep = equations.steep();
         let system = &System { graph: equations.graph.clone(), ..system.clone() };
         let g = &system.graph;
         let unsuited =
@@ -152,7 +154,6 @@ impl Dynamics {
         let mut instant = matrix.entries().to_vec();
         instant.extend(g.substitute_all(&residuals, &at_zero));
         let instant = Program::new(g, &inputs, &instant)?;
-        let steep = equations.steep();
         let arguments: Vec<Expr> = steep.iter().map(|steep| steep.argument).collect();
         let arguments = Program::new(g, &inputs, &arguments)?;
         inputs.extend(&unknowns);

@@ -6,9 +6,10 @@ use std::collections::BTreeMap;
 use mechanics::System;
 use symbolic::{Expr, Graph, Matrix, Range};
 
-/// Minors of full size are looked at where there are at most this many, with at most this many nodes.
+/// Minors of full size are looked at where there are at most this many, of at most this many terms in all
+/// before any cancel.
 const MINORS: usize = 56;
-const NODES: usize = 2_000;
+const TERMS: usize = 2_000;
 
 /// Factors, free of velocities, of all entries of a constraint's `∂f/∂v`, or of all minors of full size of
 /// the matrix of several constraints: where one vanishes, a constraint or a combination of constraints says
@@ -51,11 +52,11 @@ fn minors(g: &Graph, jacobian: &Matrix) -> Vec<Expr> {
                 }
             }
         }
-        minors = larger.into_iter().map(|(chosen, terms)| (chosen, g.expand(g.sum(&terms)))).collect();
-        let all: Vec<Expr> = minors.values().copied().collect();
-        if all.len() > MINORS || g.size(&all) > NODES {
+        let terms = larger.values().flatten().map(|&term| g.expanded_terms(term)).sum::<usize>();
+        if larger.len() > MINORS || terms > TERMS {
             return Vec::new();
         }
+        minors = larger.into_iter().map(|(chosen, terms)| (chosen, g.expand(g.sum(&terms)))).collect();
     }
     minors.into_values().collect()
 }

@@ -88,7 +88,7 @@ function table(pairs) {
 
 // The table of pairs and one sentence of why; the verdict, why and how sure in the words of the program; which family
 // has which motion, and how that is proved; motions that are none or end early; what is known of the scene.
-export function verdict({ verdict, why, sure, sentence, pairs, decisions, refused }, { notes = "", motions = [] } = {}) {
+export function verdict({ verdict, why, sure, whose, sentence, pairs, decisions, refused }, { notes = "", motions = [] } = {}) {
   if (refused) return `<p>${escape(refused)}</p>`;
   const card = ({ family, motion, which, reason }) =>
     `<li><p>Is the motion of <b>${escape(motion)}</b> one of <b>${escape(family)}</b>?</p><p>For ${inline(which)}: ${escape(reason)}.</p></li>`;
@@ -96,7 +96,7 @@ export function verdict({ verdict, why, sure, sentence, pairs, decisions, refuse
   const causes = motions.map((motion) => [motion.label, motion.refused ?? motion.cause]).filter(([, cause]) => cause);
   const ends = causes.length ? `<h3>Motions that are none or end early</h3>${causes.map(([label, cause]) => `<p><b>${escape(label)}</b>: ${escape(cause)}</p>`).join("")}` : "";
   return `${sentence ? `<p class="sentence">${escape(sentence)}</p>` : ""}${pairs.length ? table(pairs) : ""}
-    <h3>Verdict</h3><p>${escape(verdict)}</p><h3>Why</h3><p>${escape(why)}</p><h3>How sure</h3><p>${escape(sure)}</p>${decided}${ends}
+    <h3>Verdict</h3><p>${escape(verdict)}</p><h3>Why</h3><p>${escape(why)}</p><h3>How sure</h3><p>${escape(sure)}</p>${whose ? `<h3>Which one</h3><p>${escape(whose)}</p>` : ""}${decided}${ends}
     ${notes ? `<h3>Notes on the scene</h3><p>${escape(notes)}</p>` : ""}`;
 }
 

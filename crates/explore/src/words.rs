@@ -29,7 +29,7 @@ pub(crate) fn equations(subject: &Subject) -> Result<Value, Refused> {
     }))
 }
 
-/// The verdict, why, how sure that is; pair by pair; and which families have which motions.
+/// The verdict, why, how sure that is, which motion a real system has; pair by pair; and which families have which motions.
 pub(crate) fn decision(subject: Subject, question: &Question) -> Result<Value, Refused> {
     let Subject { scene, choices } = subject;
     let settings = settings(question);
@@ -38,7 +38,7 @@ pub(crate) fn decision(subject: Subject, question: &Question) -> Result<Value, R
         comparison.solve(choice, &settings)?;
     }
     while comparison.decide_next().is_some() {}
-    let Headline { verdict, why, sure } = Headline::of(&comparison);
+    let Headline { verdict, why, sure, which } = Headline::of(&comparison);
     let pairs: Vec<Value> = rows(&comparison).map(|p| pair(&comparison, p)).collect();
     let decided = comparison.decided.iter().zip(decisions(&comparison));
     let decided = decided.map(|(decided, [family, motion, which, reason])| {
@@ -46,7 +46,7 @@ pub(crate) fn decision(subject: Subject, question: &Question) -> Result<Value, R
         json!({ "family": family, "motion": motion, "which": which, "reason": reason, "answer": answer })
     });
     Ok(json!({
-        "verdict": verdict, "why": why, "sure": sure, "sentence": sentence(&comparison), "pairs": pairs,
+        "verdict": verdict, "why": why, "sure": sure, "whose": which, "sentence": sentence(&comparison), "pairs": pairs,
         "decisions": decided.collect::<Vec<_>>(),
     }))
 }

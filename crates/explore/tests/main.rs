@@ -156,8 +156,9 @@ fn words_are_those_of_a_comparison() {
     let choices = choices(&scene);
     let comparison = compare_unfitted(scene, choices, Vec::new(), &Settings::default()).unwrap();
     let (answer, _) = ask(json!({ "ask": "decision", "name": "sledge", "text": SLEDGE }));
-    let Headline { verdict, why, sure } = Headline::of(&comparison);
+    let Headline { verdict, why, sure, which } = Headline::of(&comparison);
     assert_eq!([&answer["verdict"], &answer["why"], &answer["sure"]], [&verdict, &why, &sure]);
+    assert_eq!(answer["whose"], which);
     let pairs = answer["pairs"].as_array().unwrap();
     assert_eq!(pairs.len(), comparison.pairs.len());
     for (told, pair) in pairs.iter().zip(&comparison.pairs) {

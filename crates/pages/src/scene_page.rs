@@ -35,7 +35,7 @@ pub fn scene_files(comparison: &mut Comparison) -> Result<Vec<File>> {
 pub fn scene_page(comparison: &mut Comparison, pictures: &[File]) -> Result<String> {
     let mut page = String::new();
     let scene = &comparison.scene;
-    let Headline { verdict, why, sure } = Headline::of(comparison);
+    let Headline { verdict, why, sure, .. } = Headline::of(comparison);
     let [title, verdict, why, sure] = [&scene.title, &verdict, &why, &sure].map(|text| inert(text));
     let _ = writeln!(page, "# {title}\n\n**{verdict}**\n\n{why}\n\n{sure}");
     let is_moving = |picture: &&File| picture.path.to_string_lossy().ends_with("-bodies.svg");

@@ -1,4 +1,4 @@
-//! A comparison for a terminal: three lines, two small tables, the gaps over time.
+//! A comparison for a terminal: four lines, two small tables, the gaps over time.
 
 use std::fmt::Write;
 
@@ -20,9 +20,9 @@ const CURVES: usize = 5;
 /// # Errors
 /// Where a motion cannot be read off.
 pub fn summary(comparison: &mut Comparison, width: usize) -> Result<String> {
-    let Headline { verdict, why, sure } = Headline::of(comparison);
+    let Headline { verdict, why, sure, which } = Headline::of(comparison);
     let name = &comparison.scene.name;
-    let lines = [(name.as_str(), verdict), ("why", why), ("how sure", sure)];
+    let lines = [(name.as_str(), verdict), ("why", why), ("how sure", sure), ("which", which.into())];
     let lines = lines.iter().filter(|(_, text)| !text.is_empty()).map(|(of, text)| format!("{of}: {text}\n"));
     let text: String = lines.collect();
     Ok(text + &motions(comparison)? + &pairs(comparison) + &plot(comparison, width)?)

@@ -1,21 +1,14 @@
 //! The node store behind a graph: hash-consing, names, dependency sets.
 
-use crate::Function;
 use crate::cancel;
+use crate::mark::Marks;
 use crate::number::{Number, Rational};
+use crate::{Expr, Function, Symbol};
 use rustc_hash::FxHashMap;
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
-/// A node of a [`crate::Graph`]. Equal expressions are the same node (hash-consing).
-#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Debug)]
-pub struct Expr(pub(crate) u32);
-
-/// A named variable of a [`crate::Graph`].
-#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Debug)]
-pub struct Symbol(pub(crate) u32);
-
-/// What an expression is made of. Children always have smaller ids than their parents.
+/// What an expression is made of. Children always have earlier places than their parents.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub(crate) enum Node {
     Number(Number),
@@ -48,6 +41,8 @@ type Dependencies = Arc<[Symbol]>;
 
 #[derive(Clone)]
 pub(crate) struct Arena {
+    marks: Marks,
+    symbol_marks: Marks,
     nodes: Vec<Node>,
     ids: FxHashMap<Node, Expr>,
     names: Vec<Arc<str>>,
@@ -65,7 +60,10 @@ pub(crate) struct Arena {
 
 impl Default for Arena {
     fn default() -> Self {
+        let own = Marks::another();
         let mut arena = Self {
+            marks: Marks::new(2, own),
+            symbol_marks: Marks::new(0, own),
             nodes: Vec::new(),
             ids: FxHashMap::default(),
             names: Vec::new(),
@@ -84,11 +82,19 @@ impl Default for Arena {
 }
 
 impl Arena {
-    pub(crate) const ZERO: Expr = Expr(0);
-    pub(crate) const ONE: Expr = Expr(1);
+    pub(crate) const ZERO: Expr = Expr::common(0);
+    pub(crate) const ONE: Expr = Expr::common(1);
+
+    /// A copy of all that is there; what either makes from now on, the other does not know.
+    pub(crate) fn fork(&self) -> Self {
+        let (mut fork, own) = (self.clone(), Marks::another());
+        fork.marks.fork(self.nodes.len(), own);
+        fork.symbol_marks.fork(self.names.len(), own);
+        fork
+    }
 
     pub(crate) fn node(&self, e: Expr) -> &Node {
-        &self.nodes[e.0 as usize]
+        &self.nodes[self.marks.place_of(e)]
     }
 
     pub(crate) fn count(&self) -> usize {
@@ -102,7 +108,7 @@ impl Arena {
         if self.nodes.len().is_multiple_of(cancel::EVERY) {
             cancel::check();
         }
-        let e = Expr(u32::try_from(self.nodes.len()).expect("fewer than 2^32 expressions"));
+        let e = self.marks.expression(self.nodes.len());
         let set = self.dependency_set(&node);
         self.dependencies.push(set);
         self.nodes.push(node.clone());
@@ -125,7 +131,7 @@ impl Arena {
         if let Some(&s) = self.symbols.get(name) {
             return s;
         }
-        let s = Symbol(u32::try_from(self.names.len()).expect("fewer than 2^32 symbols"));
+        let s = self.symbol_marks.symbol(self.names.len());
         let name: Arc<str> = name.into();
         self.names.push(name.clone());
         self.symbols.insert(name, s);
@@ -138,12 +144,12 @@ impl Arena {
     }
 
     pub(crate) fn name(&self, s: Symbol) -> &str {
-        &self.names[s.0 as usize]
+        &self.names[self.symbol_marks.place_of_symbol(s)]
     }
 
     /// The symbols `e` depends on, sorted.
     pub(crate) fn dependencies(&self, e: Expr) -> &[Symbol] {
-        &self.sets[self.dependencies[e.0 as usize] as usize]
+        &self.sets[self.dependencies[self.marks.place_of(e)] as usize]
     }
 
     pub(crate) fn depends_on(&self, e: Expr, s: Symbol) -> bool {
@@ -156,7 +162,7 @@ impl Arena {
         }
         let mut sets: Vec<u32> = Vec::new();
         node.each_child(|c| {
-            let set = self.dependencies[c.0 as usize];
+            let set = self.dependencies[self.marks.place_of(c)];
             if sets.last() != Some(&set) {
                 sets.push(set);
             }
@@ -185,8 +191,11 @@ impl Arena {
 
     /// The nodes reachable from `roots` through nodes that satisfy `enter`, children first.
     pub(crate) fn reachable(&self, roots: &[Expr], enter: impl Fn(Expr) -> bool) -> Vec<Expr> {
-        // a bit for each node; children have smaller ids, so one way down finds all of them
-        let place = |e: Expr| (e.0 as usize / 64, 1_u64 << (e.0 % 64));
+        // a bit for each node; children have earlier places, so one way down finds all of them
+        let place = |e: Expr| {
+            let place = self.marks.place_of(e);
+            (place / 64, 1_u64 << (place % 64))
+        };
         let highest = roots.iter().max().map_or(0, |&e| place(e).0 + 1);
         let mut marked = vec![0_u64; highest];
         let mark = |marked: &mut [u64], e: Expr| {
@@ -202,7 +211,7 @@ impl Arena {
             while marked[word] != done {
                 let bit = 63 - (marked[word] & !done).leading_zeros();
                 done |= 1 << bit;
-                let e = Expr(word as u32 * 64 + bit);
+                let e = self.marks.expression(word * 64 + bit as usize);
                 order.push(e);
                 self.node(e).each_child(|c| mark(&mut marked, c));
             }

@@ -9,7 +9,7 @@ use std::cell::RefCell;
 
 /// The store of expressions. Building needs only `&Graph`; it is `Send`, not `Sync`; clones keep all ids.
 ///
-/// An [`Expr`] or [`Symbol`] belongs to its graph and later clones; others misread it or panic.
+/// An [`Expr`] or [`Symbol`] belongs to its graph and later clones; others panic.
 ///
 /// ```
 /// use symbolic::Graph;
@@ -25,7 +25,7 @@ pub struct Graph {
 /// Derived, it would be compiled in the crates that call it, and as little optimized as these.
 impl Clone for Graph {
     fn clone(&self) -> Self {
-        Graph { arena: self.arena.clone() }
+        Graph { arena: RefCell::new(self.arena.borrow().fork()) }
     }
 }
 

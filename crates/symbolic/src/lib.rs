@@ -55,6 +55,7 @@ mod latex_names;
 mod lexer;
 mod lower;
 mod made_of;
+mod mark;
 mod matrix;
 mod normal_form;
 mod number;
@@ -79,7 +80,7 @@ mod sum_factor;
 mod tape;
 mod value;
 
-pub use arena::{Expr, Symbol};
+pub use mark::{Expr, Symbol};
 pub use bounded::Bounded;
 pub use cancel::cancellable;
 pub use code::{Code, Language};

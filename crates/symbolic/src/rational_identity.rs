@@ -53,7 +53,7 @@ impl Arena {
     fn in_field(&self, e: Expr, seed: u64) -> Option<u64> {
         let mut values: FxHashMap<Expr, u64> = FxHashMap::default();
         for n in self.reachable(&[e], |_| true) {
-            let of = |n: Expr, kind: u64| random(seed, 4 * u64::from(n.0) + kind);
+            let of = |n: Expr, kind: u64| random(seed, 4 * u64::from(n.place()) + kind);
             let own = |n: Expr| of(n, 0);
             let value = match self.node(n) {
                 Node::Number(x) => number(*x, seed)?,

@@ -11,7 +11,11 @@ use crate::contradiction::FAULT;
 use crate::table::is_in_table;
 use crate::{CERTAINTY, CHETAEV, Comparison, Gap, Pair, REMOVED_CONSTRAINT, VAKONOMIC, VAKONOMIC_COSTATE, Verdict};
 
-/// Three answers, a few sentences each.
+/// Which of several motions is the user's: said where formulations differ.
+const WHICH: &str = "Wheels, skates and rolling bodies follow Chetaev (d'Alembert–Lagrange): friction holds their \
+                     constraints. Vakonomic motions solve constrained variational problems, such as optimal control.";
+
+/// Four answers, a few sentences each.
 pub struct Headline {
     /// The same or different, and from when.
     pub verdict: String,
@@ -19,6 +23,8 @@ pub struct Headline {
     pub why: String,
     /// How sure that is; whether free constants could bring the motions together.
     pub sure: String,
+    /// Which of them a real system follows; empty where none was seen to differ from Chetaev's.
+    pub which: &'static str,
 }
 
 impl Headline {
@@ -28,11 +34,14 @@ impl Headline {
         if !contradictions.is_empty() {
             let found: Vec<String> = contradictions.iter().map(|found| format!("{found}.")).collect();
             let verdict = format!("No verdict: results contradict each other. {FAULT}");
-            return Headline { verdict, why: found.join(" "), sure: String::new() };
+            return Headline { verdict, why: found.join(" "), sure: String::new(), which: "" };
         }
         let verdict = [verdicts(comparison), without_motion(comparison)].concat().join(" ");
         let sure: Vec<String> = decision::sentences(comparison).into_iter().chain(errors(comparison)).collect();
-        Headline { verdict, why: why(comparison).join(" "), sure: sure.join(" ") }
+        let newton = comparison.run(CHETAEV);
+        let parts = |p: &Pair| p.gap.verdict == Verdict::Different && [p.first, p.second].map(Some).contains(&newton);
+        let which = if rows(comparison).any(parts) { WHICH } else { "" };
+        Headline { verdict, why: why(comparison).join(" "), sure: sure.join(" "), which }
     }
 }
 
