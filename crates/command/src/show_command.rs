@@ -134,7 +134,8 @@ fn about_integrability(scene: &Scene, by_ranks: bool) -> Result<String> {
         return Ok(integrability(scene)?.to_string());
     }
     let verdict = mechanics::integrability(&scene.system.clone(), &scene.start, scene.start.t + scene.duration)?;
-    let hint = if matches!(verdict, Integrability::Undecided { .. }) { "; without --formulation ranks decide" } else { "" };
+    let hint =
+        if matches!(verdict, Integrability::Undecided { .. }) { "; without --formulation ranks decide" } else { "" };
     Ok(format!("{verdict}{hint}"))
 }
 

@@ -11,13 +11,14 @@ use crate::support::{answer, refused, run, text};
 const SNAKE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/snake-14.toml");
 
 #[test]
-fn three_lines_two_tables_and_a_plot() {
+fn four_lines_two_tables_and_a_plot() {
     let (told, complaint) = answer(&["compare", "sledge", "--set", "duration=2"], 0);
     println!("{told}");
     let lines: Vec<&str> = told.lines().collect();
     assert!(lines[0].starts_with("sledge: ") && lines[0].contains("1e-3 apart after 0.127 s"), "{told}");
     assert!(lines[1].starts_with("why: Constraint: nonintegrable"), "{told}");
     assert!(lines[2].starts_with("how sure: No μ₀ makes the vakonomic motion Chetaev's: proved"), "{told}");
+    assert!(lines[3].starts_with("which: Wheels, skates and rolling bodies follow Chetaev"), "{told}");
     for words in [
         "a  Chetaev – vakonomic ",
         "different: removed (arc-length) – removed (along-x)",
@@ -28,7 +29,7 @@ fn three_lines_two_tables_and_a_plot() {
     ] {
         assert!(told.contains(words), "`{words}` is not in {told}");
     }
-    assert!(lines[3..].iter().all(|line| line.chars().count() <= 90), "{told}");
+    assert!(lines[4..].iter().all(|line| line.chars().count() <= 90), "{told}");
     assert!(!told.contains("substitution (wrong on purpose)") && complaint.is_empty(), "{told}{complaint}");
 }
 
@@ -36,6 +37,8 @@ fn three_lines_two_tables_and_a_plot() {
 fn only_the_formulations_asked_for() {
     let (told, _) = answer(&["compare", "sledge", "-f", "chetaev,vakonomic", "--set", "duration=1"], 0);
     assert!(told.contains("2 different motions: Chetaev; vakonomic.") && !told.contains("removed"), "{told}");
+    let (told, _) = answer(&["compare", "bowl", "-f", "chetaev,vakonomic", "--set", "duration=1"], 0);
+    assert!(!told.contains("which: "), "nothing has to be chosen: {told}");
     let (value, _) = answer(&["compare", "bowl", "-f", "chetaev", "--set", "duration=1", "--format", "json"], 0);
     let value: Value = serde_json::from_str(&value).expect("JSON");
     let runs = value["scenes"]["bowl"]["runs"].as_object().expect("runs");

@@ -9,6 +9,7 @@ mod documents;
 mod ensemble_command;
 mod explore_command;
 mod fit_command;
+mod grammar;
 mod integrals_command;
 mod judge_command;
 mod killed;

@@ -149,7 +149,9 @@ fn in_variables_of(equations: &Equations, system: &System, es: &[Expr]) -> Vec<E
     let symbols = system.positions().into_iter().chain(system.velocities());
     let read = equations.coordinates.iter().chain(&equations.velocities).copied();
     let map: HashMap<Symbol, Expr> = symbols.zip(read).collect();
-    let guards = es.iter().map(|e| equations.graph.substitute(*e, &map));
+    // they may be younger than the equations' graph
+    let known_there = equations.graph.adopt(&system.graph, es);
+    let guards = known_there.into_iter().map(|e| equations.graph.substitute(e, &map));
     let defined = equations.definitions.iter().map(|d| d.0).chain(equations.parameters.keys().copied());
     let known: HashSet<Symbol> = equations.known_symbols().into_iter().chain(defined).collect();
     guards.filter(|&e| equations.symbols_behind([e]).is_subset(&known)).collect()

@@ -154,7 +154,8 @@ fn costates_vary_as_given_constants() {
         let answer = answer.unwrap();
         let own = scene(SLEDGE, &[("phi'", *omega)]);
         let constants = ConstantsRule::Given(vec![*x, *y]);
-        let mut alone = solve_choice(&own, &Choice { constants, ..removed.clone() }, &settings()).unwrap();
+        let removed = choice(&own, REMOVED_CONSTRAINT);
+        let mut alone = solve_choice(&own, &Choice { constants, ..removed }, &settings()).unwrap();
         let expected = alone.at(0.5).unwrap();
         for (one, other) in answer.outputs[0].coordinates.iter().zip(&expected.coordinates) {
             assert!((one - other).abs() < 1e-9, "{one} and {other}");

@@ -14,12 +14,14 @@ const MANY_STEPS: usize = 3_000;
 const TIMES_ALLOWED: f64 = 10.0;
 const TO_GO: f64 = 1e7;
 const STRETCHES: usize = 4;
-const STRETCH: usize = 500;
+const STRETCH: usize = 100;
 const MOST: f64 = 0.8;
 
 /// Also stalled: at the pace of the last `LONG` attempts the rest needs as many, and that pace is below
 /// `SLOWER` of the average pace.
 const LONG: usize = 8_000;
+/// What the rest needs is reckoned from this many attempts.
+const WINDOW: usize = 500;
 const SLOWER: f64 = 1e-2;
 
 /// A point of a run: the time, and the number of steps or of attempts so far.
@@ -36,6 +38,7 @@ pub struct Pace {
     end: f64,
     many: Mark,
     stretch: Mark,
+    window: Mark,
     long: Mark,
     /// Start and number of the latest consecutive windows that are too slow; the time that the first of them
     /// and the last window moved.
@@ -43,15 +46,28 @@ pub struct Pace {
     stretches: usize,
     first: f64,
     last: f64,
-    /// Attempts that the rest needs at the pace of the last window; 0 before the first window.
-    ahead: f64,
+    /// Attempts that the rest needs at the pace of the last window, and the time that this moved; 0 before
+    /// the first.
+    ahead: (f64, f64),
 }
 
 impl Pace {
     pub fn new(start: f64, end: f64) -> Self {
         let mark = Mark { t: start, count: 0 };
         let (stretches, first, last) = (0, 0.0, 0.0);
-        Pace { start, end, many: mark, stretch: mark, long: mark, slow: mark, stretches, first, last, ahead: 0.0 }
+        Pace {
+            start,
+            end,
+            many: mark,
+            stretch: mark,
+            window: mark,
+            long: mark,
+            slow: mark,
+            stretches,
+            first,
+            last,
+            ahead: (0.0, 0.0),
+        }
     }
 
     /// Of a run that goes on to `end`.
@@ -61,7 +77,7 @@ impl Pace {
 
     /// If the rest needs more than `patience` attempts: that number, and the time that the last window moved.
     pub(crate) fn is_over(&self, patience: f64) -> Option<(f64, f64)> {
-        (self.ahead > patience).then_some((self.ahead, self.last))
+        (self.ahead.0 > patience).then_some(self.ahead)
     }
 
     /// Checks a run for a stall at time `t`, after `steps` accepted steps out of `attempts`, at most `limit`
@@ -87,11 +103,15 @@ impl Pace {
             }
             self.long = Mark { t, count: attempts };
         }
+        let (count, moved) = since(self.window, attempts);
+        if count >= WINDOW {
+            self.ahead = ((self.end - t).abs() / moved * count as f64, moved);
+            self.window = Mark { t, count: attempts };
+        }
         let (count, moved) = since(self.stretch, attempts);
         if count < STRETCH {
             return None;
         }
-        self.ahead = (self.end - t).abs() / moved * count as f64;
         if !endless(count, moved) {
             self.stretches = 0;
         } else if self.stretches > 0 && moved > 0.5 * self.last && moved < 2.0 * self.last {

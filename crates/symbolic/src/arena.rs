@@ -158,6 +158,7 @@ impl Arena {
 
     fn dependency_set(&mut self, node: &Node) -> u32 {
         if let Node::Symbol(s) = node {
+            self.symbol_marks.place_of_symbol(*s);
             return self.intern_set(vec![*s]);
         }
         let mut sets: Vec<u32> = Vec::new();

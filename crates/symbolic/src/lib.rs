@@ -80,7 +80,6 @@ mod sum_factor;
 mod tape;
 mod value;
 
-pub use mark::{Expr, Symbol};
 pub use bounded::Bounded;
 pub use cancel::cancellable;
 pub use code::{Code, Language};
@@ -92,6 +91,7 @@ pub use function::Function;
 pub use graph::Graph;
 pub use identity::Vanishing;
 pub use lexer::names_in;
+pub use mark::{Expr, Symbol};
 pub use matrix::Matrix;
 pub use number::PI;
 pub use parse_error::{ParseError, ParseErrorKind};

@@ -5,6 +5,7 @@ mod derivatives;
 mod evaluation;
 mod fractions;
 mod magnitudes;
+mod marks;
 mod numbers;
 mod properties;
 mod ranges;

@@ -23,11 +23,11 @@ pub(crate) struct Check {
     run: fn() -> Result<Outcome>,
 }
 
-/// The last check that runs alone: all after it need what the build has made, and run in pairs.
+/// The last check that runs alone: all after it need what the build has made, and run side by side.
 const LAST_ALONE: &str = "lint";
 
-/// All checks, cheap ones first; of those in pairs first the ones that wait or have one thread, so that
-/// another can be beside them: name, what it is about, what mends it.
+/// All checks, cheap ones first; of those side by side first the ones that wait or have one thread, so that
+/// others can be beside them: name, what it is about, what mends it.
 pub(crate) fn all() -> Vec<Check> {
     let check = |name, about, mend, run: fn() -> Result<Outcome>| Check { name, about, mend, run };
     vec![
@@ -113,7 +113,7 @@ pub(crate) fn all() -> Vec<Check> {
     ]
 }
 
-/// Runs checks in order up to the first that fails; those after [`LAST_ALONE`] in pairs.
+/// Runs checks in order up to the first that fails; those after [`LAST_ALONE`] side by side.
 pub(crate) fn run(checks: &[Check]) -> ExitCode {
     let start = Instant::now();
     if checks.iter().any(|check| ["deny", "python"].contains(&check.name)) {
@@ -168,7 +168,10 @@ fn told(check: &Check, outcome: &Result<Outcome>, seconds: f64) -> End {
 
 const NOT_RUN: &str = " NOT RUN: ";
 
-/// Two checks at a time, as some of them wait for a browser or an interpreter. Each is another call of this
+/// Two processors, and one check that waits.
+const AT_A_TIME: usize = 3;
+
+/// [`AT_A_TIME`] checks, as some of them wait for a browser or an interpreter. Each is another call of this
 /// program, so that what it says comes whole, at its end. After a failure none is begun.
 fn side_by_side(checks: &[Check]) -> Vec<End> {
     let (next, ended) = (AtomicUsize::new(0), Mutex::new(Vec::new()));
@@ -185,8 +188,9 @@ fn side_by_side(checks: &[Check]) -> Vec<End> {
         }
     };
     std::thread::scope(|scope| {
-        scope.spawn(work);
-        scope.spawn(work);
+        for _ in 0..AT_A_TIME {
+            scope.spawn(work);
+        }
     });
     ended.into_inner().unwrap_or_else(PoisonError::into_inner)
 }

@@ -84,7 +84,7 @@ fn root() -> PathBuf {
 
 fn list(checks: &[checks::Check]) {
     println!(
-        "cargo xtask CHORE\n\n  {:<10} every check below, in this order; those after `lint` two at a time",
+        "cargo xtask CHORE\n\n  {:<10} every check below, in this order; those after `lint` three at a time",
         "test"
     );
     for check in checks {
