@@ -34,10 +34,6 @@ use clap::CommandFactory;
 use cli::{Cli, Command};
 use program::Answer;
 
-// a small scene is a fifth allocations
-#[global_allocator]
-static ALLOCATOR: mimalloc::MiMalloc = mimalloc::MiMalloc;
-
 fn main() -> ExitCode {
     program::parse::<Cli>().map_or_else(|code| code, |cli| program::finish(run(cli)))
 }

@@ -9,7 +9,7 @@ mod threads;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 
-use equations::{Compiled, Equations, LaneEquations};
+use equations::{Compiled, Equations, LaneEquations, Plan};
 use integrate::{Interrupt, Method};
 use mechanics::{ConstantsRule, State, System};
 use scene::Scene;
@@ -132,7 +132,8 @@ impl Ensemble {
         let point = [&[start.t], &start.y[..], constants].concat();
         let system = scene.system.clone();
         let lanes = match system.breakpoints.is_empty() {
-            true => LaneEquations::new(equations, form, &point)?,
+            true if form.left.is_empty() => LaneEquations::new(equations, form, &point)?,
+            true => LaneEquations::new(equations, &Plan::eliminated(equations, Some(&point))?, &point)?,
             false => Err("the system has breakpoints, at which a motion begins anew".into()),
         };
         let metric = Metric::varying(&system, &by_name.parameters())?;

@@ -199,7 +199,7 @@ impl Projection {
         for (&place, &change) in places.iter().zip(&wanted) {
             step.states[place].rate = change;
         }
-        let plan = Plan::choose(&step, Some(point))?;
+        let plan = Plan::eliminated(&step, Some(point))?;
         if !plan.left.is_empty() {
             return Ok(Err(format!("not in lanes: the projection has {}", plan.why.join("; "))));
         }

@@ -14,14 +14,18 @@ const MANY_STEPS: usize = 3_000;
 const TIMES_ALLOWED: f64 = 10.0;
 const TO_GO: f64 = 1e7;
 const STRETCHES: usize = 4;
-const STRETCH: usize = 100;
+const STRETCH: usize = 500;
 const MOST: f64 = 0.8;
+
+/// And where `HARD` steps in a row each took more than `TRIES` attempts, at that pace: the rates are known
+/// less well than steps of the length that the terms allow would need, and this gets no better towards a
+/// singularity. What is passed is hard for a few steps only.
+const HARD: usize = 20;
+const TRIES: usize = 3;
 
 /// Also stalled: at the pace of the last `LONG` attempts the rest needs as many, and that pace is below
 /// `SLOWER` of the average pace.
 const LONG: usize = 8_000;
-/// What the rest needs is reckoned from this many attempts.
-const WINDOW: usize = 500;
 const SLOWER: f64 = 1e-2;
 
 /// A point of a run: the time, and the number of steps or of attempts so far.
@@ -38,36 +42,28 @@ pub struct Pace {
     end: f64,
     many: Mark,
     stretch: Mark,
-    window: Mark,
     long: Mark,
+    /// Start of the latest steps that were hard, and their number; steps and attempts at the last look.
+    hard: Mark,
+    hard_steps: usize,
+    seen: (usize, usize),
     /// Start and number of the latest consecutive windows that are too slow; the time that the first of them
     /// and the last window moved.
     slow: Mark,
     stretches: usize,
     first: f64,
     last: f64,
-    /// Attempts that the rest needs at the pace of the last window, and the time that this moved; 0 before
-    /// the first.
-    ahead: (f64, f64),
+    /// Attempts that the rest needs at the pace of the last window; 0 before the first window.
+    ahead: f64,
 }
 
 impl Pace {
     pub fn new(start: f64, end: f64) -> Self {
         let mark = Mark { t: start, count: 0 };
-        let (stretches, first, last) = (0, 0.0, 0.0);
-        Pace {
-            start,
-            end,
-            many: mark,
-            stretch: mark,
-            window: mark,
-            long: mark,
-            slow: mark,
-            stretches,
-            first,
-            last,
-            ahead: (0.0, 0.0),
-        }
+        let (stretches, first, last, ahead) = (0, 0.0, 0.0, 0.0);
+        let (many, stretch, long, hard, slow) = (mark, mark, mark, mark, mark);
+        let (hard_steps, seen) = (0, (0, 0));
+        Pace { start, end, many, stretch, long, hard, hard_steps, seen, slow, stretches, first, last, ahead }
     }
 
     /// Of a run that goes on to `end`.
@@ -77,7 +73,7 @@ impl Pace {
 
     /// If the rest needs more than `patience` attempts: that number, and the time that the last window moved.
     pub(crate) fn is_over(&self, patience: f64) -> Option<(f64, f64)> {
-        (self.ahead.0 > patience).then_some(self.ahead)
+        (self.ahead > patience).then_some((self.ahead, self.last))
     }
 
     /// Checks a run for a stall at time `t`, after `steps` accepted steps out of `attempts`, at most `limit`
@@ -95,6 +91,17 @@ impl Pace {
         let endless = |count: usize, moved: f64| {
             (self.end - t).abs() / moved * count as f64 >= TO_GO.max(TIMES_ALLOWED * limit as f64)
         };
+        if steps > self.seen.0 {
+            self.hard_steps = if attempts - self.seen.1 > TRIES { self.hard_steps + 1 } else { 0 };
+            self.seen = (steps, attempts);
+            let (hard, moved) = since(self.hard, attempts);
+            if self.hard_steps == HARD && endless(hard, moved) {
+                return Some((hard, moved));
+            }
+            if self.hard_steps % HARD == 0 {
+                (self.hard, self.hard_steps) = (Mark { t, count: attempts }, 0);
+            }
+        }
         let (long, moved) = since(self.long, attempts);
         if long >= LONG {
             let pace = (t - self.start).abs() / attempts as f64;
@@ -103,15 +110,11 @@ impl Pace {
             }
             self.long = Mark { t, count: attempts };
         }
-        let (count, moved) = since(self.window, attempts);
-        if count >= WINDOW {
-            self.ahead = ((self.end - t).abs() / moved * count as f64, moved);
-            self.window = Mark { t, count: attempts };
-        }
         let (count, moved) = since(self.stretch, attempts);
         if count < STRETCH {
             return None;
         }
+        self.ahead = (self.end - t).abs() / moved * count as f64;
         if !endless(count, moved) {
             self.stretches = 0;
         } else if self.stretches > 0 && moved > 0.5 * self.last && moved < 2.0 * self.last {

@@ -74,6 +74,11 @@ impl Pattern {
         Some(Pattern { matrix: SparseMatrix::new(rows), row_scale })
     }
 
+    /// Number of entries that are not zero by structure.
+    pub(crate) fn entries(&self) -> usize {
+        self.matrix.rows().iter().map(BTreeMap::len).sum()
+    }
+
     /// Finds pivots one after the other by what they cost (Markowitz' count), among those that are not small.
     ///
     /// `None` where all that are left are small, or the elimination takes more than `most` operations.

@@ -23,9 +23,19 @@ const MOST: usize = 20_000;
 /// Multiplications over which only one way is tried.
 const LONG: usize = 400;
 
+/// A full block of this size takes as much eliminated as factorized.
+const FULL: usize = 5;
+
 /// Points around the start at which a plan's condition is tried, and that over which a point counts as bad.
 const AROUND: usize = 32;
 const BAD: f64 = 1e3;
+
+/// What LU factorization takes, in the multiplications of an elimination, which are products of series: for
+/// each order `J z`, and an exact solution by the factors, numbers all of them. Measured on blocks of
+/// [`FULL`] unknowns and more, full and sparse; smaller ones are eliminated.
+fn factorized(size: usize, entries: usize) -> usize {
+    2 * entries + 3 * size * size / 4
+}
 
 impl Plan {
     /// The cheapest plan that is safe near `(t, y, free constants)`, or near a point that stands for all.
@@ -36,6 +46,19 @@ impl Plan {
     /// # Panics
     /// If the point has not one entry for time and each state and free constant.
     pub fn choose(equations: &Equations, point: Option<&[f64]>) -> Result<Plan, CompileError> {
+        Plan::search(equations, point, true)
+    }
+
+    /// The cheapest plan without a factorization where there is one, as lanes need it, and as
+    /// [`Plan::choose`] finds it.
+    ///
+    /// # Errors
+    /// As [`Plan::choose`].
+    pub fn eliminated(equations: &Equations, point: Option<&[f64]>) -> Result<Plan, CompileError> {
+        Plan::search(equations, point, false)
+    }
+
+    fn search(equations: &Equations, point: Option<&[f64]>, priced: bool) -> Result<Plan, CompileError> {
         let mut known = equations.known_symbols();
         let mut points = points(known.len(), point);
         let mut around = around(&points[0]);
@@ -58,7 +81,7 @@ impl Plan {
         }
         for (k, block) in equations.blocks.iter().enumerate() {
             let names = plan.definitions.len();
-            match eliminated(equations, block, &known, &points, &around, names)? {
+            match eliminated(equations, block, &known, (&points, &around), names, priced)? {
                 Ok((found, words)) => {
                     plan.definitions.extend(found.list);
                     watched.extend(found.watched);
@@ -173,9 +196,9 @@ fn eliminated(
     equations: &Equations,
     block: &Block,
     known: &[Symbol],
-    points: &[Vec<f64>; POINTS],
-    around: &[Vec<f64>],
+    (points, around): (&[Vec<f64>; POINTS], &[Vec<f64>]),
     names: usize,
+    priced: bool,
 ) -> Result<Outcome, CompileError> {
     let g = &equations.graph;
     let size = block.unknowns.len();
@@ -202,6 +225,10 @@ fn eliminated(
     orders.sort_by_key(|(_, order)| order.operations);
     if orders.first().is_some_and(|(_, order)| order.operations > LONG) {
         orders.truncate(1);
+    }
+    let operations = orders.first().map_or(0, |(_, order)| order.operations);
+    if priced && size >= FULL && operations > factorized(size, pattern.entries()) {
+        return Ok(Err(format!("{size} unknowns, most of them in most equations: LU factorization takes less")));
     }
     let mut trial = Trial { equations, known, wanted, linear: &linear, pattern: &pattern, around, names, best: None };
     for (way, order) in &orders {
