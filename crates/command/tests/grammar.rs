@@ -41,7 +41,7 @@ impl Draw {
     }
 
     fn number(&mut self) -> &'static str {
-        self.one(&["0", "1", "2", "10", "3", "0.5", "1e-3", "1e6", "(1/3)", "pi", "0.1", "7", "(-2)", "1e-12", "24"])
+        self.one(&["0", "1", "2", "10", "3", "0.5", "1e-3", "(1/3)", "pi", "0.1", "7", "(-2)", "4"])
     }
 
     /// An expression in these names, as deep as that.
@@ -104,9 +104,11 @@ fn drawn(number: u64) -> Drawn {
         let _ = writeln!(text, "{name} = \"{}\"", draw.number());
     }
     let _ = writeln!(text, "c = \"{}\"\n[coordinates]", draw.expression(&["a", "b"], 1));
+    let mut starts = Vec::new();
     for name in &names {
         let start = if draw.once_in(8) { draw.number() } else { draw.one(&["0.4", "0.3", "1.1", "0.7"]) };
         let _ = writeln!(text, "{name} = {{ unit = \"m\", start = \"{start}\" }}");
+        starts.push(format!("({name} - ({start}))"));
     }
     let _ = writeln!(text, "[definitions]\ne = \"{}\"", draw.expression(&places, 2));
     let turned = draw.once_in(3);
@@ -125,7 +127,9 @@ fn drawn(number: u64) -> Drawn {
     }
     text += if turned { " + dot(W, W)/5\"\n" } else { "\"\n" };
     let constraints = draw.below(names.len());
-    let rows: Vec<String> = (0..constraints).map(|i| constraint(draw, i, &rates, [&places, &clock, &all])).collect();
+    let rows: Vec<String> = (0..constraints)
+        .map(|i| constraint(draw, [&starts[i], &starts[i + 1]], [rates[i], rates[i + 1]], [&places, &clock, &all]))
+        .collect();
     let _ = writeln!(text, "constraints = [{}]", rows.join(", "));
     if constraints > 0 && draw.once_in(5) {
         let virtuals: Vec<String> = (0..constraints).map(|i| format!("\"{}\"", rates[rates.len() - 1 - i])).collect();
@@ -147,27 +151,23 @@ fn drawn(number: u64) -> Drawn {
     }
     let _ = writeln!(text, "[run]\nduration = {}", draw.one(&["1", "0.5", "2"]));
     if draw.once_in(2) {
-        let (shape, size) = draw.one(&[&("ball", "a"), &("blade", "[a, 0.1]"), &("box", "[1, b, c]"), &("disc", "1")]);
+        let (shape, size) =
+            draw.one(&[&("ball", "[a]"), &("blade", "[a, 0.1]"), &("box", "[1, b, c]"), &("disc", "[1]")]);
         let at = [(); 3].map(|()| draw.expression(&[&names[..], &["a", "t"]].concat(), 1));
-        let size = if size.starts_with('[') {
-            size.replace('a', "\"a\"").replace('b', "\"b\"").replace('c', "\"c\"")
-        } else {
-            format!("\"{size}\"")
-        };
+        let size = size.replace('a', "\"a\"").replace('b', "\"b\"").replace('c', "\"c\"");
         let _ = writeln!(text, "[view.body]\nshape = \"{shape}\"\nsize = {size}\nat = \"[{}]\"", at.join(", "));
     }
     Drawn { text, names }
 }
 
 /// Linear in the velocities, affine, or not linear; of places alone now and then.
-fn constraint(draw: &mut Draw, i: usize, rates: &[&str], [places, clock, all]: [&[&str]; 3]) -> String {
-    let (own, other) = (rates[i], rates[i + 1]);
+fn constraint(draw: &mut Draw, ways: [&str; 2], [own, other]: [&str; 2], [places, clock, all]: [&[&str]; 3]) -> String {
     let row = match draw.below(8) {
         0 => format!("{own} - {}", draw.expression(clock, 2)),
         1 => format!("{own} - ({})*{other} - {}", draw.expression(places, 1), draw.expression(clock, 1)),
         2 => format!("{own} - sqrt(1 + {other}^2*({})^2)", draw.expression(places, 1)),
         3 => format!("{own} - ({})", draw.expression(all, 1)),
-        4 => format!("{} - ({})", places[i], draw.expression(clock, 1)),
+        4 => format!("{} + {}*{}", ways[0], ways[1], draw.expression(clock, 1)),
         _ => format!("{own} - ({})*{other}", draw.expression(places, 2)),
     };
     format!("\"{row}\"")
