@@ -59,7 +59,11 @@ fn integrals_of_random_systems_are_constant_along_motions() {
             let mut scene = scene.clone();
             if has_energy && formulation.name == CHETAEV.name {
                 let expression = scene.system.energy();
-                scene.system.watched.push(Watched { name: "energy".into(), expression, constant: true });
+                scene.system.watched.push(Watched {
+                    name: "energy".into(),
+                    expression,
+                    constancy: mechanics::Constancy::Certain,
+                });
             }
             let system = &scene.system;
             let constants = default_constants(formulation, &scene);

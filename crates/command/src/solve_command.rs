@@ -14,7 +14,7 @@ use equations::{Formulation, Outputs};
 use integrals::watched;
 use integrate::{Interrupt, Projection};
 use linear::equidistant;
-use mechanics::{ConstantsRule, Observables, Removal, Watched};
+use mechanics::{Constancy, ConstantsRule, Observables, Removal, Watched};
 use scene::Scene;
 use serde_json::{Map, Value, json};
 
@@ -41,7 +41,7 @@ pub(crate) fn run(arguments: &SolveArguments, quiet: bool) -> Result<Answer> {
     let choice = choice(&scene, (formulation, form), free)?;
     if arguments.integrals {
         let kept = watched(&scene, &choice)?;
-        let shown = kept.iter().map(|own| Watched { constant: false, ..own.clone() });
+        let shown = kept.iter().map(|own| Watched { constancy: Constancy::Free, ..own.clone() });
         let all: Vec<Watched> = shown.chain(kept.iter().cloned()).collect();
         scene.system.watched.extend(all);
     }
@@ -77,6 +77,8 @@ pub(crate) fn run(arguments: &SolveArguments, quiet: bool) -> Result<Answer> {
         *words += if steps.is_some() { "; ask for a smaller --step" } else { "; ask for a smaller --tolerance" };
     }
     complaint = complaint.or_else(|| derived.as_ref()?.complaint());
+    // findings about the formulation, not about its motion
+    motion.breaches.iter().filter(|_| !quiet).for_each(|breach| eprintln!("deltaq: note: {breach}"));
     let rows = reached.iter().map(|&t| motion.at(t)).collect::<Result<Vec<_>, _>>()?;
     let columns = Columns::of(&scene, &motion.equations);
     let mut program = Observables::of(&scene.system)?;
@@ -257,7 +259,10 @@ fn json_of(scene: &Scene, choice: &Choice, motion: &mut Motion, times: &[f64]) -
     let invariants: Map<String, Value> = motion
         .invariant_drift(times)?
         .into_iter()
-        .map(|(name, start, drift)| (name, json!({ "start": start, "drift": drift })))
+        .map(|(name, start, drift)| {
+            let constant = motion.breaches.iter().all(|breach| breach.name != name);
+            (name, json!({ "start": start, "drift": drift, "constant": constant }))
+        })
         .collect();
     let constants: Map<String, Value> =
         deltaq::constant_names(&motion.equations).into_iter().zip(motion.constants.iter().map(|&c| json!(c))).collect();

@@ -103,7 +103,7 @@ pub(crate) fn watch(equations: &mut Equations, system: &System) {
     let coordinates = system.positions().into_iter().zip(equations.coordinates.iter().copied());
     let velocities = system.velocities().into_iter().zip(equations.velocities.iter().copied());
     let states: HashMap<Symbol, Expr> = coordinates.chain(velocities).collect();
-    for watched in system.watched.iter().filter(|watched| watched.constant) {
+    for watched in system.watched.iter().filter(|watched| watched.is_constant()) {
         let expression = equations.graph.substitute(watched.expression, &states);
         equations.invariants.push(Named { name: watched.name.clone(), expression });
         equations.watched += 1;

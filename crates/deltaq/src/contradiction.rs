@@ -10,7 +10,10 @@ use scene::Scene;
 
 use crate::runs::{Decided, Pair};
 use crate::table::is_in_table;
-use crate::{Answer, CHETAEV, Comparison, Growth, LeadingTerm, Membership, PRESCRIBED, Run, Verdict, membership};
+use crate::{
+    Answer, Breach, CERTAINTY, CHETAEV, Comparison, Growth, LeadingTerm, Membership, Motion, PRESCRIBED, Run,
+    VAKONOMIC, VAKONOMIC_COSTATE, Verdict, membership,
+};
 
 /// Two results that exclude each other.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -100,6 +103,7 @@ impl Comparison {
     pub fn contradictions(&self) -> Vec<Contradiction> {
         let mut found: Vec<Contradiction> = self.decided.iter().flat_map(|decided| self.of_decided(decided)).collect();
         found.extend(self.pairs.iter().flat_map(|pair| self.of_pair(pair)));
+        found.extend(self.of_forms());
         for fit in self.fits.iter().filter(|fit| fit.by_identity && !self.is_chetaev(fit.target)) {
             if fit.fitted.as_ref().is_some_and(|fitted| fitted.gap.verdict == Verdict::Different) {
                 found.push(contradiction(
@@ -119,6 +123,23 @@ impl Comparison {
         let found = self.contradictions();
         let lines = found.iter().map(|found| format!("{}: {found}", self.scene.name)).collect();
         if found.is_empty() { Ok(()) } else { Err(Contradicted(lines)) }
+    }
+
+    /// Two forms of the vakonomic equations, one of which keeps clearly what the other changes.
+    fn of_forms(&self) -> Option<Contradiction> {
+        let of = |own| self.runs[self.run(own)?].outcome.as_ref().ok().filter(|motion| motion.doubt.is_none());
+        let motions = [of(VAKONOMIC)?, of(VAKONOMIC_COSTATE)?];
+        let changes = |motion: &Motion, name: &str| motion.breaches.iter().any(|breach| breach.name == name);
+        let clear = |breach: &&Breach| breach.change > SEEN * CERTAINTY * breach.estimate;
+        let one_sided = |[one, other]: [&Motion; 2]| {
+            let found = one.breaches.iter().filter(clear).find(|breach| !changes(other, &breach.name));
+            found.map(|breach| format!("{breach}"))
+        };
+        let found = one_sided(motions).or_else(|| one_sided([motions[1], motions[0]]))?;
+        Some(contradiction(
+            format!("of two forms of the vakonomic equations one says that {found}"),
+            "the other keeps it",
+        ))
     }
 
     fn of_decided(&self, decided: &Decided) -> Option<Contradiction> {

@@ -167,3 +167,4 @@ pub use table::{
     REMOVED_CONSTRAINT, UnknownFormulation, VAKONOMIC, VAKONOMIC_COSTATE, formulation,
 };
 pub use varying::Varying;
+pub use watch::Breach;

@@ -12,14 +12,13 @@ use crate::choice::removals;
 use crate::clock::Clock;
 use crate::constants::resolve;
 use crate::form::derive_in_form;
-use crate::last_digits::terms_of_invariants;
 use crate::lost_digits::{self, Looked, RoundOff};
 use crate::method::Chosen;
 use crate::metric::{larger, subtract};
 use crate::trajectory::Trajectory;
 use crate::trial::{FARTHER, NotSuited, TRIAL};
 use crate::wanted::kept_before;
-use crate::watch::Watch;
+use crate::watch::{Breach, Watch, watched};
 use crate::{Choice, ChosenForm, Doubt, Ending, Prepared, Setting, Settings, SolveError, setting};
 
 /// Wall-clock seconds spent.
@@ -55,6 +54,8 @@ pub struct Motion {
     pub ending: Ending,
     /// Where the tolerance did not decide the steps: the runs' difference is no error estimate then.
     pub doubt: Option<Doubt>,
+    /// What the user expects to be constant and this motion changes.
+    pub breaches: Vec<Breach>,
     /// The method, and why; of a motion in equal steps none.
     pub method: Option<Chosen>,
     /// Work of the kept run.
@@ -191,41 +192,7 @@ impl Motion {
         let names = self.equations.invariants.iter().map(|i| i.name.clone());
         Ok(names.zip(start).zip(drift).map(|((name, start), drift)| (name, start, drift)).collect())
     }
-
-    /// The doubt that begins where the scene's own constraints, or what is listed as constant, are off by
-    /// more than the error estimate. What cannot be read off is another matter.
-    fn broken(&mut self, mut watch: Watch) -> Option<Doubt> {
-        let times = self.grid(WATCHED);
-        watch.begin(times[0], &self.at(times[0]).ok()?, &[]);
-        let kept: Vec<Outputs> = times.iter().map_while(|&t| self.at(t).ok()).collect();
-        let invariants = self.equations.invariants.clone();
-        let (mut before, mut clear) = (times[0], true);
-        for pass in [true, false] {
-            for (&t, kept) in times.iter().zip(&kept) {
-                let looser = if pass { None } else { Some(self.looser.outputs(&mut self.compiled, t).ok()?) };
-                let mut terms = || {
-                    let state = self.kept.state(&mut self.compiled, t).ok()?;
-                    terms_of_invariants(&mut self.compiled, t, &state, self.kept.sizes())
-                };
-                let Some(looser) = looser else {
-                    clear &= watch.is_clear(t, kept, &mut terms);
-                    continue;
-                };
-                if let Some(because) = watch.complaint(t, [kept, &looser], &invariants, &mut terms) {
-                    return Some(Doubt { from: before, because });
-                }
-                before = t;
-            }
-            if clear {
-                break;
-            }
-        }
-        None
-    }
 }
-
-/// Stretches of a motion at whose ends the scene's own constraints are looked at.
-const WATCHED: usize = 32;
 
 /// Integrates `equations` from `setting.start` to `setting.end`, twice, and keeps the tighter run.
 ///
@@ -252,7 +219,7 @@ pub fn solve(
     let by = motion.method.as_ref().map(|chosen| chosen.method);
     motion.doubt = Doubt::of([&steps[0], &steps[1]], motion.end, motion.is_complete(), by);
     if motion.doubt.is_none() && !settings.plain {
-        motion.doubt = motion.broken(Watch::new(setting.system, &motion.equations, &[])?);
+        (motion.doubt, motion.breaches) = watched(&mut motion, Watch::new(setting.system, &motion.equations, &[])?);
         if motion.doubt.is_none() {
             motion.count_round_off(setting, &Settings { method: by, ..settings.clone() })?;
         }
@@ -371,6 +338,7 @@ impl Motion {
             },
             charts: Vec::new(),
             doubt: None,
+            breaches: Vec::new(),
             kept,
             looser,
             equations: prepared.equations,

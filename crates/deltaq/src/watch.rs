@@ -1,12 +1,16 @@
 //! Checks along a motion that do not depend on its derivation: the scene's own constraints, and quantities
 //! listed as constant. `f` is compiled from the scene alone, so a term that a derivation lost shows here.
 
+use std::fmt::{self, Display, Formatter};
+
 use equations::{Equations, Named, Outputs};
-use mechanics::System;
+use mechanics::{Constancy, System};
 use symbolic::{Bounded, CompileError, Evaluator, Scalar, Symbol};
 
+use crate::last_digits::terms_of_invariants;
 use crate::metric::{larger, subtract};
 use crate::settings::CERTAINTY;
+use crate::{Doubt, Motion};
 
 /// A drift under this part of the terms of an invariant is round-off.
 const ROUND_OFF: f64 = 1e-11;
@@ -17,6 +21,29 @@ const DIGITS: f64 = 1e-15;
 /// Returns the sum of terms behind each invariant.
 pub(crate) type Terms<'a> = &'a mut dyn FnMut() -> Option<Vec<f64>>;
 
+/// A motion changes what the user expects to be constant: a finding about the formulation.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Breach {
+    /// Name of the quantity.
+    pub name: String,
+    /// First time at which this is certain.
+    pub t: f64,
+    /// Change since the start.
+    pub change: f64,
+    /// Error estimate of the change.
+    pub estimate: f64,
+}
+
+impl Display for Breach {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        let Breach { name, t, change, estimate } = self;
+        write!(
+            f,
+            "{name} is not constant: it has changed by {change:.1e} at t = {t:.6}, with an error estimate of {estimate:.1e}"
+        )
+    }
+}
+
 /// Holds `f = 0` and the invariants against the error estimate.
 #[derive(Clone)]
 pub(crate) struct Watch {
@@ -25,6 +52,9 @@ pub(crate) struct Watch {
     inputs: Vec<Bounded>,
     /// Units of the coordinates.
     units: Vec<String>,
+    /// Names of what the user expects to be constant, and what was found to change since the motion began.
+    expected: Vec<String>,
+    pub(crate) breaches: Vec<Breach>,
     /// `|f|` and the invariants at the start.
     start: (Vec<f64>, Vec<f64>),
     /// The sum of terms behind each invariant, where it is known to exceed its value.
@@ -45,7 +75,9 @@ impl Watch {
         let inputs = vec![Bounded::from_f64(0.0); inputs.len()];
         let (start, sizes, differences) = Default::default();
         let units = system.coordinates.iter().map(|c| c.unit.clone()).collect();
-        Ok(Watch { constraints, inputs, units, start, sizes, differences })
+        let expected = system.watched.iter().filter(|watched| watched.constancy == Constancy::Expected);
+        let expected = expected.map(|watched| watched.name.clone()).collect();
+        Ok(Watch { constraints, inputs, units, expected, breaches: Vec::new(), start, sizes, differences })
     }
 
     /// A motion begins, with these values of the parameters that vary.
@@ -55,6 +87,7 @@ impl Watch {
         self.put(t, start);
         let residuals = self.constraints.evaluate(&self.inputs).iter().map(|f| f.value.abs()).collect();
         self.start = (residuals, start.invariants.clone());
+        self.breaches.clear();
         self.sizes = start.invariants.iter().map(|x| x.abs()).collect();
         self.differences = (vec![0.0; 2 * start.coordinates.len()], vec![0.0; start.invariants.len()]);
     }
@@ -94,8 +127,14 @@ impl Watch {
         let differences = subtract(&kept.invariants, &looser.invariants);
         self.differences.1.iter_mut().zip(differences).for_each(|(d, now)| *d = larger(*d, now.abs()));
         self.put(t, kept);
-        let broken = self.broken(t);
-        broken.or_else(|| if self.are_constant(kept, terms) { None } else { self.drifting(t, kept, invariants) })
+        if let Some(broken) = self.broken(t) {
+            return Some(broken);
+        }
+        if self.are_constant(kept, terms) {
+            return None;
+        }
+        self.note_breaches(t, kept, invariants);
+        self.drifting(t, kept, invariants)
     }
 
     fn broken(&mut self, t: f64) -> Option<String> {
@@ -126,18 +165,72 @@ impl Watch {
     }
 
     fn drifting(&self, t: f64, kept: &Outputs, invariants: &[Named]) -> Option<String> {
-        let drifts = subtract(&kept.invariants, &self.start.1);
-        drifts.iter().enumerate().find_map(|(i, drift)| {
+        let drifts = self.changes(t, kept, invariants);
+        drifts.into_iter().find(|drift| !self.expected.contains(&drift.name)).map(|drift| drift.to_string())
+    }
+
+    /// Notes the changes that are certain at `t` of what the user expects to be constant.
+    fn note_breaches(&mut self, t: f64, kept: &Outputs, invariants: &[Named]) {
+        for breach in self.changes(t, kept, invariants).into_iter().filter(|b| self.expected.contains(&b.name)) {
+            match self.breaches.iter_mut().find(|known| known.name == breach.name) {
+                Some(known) => known.change = known.change.max(breach.change),
+                None => self.breaches.push(breach),
+            }
+        }
+    }
+
+    fn changes(&self, t: f64, kept: &Outputs, invariants: &[Named]) -> Vec<Breach> {
+        let changes = subtract(&kept.invariants, &self.start.1).into_iter().map(f64::abs).enumerate();
+        let certain = changes.filter_map(|(i, change)| {
             let estimate = self.differences.1[i] + ROUND_OFF * self.sizes[i];
-            let (drift, name) = (drift.abs(), &invariants[i].name);
-            (drift > CERTAINTY * estimate).then(|| {
-                format!("{name} is not constant: it has changed by {drift:.1e} at t = {t:.6}, with an error estimate of {estimate:.1e}")
-            })
-        })
+            let name = invariants[i].name.clone();
+            (change > CERTAINTY * estimate).then_some(Breach { name, t, change, estimate })
+        });
+        certain.collect()
     }
 
     fn put(&mut self, t: f64, at: &Outputs) {
         let values = std::iter::once(&t).chain(&at.coordinates).chain(&at.velocities);
         self.inputs.iter_mut().zip(values).for_each(|(x, &value)| *x = Bounded::from_f64(value));
     }
+}
+
+/// Stretches of a motion at whose ends the scene's own constraints are looked at.
+const WATCHED: usize = 32;
+
+/// The doubt that begins where the scene's own constraints, or what has to be constant, are off by more than
+/// the error estimate; and what the user expects to be constant and the motion changes.
+pub(crate) fn watched(motion: &mut Motion, mut watch: Watch) -> (Option<Doubt>, Vec<Breach>) {
+    let doubt = doubted(motion, &mut watch);
+    (doubt, watch.breaches)
+}
+
+/// What cannot be read off is another matter.
+fn doubted(motion: &mut Motion, watch: &mut Watch) -> Option<Doubt> {
+    let times = motion.grid(WATCHED);
+    watch.begin(times[0], &motion.at(times[0]).ok()?, &[]);
+    let kept: Vec<Outputs> = times.iter().map_while(|&t| motion.at(t).ok()).collect();
+    let invariants = motion.equations.invariants.clone();
+    let (mut before, mut clear) = (times[0], true);
+    for pass in [true, false] {
+        for (&t, kept) in times.iter().zip(&kept) {
+            let looser = if pass { None } else { Some(motion.looser.outputs(&mut motion.compiled, t).ok()?) };
+            let mut terms = || {
+                let state = motion.kept.state(&mut motion.compiled, t).ok()?;
+                terms_of_invariants(&mut motion.compiled, t, &state, motion.kept.sizes())
+            };
+            let Some(looser) = looser else {
+                clear &= watch.is_clear(t, kept, &mut terms);
+                continue;
+            };
+            if let Some(because) = watch.complaint(t, [kept, &looser], &invariants, &mut terms) {
+                return Some(Doubt { from: before, because });
+            }
+            before = t;
+        }
+        if clear {
+            break;
+        }
+    }
+    None
 }

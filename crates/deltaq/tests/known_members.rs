@@ -144,7 +144,7 @@ fn a_member_ends_where_the_run_for_its_estimate_ends() {
 }
 
 #[test]
-fn what_is_listed_as_constant_and_is_not_is_doubted() {
+fn what_is_listed_as_constant_and_is_not_is_a_finding() {
     let listed = FREE.replace("[start.velocities]", "[invariants]\nspeed = \"x'\"\nother = \"y'\"\n[start.velocities]");
     // x' = a + 1e-3 (1 − cos t)
     let driven = listed.replace("FORCE", "1e-3*sin(t)");
@@ -153,26 +153,28 @@ fn what_is_listed_as_constant_and_is_not_is_doubted() {
     {
         let scene = Scene::parse("listed", text).unwrap_or_else(|e| panic!("{e}"));
         let motion = solve_choice(&scene, &choices(&scene)[0], &Settings::default()).expect("a motion");
-        let doubts = started(text, &[0.5, 1.0, 3.0], &Settings::default(), true).into_iter().map(|member| {
+        let found = started(text, &[0.5, 1.0, 3.0], &Settings::default(), true).into_iter().map(|member| {
             let (word, cause) = member.status();
-            assert_eq!(word, if begins.is_some() { "untrusted" } else { "completed" }, "{cause:?}");
-            member.doubt
+            assert_eq!((word, &member.doubt), ("completed", &None), "{cause:?}");
+            member.breaches
         });
-        for doubt in doubts.chain([motion.doubt]) {
-            let because = doubt.as_ref().map(|doubt| doubt.because.as_str());
-            assert_eq!(because.is_some(), begins.is_some(), "{because:?}");
-            assert!(because.zip(begins).is_none_or(|(because, begins)| because.starts_with(begins)), "{because:?}");
+        for breaches in found.chain([motion.breaches]) {
+            let said = breaches.first().map(|breach| breach.to_string());
+            assert_eq!((breaches.len(), said.is_some()), (usize::from(begins.is_some()), begins.is_some()), "{said:?}");
+            assert!(said.zip(begins).is_none_or(|(said, begins)| said.starts_with(begins)), "{breaches:?}");
+            // 1e-3 (1 − cos t) by the end of 3 s
+            assert!(breaches.iter().all(|breach| breach.change > 1e-4 && breach.change < 2.1e-3), "{breaches:?}");
         }
     }
 }
 
 /// x' = a + (t/2)^41/20.5, which is a before the middle of the run to the last digit.
 #[test]
-fn a_members_doubt_begins_at_the_last_instant_at_which_all_was_well() {
+fn a_change_is_noted_when_it_is_certain() {
     let listed = FREE.replace("[start.velocities]", "[invariants]\nspeed = \"x'\"\n[start.velocities]");
     for member in started(&listed.replace("FORCE", "(t/2)^40"), &[0.5, 1.0, 3.0], &Settings::default(), true) {
-        let doubt = member.doubt.as_ref().expect("x' is not constant");
-        assert!(doubt.because.starts_with("speed is not constant"), "{}", doubt.because);
-        assert!((0.5..2.0).contains(&doubt.from), "{}", doubt.from);
+        let [breach] = &member.breaches[..] else { panic!("x' is not constant") };
+        assert_eq!(breach.name, "speed");
+        assert!((1.0..=3.0).contains(&breach.t), "{}", breach.t);
     }
 }

@@ -1,7 +1,7 @@
 //! Motions, sampled, and the gaps between them.
 
 use deltaq::{Metric, SolveError, compare_motions, constant_names};
-use mechanics::{Observables, System, Watched};
+use mechanics::{Constancy, Observables, System, Watched};
 use scene::Scene;
 use serde_json::{Value, json};
 
@@ -81,7 +81,7 @@ fn down(scene: &Scene, answers: &[Value], numbers: &[f64]) -> Result<Value, Solv
 /// The energy and the observables of a system.
 fn observables(system: &System) -> Result<Observables, SolveError> {
     let mut system = system.clone();
-    let energy = Watched { name: "energy".into(), expression: system.energy(), constant: false };
+    let energy = Watched { name: "energy".into(), expression: system.energy(), constancy: Constancy::Free };
     system.watched.insert(0, energy);
     Ok(Observables::of(&system)?)
 }

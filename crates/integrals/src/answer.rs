@@ -4,7 +4,7 @@ use std::iter::zip;
 
 use decision::{DecisionError, ExactStart};
 use deltaq::{CHETAEV, Choice, Contradicted, Settings, SolveError, derive, solve_choice};
-use mechanics::{System, Watched};
+use mechanics::{Constancy, System, Watched};
 use scene::Scene;
 use symbolic::{Expr, Graph, Symbol};
 
@@ -65,7 +65,7 @@ impl Integrals {
         if let Err(fault @ Open::Name { .. }) = ansatz {
             return Err(NoAnswer::Open(fault));
         }
-        let own: Vec<&Watched> = system.watched.iter().filter(|watched| watched.constant).collect();
+        let own: Vec<&Watched> = system.watched.iter().filter(|watched| watched.is_constant()).collect();
         let expressions: Vec<_> = own.iter().map(|watched| watched.expression).collect();
         let held = constants(system, &equations, &start, &expressions);
         let invariants = held.map(|held| zip(own.iter().map(|watched| watched.name.clone()), held).collect());
@@ -116,7 +116,7 @@ pub fn watched(scene: &Scene, choice: &Choice) -> Result<Vec<Watched>, NoAnswer>
     };
     let read = found.printed.iter().filter(is_seen).map(|printed| {
         let expression = again(&system.graph, &printed.text).map_err(Open::Other)?;
-        Ok(Watched { name: printed.text.clone(), expression, constant: true })
+        Ok(Watched { name: printed.text.clone(), expression, constancy: Constancy::Certain })
     });
     read.collect::<Result<_, _>>().map_err(NoAnswer::Open)
 }

@@ -165,7 +165,7 @@ fn laws(scene: &Scene, instants: &[Instant], numbers: &FirstOrder) -> Result<Vec
 fn drifts(scene: &Scene, instants: &[Instant]) -> Result<Vec<Drift>, JudgeError> {
     let system = &scene.system;
     let mut wanted: Vec<(String, symbolic::Expr)> =
-        system.watched.iter().filter(|w| w.constant).map(|w| (w.name.clone(), w.expression)).collect();
+        system.watched.iter().filter(|w| w.is_constant()).map(|w| (w.name.clone(), w.expression)).collect();
     let kept = system.is_autonomous() && !system.has_forces() && system.is_workless(&system.constraint_jacobian());
     if kept {
         wanted.insert(0, ("energy".into(), system.energy()));

@@ -83,5 +83,5 @@ pub use start::{
     StartProgram, StartShape, check_reactions, check_regularity, complete_removal_start, complete_start,
     project_velocity,
 };
-pub use system::{Coordinate, Parameter, State, System, Watched, fresh_symbol};
+pub use system::{Constancy, Coordinate, Parameter, State, System, Watched, fresh_symbol};
 pub use view::{Body, Pose, Poses, Touch, View};

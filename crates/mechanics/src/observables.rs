@@ -17,7 +17,7 @@ impl Observables {
     /// # Errors
     /// [`CompileError`] where one contains another symbol than `(t, q, v)`.
     pub fn of(system: &System) -> Result<Self, CompileError> {
-        let watched = system.watched.iter().filter(|watched| !watched.constant);
+        let watched = system.watched.iter().filter(|watched| !watched.is_constant());
         let (names, expressions): (Vec<String>, Vec<Expr>) = watched.map(|w| (w.name.clone(), w.expression)).unzip();
         let inputs: Vec<Symbol> = [&[system.time], &system.positions()[..], &system.velocities()].concat();
         Ok(Observables { names, program: system.evaluator(&inputs, &expressions)? })

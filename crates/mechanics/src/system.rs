@@ -38,8 +38,26 @@ pub struct Watched {
     pub name: String,
     /// It, in `(q, v, t)`.
     pub expression: Expr,
-    /// Whether it is to stay what it is at the start, in whatever formulation.
-    pub constant: bool,
+    /// Whether it is to stay what it is at the start.
+    pub constancy: Constancy,
+}
+
+/// Whether a quantity is to stay what it is at the start of a motion.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Constancy {
+    /// It may change: an observable.
+    Free,
+    /// The user expects it, of every formulation. A motion that changes it is none the worse for that.
+    Expected,
+    /// It follows from the constraints, or from the equations of this motion: one that changes it is wrong.
+    Certain,
+}
+
+impl Watched {
+    /// Whether it is to be constant, by whatever right.
+    pub fn is_constant(&self) -> bool {
+        self.constancy != Constancy::Free
+    }
 }
 
 /// A mechanical system: coordinates `q ∈ Rⁿ`, Lagrangian `L(q, v, t)`, constraints `f(q, v, t) = 0 ∈ Rʰ`

@@ -10,7 +10,7 @@ use super::order::in_order;
 use super::overrides::Overrides;
 use super::section::{Entry, Section, Source, Value};
 use crate::{NameFault, SceneError, SceneErrorKind, format};
-use mechanics::{Parameter, System, Watched};
+use mechanics::{Constancy, Parameter, System, Watched};
 
 /// Reads everything that makes the system, and the positions at the start.
 pub(super) fn build<'a>(
@@ -67,8 +67,8 @@ pub(super) fn build<'a>(
     source.note(definitions(&mut context));
     source.note(read_system(&mut context));
     context.system.domains = context.system.graph.lost_domains(&context.system.written());
-    for (section, constant) in [("invariants", true), ("observables", false)] {
-        source.note(watched(&mut context, section, constant));
+    for (section, constancy) in [("invariants", Constancy::Expected), ("observables", Constancy::Free)] {
+        source.note(watched(&mut context, section, constancy));
     }
     context.time = source.note(start_time(&mut context)).unwrap_or_default();
     positions(&mut context, &coordinates)?;
@@ -200,11 +200,11 @@ fn read_system(context: &mut Context) -> Result<(), SceneError> {
 }
 
 /// What the user wants to see: a vector by its components. Positions that are to stay where they are, too.
-fn watched(context: &mut Context, section: &str, constant: bool) -> Result<(), SceneError> {
-    if constant {
+fn watched(context: &mut Context, section: &str, constancy: Constancy) -> Result<(), SceneError> {
+    if constancy == Constancy::Expected {
         for (number, _, g) in &context.on_positions {
             let name = format!("constraint {number} on positions");
-            context.system.watched.push(Watched { name, expression: *g, constant });
+            context.system.watched.push(Watched { name, expression: *g, constancy: Constancy::Certain });
         }
     }
     let Some(section) = context.root.section(section)? else { return Ok(()) };
@@ -222,7 +222,7 @@ fn watched(context: &mut Context, section: &str, constant: bool) -> Result<(), S
                 symbolic::Value::Vector(_) if i < 3 => format!("{}.{}", entry.key, &"xyz"[i..=i]),
                 _ => format!("{} {}", entry.key, i + 1),
             };
-            context.system.watched.push(Watched { name, expression, constant });
+            context.system.watched.push(Watched { name, expression, constancy });
         }
     }
     Ok(())

@@ -42,7 +42,7 @@ fn written(scene: &Scene) -> String {
     }
     write_system(&mut text, system);
     for (header, constant) in [("invariants", true), ("observables", false)] {
-        let watched: Vec<_> = system.watched.iter().filter(|watched| watched.constant == constant).collect();
+        let watched: Vec<_> = system.watched.iter().filter(|watched| watched.is_constant() == constant).collect();
         if !watched.is_empty() {
             text.header(header);
         }

@@ -6,7 +6,7 @@ use super::threads::shared;
 use super::{Ensemble, EnsembleMember, EnsembleOptions, MemberRun};
 use crate::clock::Clock;
 use crate::metric::subtract;
-use crate::{Doubt, ErrorEstimate, SolveError};
+use crate::{Breach, Doubt, ErrorEstimate, SolveError};
 use equations::Outputs;
 
 /// What became of a member, read off.
@@ -20,6 +20,8 @@ pub struct MemberMotion {
     /// Where the scene's own constraints, or what is listed as constant, are off by more than the two runs
     /// leave open; never without [`EnsembleOptions::estimate`].
     pub doubt: Option<Doubt>,
+    /// [`crate::Motion::breaches`]; empty where no estimate was asked for.
+    pub breaches: Vec<Breach>,
     /// The run behind it.
     pub run: MemberRun,
 }
@@ -65,12 +67,12 @@ impl Ensemble {
         let (runs, read) = self.read(&reader, members, runs, options);
         let joined = |(run, read): (Outcome, Option<Result<Reading, SolveError>>)| {
             let mut run = run?;
-            let Reading { outputs, estimate, doubt, .. } = read.unwrap_or_else(|| Ok(Reading::default()))?;
+            let Reading { outputs, estimate, doubt, breaches, .. } = read.unwrap_or_else(|| Ok(Reading::default()))?;
             for values in [&mut run.states, &mut run.differences, &mut run.unknowns] {
                 let mut asked = instants.iter().map(|(_, asked)| *asked);
                 values.retain(|_| asked.next().unwrap_or(true));
             }
-            Ok(MemberMotion { outputs, estimate, doubt, run })
+            Ok(MemberMotion { outputs, estimate, doubt, breaches, run })
         };
         let mut motions: Vec<_> = runs.into_iter().zip(read).map(joined).collect();
         let singly = |(motion, member): (&mut Result<MemberMotion, SolveError>, &EnsembleMember)| {

@@ -10,7 +10,7 @@ use crate::metric::subtract;
 use crate::round_off::BEFORE_THE_END;
 use crate::single_run::outputs;
 use crate::sizes::sizes;
-use crate::watch::Watch;
+use crate::watch::{Breach, Watch};
 use crate::{Doubt, Ending, ErrorEstimate, Metric, SolveError};
 
 /// Largest number of instants, beside the start, that are examined for round-off.
@@ -36,6 +36,7 @@ pub(super) struct Reading {
     pub(super) outputs: Vec<Outputs>,
     pub(super) estimate: Option<ErrorEstimate>,
     pub(super) doubt: Option<Doubt>,
+    pub(super) breaches: Vec<Breach>,
     /// Round-off that has to be put into its rates.
     pub(super) disturbance: Option<Vec<f64>>,
 }
@@ -100,6 +101,7 @@ impl Reader<'_> {
             read.push(now);
         }
         let mut doubt = if is_clear { None } else { self.broken(member, run) };
+        let breaches = if is_clear { Vec::new() } else { self.watch.breaches.clone() };
         let mut disturbance = None;
         if doubt.is_none() && options.estimate {
             match self.round_off(member, run, &mut sizes) {
@@ -109,7 +111,7 @@ impl Reader<'_> {
             }
         }
         let estimate = options.estimate.then(|| differences.estimate(&self.metric));
-        Ok(Reading { outputs: read, estimate, doubt, disturbance })
+        Ok(Reading { outputs: read, estimate, doubt, breaches, disturbance })
     }
 
     fn at(&mut self, run: &MemberRun, i: usize, t: f64, y: &[f64]) -> Result<Outputs, SolveError> {

@@ -60,10 +60,10 @@ impl Ensemble {
             alone: Some("the pivots of the others vanish here: a motion of its own".into()),
             ..MemberRun::default()
         };
-        let (estimate, doubt) = match options.estimate {
-            true => (Some(estimate), motion.doubt),
-            false => (None, None),
+        let (estimate, doubt, breaches) = match options.estimate {
+            true => (Some(estimate), motion.doubt, motion.breaches),
+            false => (None, None, Vec::new()),
         };
-        Some(MemberMotion { outputs, estimate, doubt, run })
+        Some(MemberMotion { outputs, estimate, doubt, breaches, run })
     }
 }

@@ -215,7 +215,31 @@ fn why(comparison: &Comparison) -> Vec<String> {
             enumerate(&substituted)
         ));
     }
+    sentences.extend(breaches(comparison));
     sentences
+}
+
+/// For each quantity that the user expects to be constant and some formulation changes: which do.
+fn breaches(comparison: &Comparison) -> Vec<String> {
+    let motions = || {
+        let runs = comparison.runs.iter().enumerate().filter(|(i, _)| is_listed(comparison, *i));
+        runs.filter_map(|(i, run)| Some((label(comparison, i), run.outcome.as_ref().ok()?)))
+    };
+    let mut names: Vec<&str> = motions().flat_map(|(_, motion)| &motion.breaches).map(|b| &b.name[..]).collect();
+    names.sort_unstable();
+    names.dedup();
+    let of = |name: &str| {
+        let (mut changed, mut kept) = (Vec::new(), Vec::new());
+        for (label, motion) in motions().filter(|(_, m)| m.equations.invariants.iter().any(|i| i.name == name)) {
+            match motion.breaches.iter().find(|breach| breach.name == name) {
+                Some(breach) => changed.push(format!("{label} (by {})", short(breach.change))),
+                None => kept.push(label.to_owned()),
+            }
+        }
+        let kept = if kept.is_empty() { String::new() } else { format!("; constant for {}", enumerate(&kept)) };
+        format!("{name} is not constant for {}{kept}.", enumerate(&changed))
+    };
+    names.into_iter().map(of).collect()
 }
 
 /// The runs of the removed constraint whose equations are Lagrange's of the substituted `L`: with `P ≡ 0`,
