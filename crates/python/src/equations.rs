@@ -1,10 +1,7 @@
 //! Equations of motion as functions of arrays.
 
-use std::sync::{Mutex, MutexGuard, PoisonError};
-
 use deltaq::{
-    Choice, EquationStyle, Language, Prepared, SolveError, code, constant_names, derive_at, equations_text, prepare,
-    setting,
+    EquationStyle, Language, Prepared, SolveError, code, constant_names, derive_at, equations_text, prepare, setting,
 };
 use equations::{Compiled, EvaluationFailure, Formulation, Role};
 use integrate::Method;
@@ -19,6 +16,7 @@ use crate::arrays::{Array, Floats, States, array, list};
 use crate::at_run_time::AtRunTime;
 use crate::kept::Reduced;
 use crate::outputs::{Names, Outputs, observed};
+use crate::shared::Shared;
 use crate::system::System;
 use crate::{arguments, background, errors};
 
@@ -28,9 +26,9 @@ use crate::{arguments, background, errors};
 /// number and y of shape (m,), or k of them at once, y of shape (k, m) with t a number or of shape (k,).
 #[pyclass(frozen, module = "deltaq")]
 pub(crate) struct Equations {
-    ready: Mutex<Prepared>,
+    ready: Shared<Prepared>,
     /// Those that no thread works with: each call takes one, and brings it back.
-    spare: Mutex<Vec<Prepared>>,
+    spare: Shared<Vec<Prepared>>,
     /// Scene and choice; equations for other numbers.
     pub(crate) at_run_time: AtRunTime,
     dimension: usize,
@@ -74,39 +72,29 @@ impl Equations {
         let states: Vec<String> = equations.states.iter().map(|y| equations.graph.name(y.symbol)).collect();
         Ok(Equations {
             system: system.clone().unbind(),
-            spare: Mutex::default(),
+            spare: Shared::default(),
             dimension: scene.system.dimension(),
             at_run_time: AtRunTime::new(scene, choice, states.clone()),
             formulation: equations.formulation,
             removal: equations.removal.as_ref().map(|r| r.name.clone()),
             states,
             constants: constant_names(equations),
-            ready: Mutex::new(made),
+            ready: Shared::new(made),
         })
     }
 
-    fn ready(&self) -> MutexGuard<'_, Prepared> {
-        self.ready.lock().unwrap_or_else(PoisonError::into_inner)
-    }
-
     fn scene(&self) -> Scene {
-        self.scene_and_choice().0.clone()
-    }
-
-    pub(crate) fn scene_and_choice(&self) -> MutexGuard<'_, (Scene, Choice)> {
-        self.at_run_time.scene_and_choice()
+        self.at_run_time.scene_and_choice().0
     }
 
     /// Calls `body` with equations that no other thread has, from the same guess in each call.
     pub(crate) fn with<T>(&self, body: impl FnOnce(&mut Prepared) -> T) -> T {
-        let spare = || self.spare.lock().unwrap_or_else(PoisonError::into_inner);
-        let kept = spare().pop();
-        let mut ready = kept.unwrap_or_else(|| self.ready().clone());
+        let mut ready = self.spare.with(Vec::pop).unwrap_or_else(|| self.ready.copy());
         if !ready.guess.is_empty() {
             ready.compiled.set_guess(&ready.guess);
         }
         let result = body(&mut ready);
-        spare().push(ready);
+        self.spare.with(|spare| spare.push(ready));
         result
     }
 
@@ -136,41 +124,43 @@ impl Equations {
         States::read(t, y, self.states.len())
     }
 
-    fn code(&self, language: Language) -> PyResult<String> {
-        let scene = self.scene();
-        code(&scene, &self.ready(), language).map_err(errors::solve)
+    fn code(&self, py: Python<'_>, language: Language) -> PyResult<String> {
+        py.detach(|| code(&self.scene(), &self.ready.copy(), language)).map_err(errors::solve)
     }
 
     /// The state with these coordinates, velocities and multipliers, and the places of the velocities in it.
     fn state(&self, q: &[f64], v: &[f64], mu: &[f64]) -> PyResult<(Vec<f64>, Vec<usize>)> {
-        let ready = self.ready();
-        let equations = &ready.equations;
-        let place =
-            |list: &[symbolic::Expr], symbol| list.iter().position(|&e| equations.graph.as_symbol(e) == Some(symbol));
-        let multipliers: Vec<_> = equations.multipliers.iter().map(|m| m.expression).collect();
-        let (mut y, mut velocities) = (Vec::new(), vec![None; q.len()]);
-        for state in &equations.states {
-            let value = match state.role {
-                Role::Position => place(&equations.coordinates, state.symbol).map(|i| q[i]),
-                Role::Velocity => place(&equations.velocities, state.symbol).map(|i| {
-                    velocities[i] = Some(y.len());
-                    v[i]
-                }),
-                Role::Multiplier => place(&multipliers, state.symbol).and_then(|i| mu.get(i).copied()),
-                _ => None,
-            };
-            y.extend(value);
-        }
-        let places: Option<Vec<usize>> = velocities.into_iter().collect();
-        match places.filter(|_| y.len() == equations.states.len()) {
-            Some(places) => Ok((y, places)),
-            None => Err(PyValueError::new_err(format!(
+        let found = self.ready.with(|ready| state(&ready.equations, q, v, mu));
+        found.ok_or_else(|| {
+            PyValueError::new_err(format!(
                 "the states of the {} formulation ({}) are not coordinates, velocities and the given mu; use rates",
                 self.formulation,
                 self.states.join(", ")
-            ))),
-        }
+            ))
+        })
     }
+}
+
+/// The state with these coordinates, velocities and multipliers, and the places of the velocities in it.
+fn state(equations: &equations::Equations, q: &[f64], v: &[f64], mu: &[f64]) -> Option<(Vec<f64>, Vec<usize>)> {
+    let place =
+        |list: &[symbolic::Expr], symbol| list.iter().position(|&e| equations.graph.as_symbol(e) == Some(symbol));
+    let multipliers: Vec<_> = equations.multipliers.iter().map(|m| m.expression).collect();
+    let (mut y, mut velocities) = (Vec::new(), vec![None; q.len()]);
+    for state in &equations.states {
+        let value = match state.role {
+            Role::Position => place(&equations.coordinates, state.symbol).map(|i| q[i]),
+            Role::Velocity => place(&equations.velocities, state.symbol).map(|i| {
+                velocities[i] = Some(y.len());
+                v[i]
+            }),
+            Role::Multiplier => place(&multipliers, state.symbol).and_then(|i| mu.get(i).copied()),
+            _ => None,
+        };
+        y.extend(value);
+    }
+    let places: Option<Vec<usize>> = velocities.into_iter().collect();
+    places.filter(|_| y.len() == equations.states.len()).map(|places| (y, places))
 }
 
 #[pymethods]
@@ -178,13 +168,13 @@ impl Equations {
     /// The equations and what was left out of them, in the language of scenes.
     #[getter]
     fn text(&self) -> String {
-        equations_text(&self.ready().equations, EquationStyle::Plain)
+        self.ready.with(|ready| equations_text(&ready.equations, EquationStyle::Plain))
     }
 
     /// The equations in LaTeX: one `aligned` environment.
     #[getter]
     fn latex(&self) -> String {
-        let equations = &self.ready().equations;
+        let equations = &self.ready.copy().equations;
         let latex = |e| equations.graph.latex(e);
         let lines: Vec<String> =
             equations.statements.iter().map(|s| format!("{} &= {}", latex(s.left), latex(s.right))).collect();
@@ -195,20 +185,20 @@ impl Equations {
     ///
     /// SolveError where unknowns of the instant are not found by linear equations; so in all three languages.
     #[pyo3(signature = ())]
-    fn to_c(&self) -> PyResult<String> {
-        self.code(Language::C)
+    fn to_c(&self, py: Python<'_>) -> PyResult<String> {
+        self.code(py, Language::C)
     }
 
     /// A module of Python: rates(t, y) and outputs(t, y) in NumPy, for one state or many at once.
     #[pyo3(signature = ())]
-    fn to_numpy(&self) -> PyResult<String> {
-        self.code(Language::Numpy)
+    fn to_numpy(&self, py: Python<'_>) -> PyResult<String> {
+        self.code(py, Language::Numpy)
     }
 
     /// A module of Python: RATES, OUTPUTS, MATRIX and RIGHT as matrices of SymPy in STATES and UNKNOWNS.
     #[pyo3(signature = ())]
-    fn to_sympy(&self) -> PyResult<String> {
-        self.code(Language::Sympy)
+    fn to_sympy(&self, py: Python<'_>) -> PyResult<String> {
+        self.code(py, Language::Sympy)
     }
 
     /// The state y(t0) that belongs to the start of the system, shape (m,).
@@ -217,7 +207,7 @@ impl Equations {
     #[pyo3(signature = (constants=None))]
     fn initial_state<'py>(&self, py: Python<'py>, constants: Option<Bound<'_, PyAny>>) -> Array<'py> {
         let rule = arguments::constants(constants.as_ref(), None)?;
-        let Prepared { equations, start, .. } = self.ready().clone();
+        let Prepared { equations, start, .. } = self.ready.copy();
         let start = match rule {
             None => start,
             Some(rule) => {
@@ -297,7 +287,7 @@ impl Equations {
 
     fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Reduced<'py>> {
         let (py, Equations { system, formulation, removal, .. }) = (slf.py(), slf.get());
-        let given = slf.get().scene_and_choice().1.constants.clone();
+        let given = slf.get().at_run_time.scene_and_choice().1.constants;
         let state = PyDict::new(py);
         state.set_item("system", system)?;
         state.set_item("formulation", formulation)?;

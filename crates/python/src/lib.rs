@@ -24,6 +24,7 @@ mod reading;
 mod residuals;
 mod scene_text;
 mod sensitivities;
+mod shared;
 mod system;
 mod trajectory;
 

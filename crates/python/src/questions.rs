@@ -65,7 +65,7 @@ impl System {
         constants: Option<Bound<'_, PyAny>>,
     ) -> PyResult<Linearization> {
         let given = arguments::constants(constants.as_ref(), mu0)?;
-        let scene = self.scene().clone();
+        let scene = self.scene();
         let interrupt = Interrupt::default();
         let formulation = arguments::formulation(formulation)?;
         let (scene, choice) = arguments::choice(py, &interrupt, scene, (formulation, removal), given)?;
@@ -96,7 +96,7 @@ impl System {
         };
         let name: String = name.extract()?;
         let values = list(&name, &values.extract()?)?;
-        let scene = slf.get().scene().clone();
+        let scene = slf.get().scene();
         let formulation = arguments::formulation(formulation)?;
         let (scene, choice) = arguments::choice(py, &Interrupt::default(), scene, (formulation, removal), given)?;
         LinearizationSweep::over(slf, scene, choice, (&name, values), (free.unwrap_or_default(), find))
@@ -149,7 +149,7 @@ impl System {
         let (settings, interrupt) = arguments::settings(method, tolerance, project, max_steps, max_step, time_limit)?;
         let (formulation, in_form) = arguments::in_form(form, formulation)?;
         let settings = Settings { form: in_form, ..settings };
-        let scene = slf.get().scene().clone();
+        let scene = slf.get().scene();
         let (mut scene, choice) = arguments::choice(py, &interrupt, scene, (formulation, removal), given)?;
         let times = match times {
             None => None,
@@ -210,7 +210,7 @@ impl System {
     ) -> PyResult<Ensemble> {
         let (py, constants) = (slf.py(), arguments::constants(constants.as_ref(), mu0)?);
         let (settings, interrupt) = arguments::settings("taylor", tolerance, project, max_steps, max_step, time_limit)?;
-        let (scene, given) = (slf.get().scene().clone(), constants.is_some());
+        let (scene, given) = (slf.get().scene(), constants.is_some());
         let formulation = arguments::formulation(formulation)?;
         let (scene, choice) = arguments::choice(py, &interrupt, scene, (formulation, removal), constants)?;
         let (times, end) = times.map_or_else(
@@ -247,7 +247,7 @@ impl System {
     ) -> PyResult<Comparison> {
         let (py, fits) = (slf.py(), arguments::fits(fits)?);
         let (settings, interrupt) = arguments::settings("auto", tolerance, true, max_steps, max_step, time_limit)?;
-        let scene = slf.get().scene().clone();
+        let scene = slf.get().scene();
         let compared = background::run(py, &interrupt, move || compare(scene, fits, &settings))?;
         Comparison::new(slf, compared.map_err(errors::solve)?)
     }
@@ -294,7 +294,7 @@ impl System {
     /// None where nothing is seen to move. Between times a curve is straight.
     #[pyo3(signature = (curves))]
     fn _moving(&self, curves: Vec<(String, String, Floats<'_>, Floats<'_>)>) -> PyResult<Option<String>> {
-        let mut scene = self.scene().clone();
+        let mut scene = self.scene();
         let mut motions = Vec::new();
         let mut end = scene.start.t;
         for (label, formulation, times, coordinates) in curves {

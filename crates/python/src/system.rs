@@ -1,9 +1,9 @@
 //! Systems, and what can be asked of them.
 
 use std::path::Path;
-use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use deltaq::{integrability, removals};
+use integrate::Interrupt;
 use numpy::PyArrayDyn;
 use pyo3::prelude::*;
 use pyo3::types::{IntoPyDict, PyDict};
@@ -11,9 +11,10 @@ use scene::Scene;
 
 use crate::arguments::{Numbers, Table};
 use crate::arrays::{Array, Floats, Points, array, fixed};
-use crate::errors;
 use crate::kept::kept;
 use crate::scene_text::{Arguments, Formula, Formulas, write};
+use crate::shared::Shared;
+use crate::{background, errors};
 
 /// A point of a motion: time, coordinates, velocities.
 #[pyclass(frozen, get_all, module = "deltaq")]
@@ -67,7 +68,7 @@ impl State {
 /// SceneError names the line of the scene file that the arguments amount to.
 #[pyclass(frozen, module = "deltaq")]
 pub(crate) struct System {
-    scene: Mutex<Scene>,
+    scene: Shared<Scene>,
     /// What the scene was read from.
     pub(crate) text: String,
     pub(crate) overrides: Overrides,
@@ -88,13 +89,13 @@ impl System {
             Some(path) => Scene::parse_file(path, &text, &overrides),
             None => Scene::parse_with(name, &text, &overrides),
         });
-        let scene = Mutex::new(scene.map_err(|error| errors::scene(py, &error))?);
+        let scene = Shared::new(scene.map_err(|error| errors::scene(py, &error))?);
         Ok(System { scene, text, overrides })
     }
 
-    /// The scene. No lock of Python is waited for while it is held.
-    pub(crate) fn scene(&self) -> MutexGuard<'_, Scene> {
-        self.scene.lock().unwrap_or_else(PoisonError::into_inner)
+    /// A copy of the scene.
+    pub(crate) fn scene(&self) -> Scene {
+        self.scene.copy()
     }
 }
 
@@ -167,31 +168,31 @@ impl System {
     /// Name: that of the file without its ending.
     #[getter]
     pub(crate) fn name(&self) -> String {
-        self.scene().name.clone()
+        self.scene.with(|scene| scene.name.clone())
     }
 
     /// Title, one line.
     #[getter]
     fn title(&self) -> String {
-        self.scene().title.clone()
+        self.scene.with(|scene| scene.title.clone())
     }
 
     /// Where the example is from, empty where that is not said.
     #[getter]
     fn source(&self) -> String {
-        self.scene().source.clone()
+        self.scene.with(|scene| scene.source.clone())
     }
 
     /// Remarks, empty where there are none.
     #[getter]
     fn notes(&self) -> String {
-        self.scene().notes.clone()
+        self.scene.with(|scene| scene.notes.clone())
     }
 
     /// Names of the coordinates, length n.
     #[getter]
     fn coordinates(&self) -> Vec<String> {
-        self.scene().system.coordinates.iter().map(|c| c.name.clone()).collect()
+        self.scene.with(|scene| scene.system.coordinates.iter().map(|c| c.name.clone()).collect())
     }
 
     /// Units of the coordinates, by name.
@@ -203,7 +204,7 @@ impl System {
     /// Number of coordinates, n.
     #[getter]
     fn dimension(&self) -> usize {
-        self.scene().system.dimension()
+        self.scene.with(|scene| scene.system.dimension())
     }
 
     /// Values of the parameters, by name.
@@ -260,7 +261,7 @@ impl System {
     /// The start: t0, q0 and v0 with f(q0, v0, t0) = 0.
     #[getter]
     fn start(&self, py: Python<'_>) -> PyResult<State> {
-        let mechanics::State { t, q, v } = self.scene().start.clone();
+        let mechanics::State { t, q, v } = self.scene.with(|scene| scene.start.clone());
         let n = q.len();
         Ok(State { t, q: fixed(py, q, None, &[n])?.unbind(), v: fixed(py, v, None, &[n])?.unbind() })
     }
@@ -268,34 +269,37 @@ impl System {
     /// Multipliers mu0 at the start of vakonomic motions, length h.
     #[getter]
     fn multipliers(&self) -> Vec<f64> {
-        self.scene().multipliers.clone()
+        self.scene.with(|scene| scene.multipliers.clone())
     }
 
     /// Length of the run, in the unit of time.
     #[getter]
     fn duration(&self) -> f64 {
-        self.scene().duration
+        self.scene.with(|scene| scene.duration)
     }
 
     /// Times at which a step ends, where something is switched.
     #[getter]
     fn breakpoints(&self) -> Vec<f64> {
-        self.scene().system.breakpoints.clone()
+        self.scene.with(|scene| scene.system.breakpoints.clone())
     }
 
     /// Names of removals for the removed-constraint formulation: those written by hand, then automatic ones.
     ///
     /// RemovalError where there is none.
     #[getter]
-    fn removals(&self) -> PyResult<Vec<String>> {
-        let known = removals(&self.scene()).map_err(errors::solve)?;
-        Ok(known.into_iter().map(|r| r.name).collect())
+    fn removals(&self, py: Python<'_>) -> PyResult<Vec<String>> {
+        let scene = self.scene();
+        let known = background::run(py, &Interrupt::default(), move || removals(&scene))?;
+        Ok(known.map_err(errors::solve)?.into_iter().map(|r| r.name).collect())
     }
 
     /// Frobenius' verdict on the constraints, in words; RemovalError where they are dependent at the start.
     #[getter]
-    fn integrability(&self) -> PyResult<String> {
-        Ok(integrability(&self.scene()).map_err(errors::solve)?.to_string())
+    fn integrability(&self, py: Python<'_>) -> PyResult<String> {
+        let scene = self.scene();
+        let found = background::run(py, &Interrupt::default(), move || integrability(&scene))?;
+        Ok(found.map_err(errors::solve)?.to_string())
     }
 
     /// The same system with other numbers in some places; overrides as in `load`, over those of before.
@@ -320,7 +324,7 @@ impl System {
     /// The system as a scene file's text, every start value a number; `parse` of it gives the same system.
     #[pyo3(signature = ())]
     fn to_toml(&self) -> String {
-        self.scene().to_toml()
+        self.scene.with(|scene| scene.to_toml())
     }
 
     /// Constraint residuals f(q, v, t), shape (h,) or (k, h); q, v: (n,) or (k, n); t: a number or (k,).
@@ -328,8 +332,8 @@ impl System {
     fn constraint<'py>(&self, py: Python<'py>, t: Floats<'_>, q: Floats<'_>, v: Floats<'_>) -> Array<'py> {
         let points = Points::read([t, q, v], self.dimension())?;
         let (values, width) = py.detach(|| {
-            let system = &self.scene().system;
-            PyResult::Ok((points.values(system, &system.constraints)?, system.constraints.len()))
+            let system = self.scene().system;
+            PyResult::Ok((points.values(&system, &system.constraints)?, system.constraints.len()))
         })?;
         array(py, values, points.count, &[width])
     }
@@ -342,8 +346,8 @@ impl System {
         let n = self.dimension();
         let points = Points::read([t, q, v], n)?;
         let values = py.detach(|| {
-            let system = &self.scene().system;
-            points.values(system, system.velocity_hessian().entries())
+            let system = self.scene().system;
+            points.values(&system, system.velocity_hessian().entries())
         })?;
         array(py, values, points.count, &[n, n])
     }

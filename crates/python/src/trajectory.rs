@@ -81,10 +81,8 @@ impl Equations {
         if let Some(found) = y0.as_ref().map(Vec::len).filter(|found| *found != width) {
             return Err(PyValueError::new_err(format!("y0 has {found} entries; {width} are needed")));
         }
-        let (begin, (times, end)) = {
-            let (scene, _) = &*self.scene_and_choice();
-            (scene.start.t, ensemble::times(&times, scene)?)
-        };
+        let (scene, _) = self.at_run_time.scene_and_choice();
+        let (begin, (times, end)) = (scene.start.t, ensemble::times(&times, &scene)?);
         let is_end = |&t: &f64| t == begin || t == end;
         let mut options = Options {
             projection: settings.projection,
