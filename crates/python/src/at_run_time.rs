@@ -32,17 +32,17 @@ impl AtRunTime {
         AtRunTime { scene: Shared::new((scene, choice)), states, kept: Shared::default() }
     }
 
-    pub(crate) fn scene_and_choice(&self) -> (Scene, Choice) {
+    pub(crate) fn scene_and_choice(&self) -> PyResult<(Scene, Choice)> {
         self.scene.copy()
     }
 
     /// Equations with parameters of these names as inputs: kept ones, or those that are derived and compiled
     /// now.
     fn ready_for(&self, names: &[String]) -> PyResult<Ready> {
-        if let Some(ready) = self.kept.with(|kept| kept.get_mut(names).and_then(Vec::pop)) {
+        if let Some(ready) = self.kept.with(|kept| kept.get_mut(names).and_then(Vec::pop))? {
             return Ok(ready);
         }
-        let (scene, choice) = self.scene_and_choice();
+        let (scene, choice) = self.scene_and_choice()?;
         let g = &scene.system.graph;
         let known: Vec<String> = scene.system.parameters.iter().map(|p| g.name(p.symbol)).collect();
         if let Some(name) = names.iter().find(|name| !known.contains(name)) {
@@ -67,8 +67,8 @@ impl AtRunTime {
         Ok(Ready { by_name, constants })
     }
 
-    fn keep(&self, names: Vec<String>, ready: Ready) {
-        self.kept.with(|kept| kept.entry(names).or_default().push(ready));
+    fn keep(&self, names: Vec<String>, ready: Ready) -> PyResult<()> {
+        self.kept.with(|kept| kept.entry(names).or_default().push(ready))
     }
 
     /// Calls `body` with the equations for these parameters, for states of the caller's own.
@@ -89,7 +89,7 @@ impl AtRunTime {
             prepared.compiled.set_guess(&prepared.guess);
         }
         let result = body(prepared);
-        self.keep(names, ready);
+        self.keep(names, ready)?;
         Ok(result)
     }
 
@@ -110,7 +110,7 @@ impl AtRunTime {
             y0.into_iter().for_each(|y0| prepared.start = y0);
             body(prepared)
         });
-        self.keep(names, ready);
+        self.keep(names, ready)?;
         result.map_err(errors::solve)
     }
 }

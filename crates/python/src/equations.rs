@@ -14,6 +14,7 @@ use scene::Scene;
 use crate::arguments::Numbers;
 use crate::arrays::{Array, Floats, States, array, list};
 use crate::at_run_time::AtRunTime;
+use crate::background::apart;
 use crate::kept::Reduced;
 use crate::outputs::{Names, Outputs, observed};
 use crate::shared::Shared;
@@ -54,7 +55,7 @@ impl Equations {
         (formulation, removal): (&'static Formulation, Option<&str>),
         given: Option<ConstantsRule>,
     ) -> PyResult<Equations> {
-        let (py, scene) = (system.py(), system.get().scene().clone());
+        let (py, scene) = (system.py(), system.get().scene()?);
         let (settings, interrupt) = arguments::settings("auto", 1e-11, true, 1_000_000, None, None)?;
         let is_given = given.is_some();
         let (scene, mut choice) = arguments::choice(py, &interrupt, scene, (formulation, removal), given)?;
@@ -83,19 +84,19 @@ impl Equations {
         })
     }
 
-    fn scene(&self) -> Scene {
-        self.at_run_time.scene_and_choice().0
+    fn scene(&self) -> PyResult<Scene> {
+        Ok(self.at_run_time.scene_and_choice()?.0)
     }
 
     /// Calls `body` with equations that no other thread has, from the same guess in each call.
-    pub(crate) fn with<T>(&self, body: impl FnOnce(&mut Prepared) -> T) -> T {
-        let mut ready = self.spare.with(Vec::pop).unwrap_or_else(|| self.ready.copy());
+    pub(crate) fn with<T>(&self, body: impl FnOnce(&mut Prepared) -> T) -> PyResult<T> {
+        let mut ready = self.spare.with(Vec::pop)?.map_or_else(|| self.ready.copy(), Ok)?;
         if !ready.guess.is_empty() {
             ready.compiled.set_guess(&ready.guess);
         }
         let result = body(&mut ready);
-        self.spare.with(|spare| spare.push(ready));
-        result
+        self.spare.with(|spare| spare.push(ready))?;
+        Ok(result)
     }
 
     /// What `read` writes, equally many values at each point, where the equations are compiled as `method`
@@ -114,10 +115,10 @@ impl Equations {
             at.each(|t, y| rows.next().map_or(Ok(()), |row| read(&mut ready.compiled, t, y, row)))?;
             Ok(values)
         };
-        py.detach(|| match parameters {
-            None => self.with(work),
+        apart(py, || match parameters {
+            None => self.with(work)?,
             Some(Numbers(numbers)) => self.at_run_time.with_numbers(numbers, work)?,
-        })
+        })?
     }
 
     fn at(&self, t: &Floats<'_>, y: &Floats<'_>) -> PyResult<States> {
@@ -125,12 +126,13 @@ impl Equations {
     }
 
     fn code(&self, py: Python<'_>, language: Language) -> PyResult<String> {
-        py.detach(|| code(&self.scene(), &self.ready.copy(), language)).map_err(errors::solve)
+        let (scene, ready) = (self.scene()?, self.ready.copy()?);
+        apart(py, move || code(&scene, &ready, language))?.map_err(errors::solve)
     }
 
     /// The state with these coordinates, velocities and multipliers, and the places of the velocities in it.
     fn state(&self, q: &[f64], v: &[f64], mu: &[f64]) -> PyResult<(Vec<f64>, Vec<usize>)> {
-        let found = self.ready.with(|ready| state(&ready.equations, q, v, mu));
+        let found = self.ready.with(|ready| state(&ready.equations, q, v, mu))?;
         found.ok_or_else(|| {
             PyValueError::new_err(format!(
                 "the states of the {} formulation ({}) are not coordinates, velocities and the given mu; use rates",
@@ -167,18 +169,19 @@ fn state(equations: &equations::Equations, q: &[f64], v: &[f64], mu: &[f64]) -> 
 impl Equations {
     /// The equations and what was left out of them, in the language of scenes.
     #[getter]
-    fn text(&self) -> String {
+    fn text(&self) -> PyResult<String> {
         self.ready.with(|ready| equations_text(&ready.equations, EquationStyle::Plain))
     }
 
     /// The equations in LaTeX: one `aligned` environment.
     #[getter]
-    fn latex(&self) -> String {
-        let equations = &self.ready.copy().equations;
-        let latex = |e| equations.graph.latex(e);
-        let lines: Vec<String> =
-            equations.statements.iter().map(|s| format!("{} &= {}", latex(s.left), latex(s.right))).collect();
-        format!("\\begin{{aligned}}\n{}\n\\end{{aligned}}", lines.join(" \\\\\n"))
+    fn latex(&self) -> PyResult<String> {
+        self.ready.with(|Prepared { equations, .. }| {
+            let latex = |e| equations.graph.latex(e);
+            let lines: Vec<String> =
+                equations.statements.iter().map(|s| format!("{} &= {}", latex(s.left), latex(s.right))).collect();
+            format!("\\begin{{aligned}}\n{}\n\\end{{aligned}}", lines.join(" \\\\\n"))
+        })
     }
 
     /// A file of C99: functions for rates and outputs without allocation, the start, the parameters.
@@ -207,12 +210,12 @@ impl Equations {
     #[pyo3(signature = (constants=None))]
     fn initial_state<'py>(&self, py: Python<'py>, constants: Option<Bound<'_, PyAny>>) -> Array<'py> {
         let rule = arguments::constants(constants.as_ref(), None)?;
-        let Prepared { equations, start, .. } = self.ready.copy();
+        let Prepared { equations, start, .. } = self.ready.copy()?;
         let start = match rule {
             None => start,
             Some(rule) => {
                 let (settings, interrupt) = arguments::settings("auto", 1e-11, true, 1_000_000, None, None)?;
-                let scene = self.scene();
+                let scene = self.scene()?;
                 let work = move || prepare(setting(&scene), equations, &rule, &settings);
                 background::run(py, &interrupt, work)?.map_err(errors::solve)?.start
             }
@@ -246,7 +249,7 @@ impl Equations {
     fn outputs(&self, py: Python<'_>, t: Floats<'_>, y: Floats<'_>) -> PyResult<Outputs> {
         let at = self.at(&t, &y)?;
         let work = |ready: &mut Prepared| -> PyResult<_> {
-            let mut observables = Observables::of(&self.scene().system).map_err(errors::solve)?;
+            let mut observables = Observables::of(&self.scene()?.system).map_err(errors::solve)?;
             let mut rows = Vec::new();
             at.each(|t, y| {
                 rows.push(observed(&mut observables, t, ready.compiled.outputs(t, y)?));
@@ -254,7 +257,7 @@ impl Equations {
             })?;
             Ok((rows, Names::of(&ready.equations, &observables)))
         };
-        let (rows, names) = py.detach(|| self.with(work))?;
+        let (rows, names) = apart(py, || self.with(work))???;
         Outputs::new(py, &rows, self.dimension, &names, at.count)
     }
 
@@ -281,13 +284,13 @@ impl Equations {
         let (y, places) = self.state(&q, &v, &mu)?;
         let mut rates = vec![0.0; y.len()];
         let work = |ready: &mut Prepared| ready.compiled.rates(t, &y, &mut rates);
-        py.detach(|| self.with(work)).map_err(|error| errors::evaluation(&error, t))?;
+        apart(py, || self.with(work))??.map_err(|error| errors::evaluation(&error, t))?;
         array(py, places.into_iter().map(|i| rates[i]).collect(), None, &[self.dimension])
     }
 
     fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Reduced<'py>> {
         let (py, Equations { system, formulation, removal, .. }) = (slf.py(), slf.get());
-        let given = slf.get().at_run_time.scene_and_choice().1.constants;
+        let given = slf.get().at_run_time.scene_and_choice()?.1.constants;
         let state = PyDict::new(py);
         state.set_item("system", system)?;
         state.set_item("formulation", formulation)?;
@@ -296,11 +299,11 @@ impl Equations {
         Ok((py.import("deltaq")?.getattr("_again")?, ("Equations", state)))
     }
 
-    fn _repr_latex_(&self) -> String {
-        format!("$\\displaystyle {}$", self.latex())
+    fn _repr_latex_(&self) -> PyResult<String> {
+        Ok(format!("$\\displaystyle {}$", self.latex()?))
     }
 
-    fn __str__(&self) -> String {
+    fn __str__(&self) -> PyResult<String> {
         self.text()
     }
 

@@ -10,6 +10,7 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
 use crate::arrays::{Array, Floats, array};
+use crate::background::whole;
 use crate::shared::Shared;
 use crate::system::System;
 use crate::{arguments, background, errors};
@@ -57,12 +58,12 @@ impl _Fitted {
                 let by = if slopes { jacobian.tr_mul(&values).iter().copied().collect() } else { Vec::new() };
                 (values.norm_squared(), by)
             }))
-        });
+        })?;
         found.map_err(PyValueError::new_err)
     }
 
     /// An answer of the fits, which can take long or be waited for long.
-    fn ask<T: Send>(&self, py: Python<'_>, ask: impl FnOnce(&mut Vec<Row>) -> T + Send) -> T {
+    fn ask<T: Send>(&self, py: Python<'_>, ask: impl FnOnce(&mut Vec<Row>) -> T + Send) -> PyResult<T> {
         py.detach(|| self.rows.with(ask))
     }
 }
@@ -70,7 +71,7 @@ impl _Fitted {
 #[pymethods]
 impl _Fitted {
     /// Names of the unknowns of formulation `place`, in the order of theta, with the least that each can be.
-    fn unknowns(&self, py: Python<'_>, place: usize) -> Vec<(String, Option<f64>)> {
+    fn unknowns(&self, py: Python<'_>, place: usize) -> PyResult<Vec<(String, Option<f64>)>> {
         self.ask(py, |rows| {
             let problem = rows[place].problem.as_ref();
             problem.map_or(Vec::new(), |problem| problem.unknowns().iter().map(|u| (u.label(), u.bound)).collect())
@@ -95,7 +96,7 @@ impl _Fitted {
 
     /// How χ² rises above its least where an unknown has these values, shape (k,), and the others are fitted
     /// again; None where there is none of this name.
-    fn rises(&self, py: Python<'_>, place: usize, name: &str, at: Vec<f64>) -> Option<Vec<f64>> {
+    fn rises(&self, py: Python<'_>, place: usize, name: &str, at: Vec<f64>) -> PyResult<Option<Vec<f64>>> {
         self.ask(py, |rows| {
             let (problem, fit) = (rows[place].problem.as_ref()?, rows[place].fit.as_ref().ok()?);
             profile(problem, fit, name, &at)
@@ -103,7 +104,7 @@ impl _Fitted {
     }
 
     /// Residuals of formulation `place`: film, column, time, (fitted - seen)/sigma.
-    fn residuals(&self, py: Python<'_>, place: usize) -> Vec<(usize, usize, f64, f64)> {
+    fn residuals(&self, py: Python<'_>, place: usize) -> PyResult<Vec<(usize, usize, f64, f64)>> {
         self.ask(py, |rows| {
             let fit = rows[place].fit.as_ref().ok();
             fit.map_or(Vec::new(), |fit| fit.residuals.iter().map(|r| (r.film, r.column, r.t, r.value)).collect())
@@ -130,9 +131,10 @@ impl System {
         tolerance: f64,
         max_steps: usize,
     ) -> PyResult<_Fitted> {
-        let scene = self.scene();
+        let scene = self.scene()?;
         let deviations = Deviations::written(&sigma).map_err(refused)?;
-        let film = |(name, text): &(String, String)| Film::read(&scene, name, text, &deviations).map_err(refused);
+        let film =
+            |(name, text): &(String, String)| whole(|| Film::read(&scene, name, text, &deviations))?.map_err(refused);
         let mut films = tables.iter().map(film).collect::<PyResult<Vec<_>>>()?;
         for (film, name, value) in known {
             let count = films.len();
@@ -183,11 +185,11 @@ impl System {
         max_steps: usize,
         threads: usize,
     ) -> PyResult<String> {
-        let scene = self.scene();
+        let scene = self.scene()?;
         let law: Vec<Unknown> = read(&law)?;
         let deviations = Deviations::written(&sigma).map_err(refused)?;
         let times: Sampling = film.parse().map_err(refused)?;
-        let film = Film::planned(&scene, &columns, times, &deviations).map_err(refused)?;
+        let film = whole(|| Film::planned(&scene, &columns, times, &deviations))?.map_err(refused)?;
         let films = vec![film; films.max(1)];
         let (unknowns, over): (Vec<Unknown>, Vec<Range>) = (read(&free)?, read(&over)?);
         let settings = settings(tolerance, max_steps)?;

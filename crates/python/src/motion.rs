@@ -321,7 +321,7 @@ impl Motion {
             let rows = instants.iter().map(row).collect::<Result<Vec<_>, SolveError>>()?;
             Ok((rows, Names::of(&motion.equations, program)))
         };
-        let (rows, names) = py.detach(|| integrated.with(read)).map_err(|error: SolveError| errors::solve(error))?;
+        let (rows, names) = py.detach(|| integrated.with(read))?.map_err(|error: SolveError| errors::solve(error))?;
         Outputs::new(py, &rows, self.coordinate_names.len(), &names, t.count())
     }
 

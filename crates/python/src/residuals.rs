@@ -10,6 +10,7 @@ use scene::Scene;
 
 use crate::arguments::{Numbers, Table, unknown};
 use crate::arrays::{Array, Floats, array, finite, list};
+use crate::background::whole;
 use crate::shared::Shared;
 use crate::system::System;
 use crate::{arguments, errors};
@@ -73,7 +74,7 @@ impl Residuals {
             return Err(PyValueError::new_err(format!("penalty is {penalty}; it must be above 0 and finite")));
         }
         let asked: Vec<&str> = names.iter().map(String::as_str).collect();
-        let model = Model::new(scene, choice, &asked, times, settings).map_err(errors::solve)?;
+        let model = whole(|| Model::new(scene, choice, &asked, times, settings))?.map_err(errors::solve)?;
         let coordinates: Vec<&str> = scene.system.coordinates.iter().map(|c| c.name.as_str()).collect();
         let multipliers = model.multipliers();
         let known = || {
@@ -131,8 +132,8 @@ impl Residuals {
             let (found, needed) = (p.len(), self.names.len());
             return Err(PyValueError::new_err(format!("p has {found} entries; {needed} are needed")));
         }
-        let reading = py.detach(|| self.model.with(|model| read(model, &p)));
-        self.ended.with(|ended| ended.clone_from(&reading.ended));
+        let reading = py.detach(|| self.model.with(|model| read(model, &p)))?;
+        self.ended.with(|ended| ended.clone_from(&reading.ended))?;
         Ok(reading)
     }
 
@@ -177,7 +178,7 @@ impl Residuals {
 
     /// Why the motion of the last call ended before the last time; None where it did not.
     #[getter]
-    fn ended(&self) -> Option<String> {
+    fn ended(&self) -> PyResult<Option<String>> {
         self.ended.copy()
     }
 
@@ -245,7 +246,7 @@ impl System {
         let positional = (names.clone(), times.clone(), &data.0).into_pyobject(py)?;
         let call = partial(slf.getattr("residuals")?, &options)?.unbind();
         let is_given = given.is_some();
-        let scene = slf.get().scene();
+        let scene = slf.get().scene()?;
         let formulation = arguments::formulation(formulation)?;
         let (settings, interrupt) = arguments::settings(method, tolerance, true, max_steps, None, None)?;
         let (scene, mut choice) = arguments::choice(py, &interrupt, scene, (formulation, removal), given)?;

@@ -8,9 +8,11 @@ use numpy::PyArrayDyn;
 use pyo3::prelude::*;
 use pyo3::types::{IntoPyDict, PyDict};
 use scene::Scene;
+use symbolic::{work_on, worked_on};
 
 use crate::arguments::{Numbers, Table};
 use crate::arrays::{Array, Floats, Points, array, fixed};
+use crate::background::apart;
 use crate::kept::kept;
 use crate::scene_text::{Arguments, Formula, Formulas, write};
 use crate::shared::Shared;
@@ -69,6 +71,8 @@ impl State {
 #[pyclass(frozen, module = "deltaq")]
 pub(crate) struct System {
     scene: Shared<Scene>,
+    /// What its faults are about.
+    about: String,
     /// What the scene was read from.
     pub(crate) text: String,
     pub(crate) overrides: Overrides,
@@ -85,16 +89,17 @@ impl System {
         text: String,
         overrides: Overrides,
     ) -> PyResult<System> {
-        let scene = py.detach(|| match path {
+        let scene = apart(py, || match path {
             Some(path) => Scene::parse_file(path, &text, &overrides),
             None => Scene::parse_with(name, &text, &overrides),
-        });
+        })?;
         let scene = Shared::new(scene.map_err(|error| errors::scene(py, &error))?);
-        Ok(System { scene, text, overrides })
+        Ok(System { scene, about: worked_on(), text, overrides })
     }
 
-    /// A copy of the scene.
-    pub(crate) fn scene(&self) -> Scene {
+    /// A copy of the scene, on which this thread works from now on.
+    pub(crate) fn scene(&self) -> PyResult<Scene> {
+        work_on(self.about.clone());
         self.scene.copy()
     }
 }
@@ -167,120 +172,121 @@ impl System {
 
     /// Name: that of the file without its ending.
     #[getter]
-    pub(crate) fn name(&self) -> String {
+    pub(crate) fn name(&self) -> PyResult<String> {
         self.scene.with(|scene| scene.name.clone())
     }
 
     /// Title, one line.
     #[getter]
-    fn title(&self) -> String {
+    fn title(&self) -> PyResult<String> {
         self.scene.with(|scene| scene.title.clone())
     }
 
     /// Where the example is from, empty where that is not said.
     #[getter]
-    fn source(&self) -> String {
+    fn source(&self) -> PyResult<String> {
         self.scene.with(|scene| scene.source.clone())
     }
 
     /// Remarks, empty where there are none.
     #[getter]
-    fn notes(&self) -> String {
+    fn notes(&self) -> PyResult<String> {
         self.scene.with(|scene| scene.notes.clone())
     }
 
     /// Names of the coordinates, length n.
     #[getter]
-    fn coordinates(&self) -> Vec<String> {
+    fn coordinates(&self) -> PyResult<Vec<String>> {
         self.scene.with(|scene| scene.system.coordinates.iter().map(|c| c.name.clone()).collect())
     }
 
     /// Units of the coordinates, by name.
     #[getter]
     fn units<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        self.scene().system.coordinates.iter().map(|c| (&c.name, &c.unit)).into_py_dict(py)
+        self.scene()?.system.coordinates.iter().map(|c| (&c.name, &c.unit)).into_py_dict(py)
     }
 
     /// Number of coordinates, n.
     #[getter]
-    fn dimension(&self) -> usize {
+    fn dimension(&self) -> PyResult<usize> {
         self.scene.with(|scene| scene.system.dimension())
     }
 
     /// Values of the parameters, by name.
     #[getter]
     fn parameters<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let scene = self.scene();
+        let scene = self.scene()?;
         scene.system.parameters.iter().map(|p| (scene.system.graph.name(p.symbol), p.value)).into_py_dict(py)
     }
 
     /// The Lagrangian, as text.
     #[getter]
-    fn lagrangian(&self) -> String {
-        let scene = self.scene();
-        scene.system.graph.plain(scene.system.lagrangian)
+    fn lagrangian(&self) -> PyResult<String> {
+        self.scene.with(|scene| scene.system.graph.plain(scene.system.lagrangian))
     }
 
     /// The constraints, as text, length h.
     #[getter]
-    fn constraints(&self) -> Vec<String> {
-        let scene = self.scene();
-        scene.system.constraints.iter().map(|&f| scene.system.graph.plain(f)).collect()
+    fn constraints(&self) -> PyResult<Vec<String>> {
+        self.scene.with(|Scene { system, .. }| system.constraints.iter().map(|&f| system.graph.plain(f)).collect())
     }
 
     /// What rates of virtual displacements satisfy, as text, length h; empty where that is not prescribed.
     #[getter]
-    fn r#virtual(&self) -> Vec<String> {
-        let scene = self.scene();
-        scene.system.virtual_conditions.iter().map(|&w| scene.system.graph.plain(w)).collect()
+    fn r#virtual(&self) -> PyResult<Vec<String>> {
+        self.scene
+            .with(|Scene { system, .. }| system.virtual_conditions.iter().map(|&w| system.graph.plain(w)).collect())
     }
 
     /// The generalized forces other than zero, as text, by coordinate.
     #[getter]
     fn forces<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let scene = self.scene();
-        let g = &scene.system.graph;
-        let pairs = scene.system.coordinates.iter().zip(&scene.system.forces);
-        pairs.filter(|(_, force)| !g.is_zero(**force)).map(|(c, &force)| (&c.name, g.plain(force))).into_py_dict(py)
+        let texts = |Scene { system, .. }: &mut Scene| -> Vec<(String, String)> {
+            let g = &system.graph;
+            let pairs = system.coordinates.iter().zip(&system.forces).filter(|(_, force)| !g.is_zero(**force));
+            pairs.map(|(c, &force)| (c.name.clone(), g.plain(force))).collect()
+        };
+        self.scene.with(texts)?.into_py_dict(py)
     }
 
     /// The Lagrangian and the constraints in LaTeX: one `aligned` environment.
     #[getter]
-    fn latex(&self) -> String {
-        let scene = self.scene();
-        let mechanics::System { graph: g, lagrangian, constraints, .. } = &scene.system;
-        let constraints = constraints.iter().map(|&f| format!(" \\\\\n0 &= {}", g.latex(f)));
-        let lines = format!("L &= {}", g.latex(*lagrangian)) + &constraints.collect::<String>();
-        format!("\\begin{{aligned}}\n{lines}\n\\end{{aligned}}")
+    fn latex(&self) -> PyResult<String> {
+        self.scene.with(|scene| {
+            let mechanics::System { graph: g, lagrangian, constraints, .. } = &scene.system;
+            let constraints = constraints.iter().map(|&f| format!(" \\\\\n0 &= {}", g.latex(f)));
+            let lines = format!("L &= {}", g.latex(*lagrangian)) + &constraints.collect::<String>();
+            format!("\\begin{{aligned}}\n{lines}\n\\end{{aligned}}")
+        })
     }
 
-    fn _repr_latex_(&self) -> String {
-        format!("$\\displaystyle {}$", self.latex())
+    fn _repr_latex_(&self) -> PyResult<String> {
+        Ok(format!("$\\displaystyle {}$", self.latex()?))
     }
 
     /// The start: t0, q0 and v0 with f(q0, v0, t0) = 0.
     #[getter]
     fn start(&self, py: Python<'_>) -> PyResult<State> {
-        let mechanics::State { t, q, v } = self.scene.with(|scene| scene.start.clone());
+        let mechanics::State { t, q, v } = self.scene.with(|scene| scene.start.clone())?;
         let n = q.len();
         Ok(State { t, q: fixed(py, q, None, &[n])?.unbind(), v: fixed(py, v, None, &[n])?.unbind() })
     }
 
     /// Multipliers mu0 at the start of vakonomic motions, length h.
     #[getter]
-    fn multipliers(&self) -> Vec<f64> {
+    fn multipliers(&self) -> PyResult<Vec<f64>> {
         self.scene.with(|scene| scene.multipliers.clone())
     }
 
     /// Length of the run, in the unit of time.
     #[getter]
-    fn duration(&self) -> f64 {
+    fn duration(&self) -> PyResult<f64> {
         self.scene.with(|scene| scene.duration)
     }
 
     /// Times at which a step ends, where something is switched.
     #[getter]
-    fn breakpoints(&self) -> Vec<f64> {
+    fn breakpoints(&self) -> PyResult<Vec<f64>> {
         self.scene.with(|scene| scene.system.breakpoints.clone())
     }
 
@@ -289,7 +295,7 @@ impl System {
     /// RemovalError where there is none.
     #[getter]
     fn removals(&self, py: Python<'_>) -> PyResult<Vec<String>> {
-        let scene = self.scene();
+        let scene = self.scene()?;
         let known = background::run(py, &Interrupt::default(), move || removals(&scene))?;
         Ok(known.map_err(errors::solve)?.into_iter().map(|r| r.name).collect())
     }
@@ -297,7 +303,7 @@ impl System {
     /// Frobenius' verdict on the constraints, in words; RemovalError where they are dependent at the start.
     #[getter]
     fn integrability(&self, py: Python<'_>) -> PyResult<String> {
-        let scene = self.scene();
+        let scene = self.scene()?;
         let found = background::run(py, &Interrupt::default(), move || integrability(&scene))?;
         Ok(found.map_err(errors::solve)?.to_string())
     }
@@ -312,30 +318,30 @@ impl System {
         let is_new = |name: &String| overrides.iter().any(|(new, _)| new == name);
         let kept = self.overrides.iter().filter(|(name, _)| !is_new(name)).cloned();
         let all = kept.chain(overrides.iter().cloned()).collect();
-        System::read(py, (&self.name(), None), self.text.clone(), all)
+        System::read(py, (&self.name()?, None), self.text.clone(), all)
     }
 
     fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<(Bound<'py, PyAny>, (String, String, Overrides))> {
         let system = slf.get();
-        let arguments = (system.name(), system.text.clone(), system.overrides.clone());
+        let arguments = (system.name()?, system.text.clone(), system.overrides.clone());
         Ok((slf.py().import("deltaq")?.getattr("_read_again")?, arguments))
     }
 
     /// The system as a scene file's text, every start value a number; `parse` of it gives the same system.
     #[pyo3(signature = ())]
-    fn to_toml(&self) -> String {
+    fn to_toml(&self) -> PyResult<String> {
         self.scene.with(|scene| scene.to_toml())
     }
 
     /// Constraint residuals f(q, v, t), shape (h,) or (k, h); q, v: (n,) or (k, n); t: a number or (k,).
     #[pyo3(signature = (t, q, v))]
     fn constraint<'py>(&self, py: Python<'py>, t: Floats<'_>, q: Floats<'_>, v: Floats<'_>) -> Array<'py> {
-        let points = Points::read([t, q, v], self.dimension())?;
-        let (values, width) = py.detach(|| {
-            let system = self.scene().system;
-            PyResult::Ok((points.values(&system, &system.constraints)?, system.constraints.len()))
-        })?;
-        array(py, values, points.count, &[width])
+        let points = Points::read([t, q, v], self.dimension()?)?;
+        let system = self.scene()?.system;
+        let width = system.constraints.len();
+        let count = points.count;
+        let values = apart(py, move || points.values(&system, &system.constraints))??;
+        array(py, values, count, &[width])
     }
 
     /// Mass matrix M(q, v, t) = d²L/dv², shape (n, n) or (k, n, n); arguments as in `constraint`.
@@ -343,18 +349,15 @@ impl System {
     /// Distances of configurations are measured by it everywhere: sqrt(dq' M dq).
     #[pyo3(signature = (t, q, v))]
     fn mass<'py>(&self, py: Python<'py>, t: Floats<'_>, q: Floats<'_>, v: Floats<'_>) -> Array<'py> {
-        let n = self.dimension();
+        let n = self.dimension()?;
         let points = Points::read([t, q, v], n)?;
-        let values = py.detach(|| {
-            let system = self.scene().system;
-            points.values(&system, system.velocity_hessian().entries())
-        })?;
-        array(py, values, points.count, &[n, n])
+        let system = self.scene()?.system;
+        let count = points.count;
+        let values = apart(py, move || points.values(&system, system.velocity_hessian().entries()))??;
+        array(py, values, count, &[n, n])
     }
 
-    fn __repr__(&self) -> String {
-        let scene = self.scene();
-        let names: Vec<&str> = scene.system.coordinates.iter().map(|c| c.name.as_str()).collect();
-        format!("<deltaq.System {:?}, coordinates ({})>", scene.title, names.join(", "))
+    fn __repr__(&self) -> PyResult<String> {
+        Ok(format!("<deltaq.System {:?}, coordinates ({})>", self.title()?, self.coordinates()?.join(", ")))
     }
 }
