@@ -35,7 +35,7 @@ pub(super) fn shared<T: Send>(
     };
     std::thread::scope(|scope| {
         let others = threads.min(count.div_ceil(group)).saturating_sub(1);
-        let others: Vec<_> = (0..others).map(|_| scope.spawn(&other)).collect();
+        let others: Vec<_> = (0..others).map(|_| scope.spawn(other)).collect();
         put(work(&take));
         for other in others {
             let done = other.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic));
