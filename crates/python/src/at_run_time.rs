@@ -17,7 +17,7 @@ pub(crate) struct AtRunTime {
     /// Names of the states with all parameters folded in.
     states: Vec<String>,
     /// Those that no call works with, by the names of the parameters that are inputs.
-    kept: Shared<HashMap<Vec<String>, Vec<Ready>>>,
+    kept: Shared<HashMap<Vec<String>, Vec<Box<Ready>>>>,
 }
 
 /// Equations for other numbers, and the free constants that they had first.
@@ -38,7 +38,7 @@ impl AtRunTime {
 
     /// Equations with parameters of these names as inputs: kept ones, or those that are derived and compiled
     /// now.
-    fn ready_for(&self, names: &[String]) -> PyResult<Ready> {
+    fn ready_for(&self, names: &[String]) -> PyResult<Box<Ready>> {
         if let Some(ready) = self.kept.with(|kept| kept.get_mut(names).and_then(Vec::pop))? {
             return Ok(ready);
         }
@@ -64,10 +64,10 @@ impl AtRunTime {
             )));
         }
         let constants = by_name.varying().constants().to_vec();
-        Ok(Ready { by_name, constants })
+        Ok(Box::new(Ready { by_name, constants }))
     }
 
-    fn keep(&self, names: Vec<String>, ready: Ready) -> PyResult<()> {
+    fn keep(&self, names: Vec<String>, ready: Box<Ready>) -> PyResult<()> {
         self.kept.with(|kept| kept.entry(names).or_default().push(ready))
     }
 

@@ -29,7 +29,7 @@ use crate::{arguments, background, errors};
 pub(crate) struct Equations {
     ready: Shared<Prepared>,
     /// Those that no thread works with: each call takes one, and brings it back.
-    spare: Shared<Vec<Prepared>>,
+    spare: Shared<Vec<Box<Prepared>>>,
     /// Scene and choice; equations for other numbers.
     pub(crate) at_run_time: AtRunTime,
     dimension: usize,
@@ -90,7 +90,7 @@ impl Equations {
 
     /// Calls `body` with equations that no other thread has, from the same guess in each call.
     pub(crate) fn with<T>(&self, body: impl FnOnce(&mut Prepared) -> T) -> PyResult<T> {
-        let mut ready = self.spare.with(Vec::pop)?.map_or_else(|| self.ready.copy(), Ok)?;
+        let mut ready = self.spare.with(Vec::pop)?.map_or_else(|| self.ready.copy().map(Box::new), Ok)?;
         if !ready.guess.is_empty() {
             ready.compiled.set_guess(&ready.guess);
         }

@@ -337,11 +337,11 @@ impl System {
     #[pyo3(signature = (t, q, v))]
     fn constraint<'py>(&self, py: Python<'py>, t: Floats<'_>, q: Floats<'_>, v: Floats<'_>) -> Array<'py> {
         let points = Points::read([t, q, v], self.dimension()?)?;
-        let system = self.scene()?.system;
-        let width = system.constraints.len();
-        let count = points.count;
-        let values = apart(py, move || points.values(&system, &system.constraints))??;
-        array(py, values, count, &[width])
+        let compile =
+            |Scene { system, .. }: &mut Scene| (Points::program(system, &system.constraints), system.constraints.len());
+        let (program, width) = self.scene.with(compile)?;
+        let program = program.map_err(errors::solve)?;
+        array(py, apart(py, || points.values(program))?, points.count, &[width])
     }
 
     /// Mass matrix M(q, v, t) = d²L/dv², shape (n, n) or (k, n, n); arguments as in `constraint`.
@@ -351,10 +351,9 @@ impl System {
     fn mass<'py>(&self, py: Python<'py>, t: Floats<'_>, q: Floats<'_>, v: Floats<'_>) -> Array<'py> {
         let n = self.dimension()?;
         let points = Points::read([t, q, v], n)?;
-        let system = self.scene()?.system;
-        let count = points.count;
-        let values = apart(py, move || points.values(&system, system.velocity_hessian().entries()))??;
-        array(py, values, count, &[n, n])
+        let compile = |Scene { system, .. }: &mut Scene| Points::program(system, system.velocity_hessian().entries());
+        let program = self.scene.with(compile)?.map_err(errors::solve)?;
+        array(py, apart(py, || points.values(program))?, points.count, &[n, n])
     }
 
     fn __repr__(&self) -> PyResult<String> {
