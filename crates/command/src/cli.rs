@@ -38,9 +38,15 @@ pub const METHODS: &[Method] = &diffsol_methods::EVERY;
 #[cfg(not(feature = "diffsol"))]
 pub const METHODS: &[Method] = &Method::ALL;
 
+/// What exit codes mean, below the help of the program.
+const EXIT_CODES: &str = "Exit codes: 0 for an answer to be trusted, 1 where it cannot be written, 2 for bad input, 3 for an answer \
+that is not to be trusted or that there is not, 4 where results contradict each other, 5 where a computation breaks off. \
+4 and 5 are faults of deltaq: please report them.";
+
 /// What may a virtual displacement be? One system with velocity constraints, several formulations of motion.
 #[derive(Parser, Debug)]
 #[command(name = "deltaq", version = env!("DELTAQ_VERSION"), propagate_version = true, max_term_width = 100)]
+#[command(after_help = EXIT_CODES)]
 pub struct Cli {
     /// What to do.
     #[command(subcommand)]

@@ -1,7 +1,8 @@
 //! The `deltaq` command. Exit code 1 where the answer cannot be written, 2 for bad input; `solve` gives 0
 //! only for a trajectory to trust, 3 where the integration had to stop or its error estimate is too large;
 //! `ensemble` likewise, for any member; `prove` gives 3 without a certificate, `judge` where no law fits,
-//! `fit` where no formulation does; 4 where results contradict each other, which is a fault of the program.
+//! `fit` where no formulation does; 4 where results contradict each other, and 5 where a computation breaks
+//! off: both are faults of the program.
 
 mod bench_command;
 mod cli;
@@ -35,7 +36,7 @@ use cli::{Cli, Command};
 use program::Answer;
 
 fn main() -> ExitCode {
-    program::parse::<Cli>().map_or_else(|code| code, |cli| program::finish(run(cli)))
+    program::parse::<Cli>().map_or_else(|code| code, |cli| program::finish(|| run(cli)))
 }
 
 fn run(cli: Cli) -> Result<Answer> {

@@ -13,6 +13,7 @@ use equations::{Compiled, Equations, LaneEquations, Plan};
 use integrate::{Interrupt, Method};
 use mechanics::{ConstantsRule, State, System};
 use scene::Scene;
+use symbolic::caught;
 
 use crate::by_name::{Beginning, ByName};
 use crate::{Choice, Metric, Prepared, Settings, SolveError, setting};
@@ -201,7 +202,8 @@ impl Ensemble {
         let members = threads::shared(threads, rows.len(), 1, |take| {
             let copy = &copies[next.fetch_add(1, Ordering::Relaxed) % threads];
             let mut copy = copy.lock().unwrap_or_else(PoisonError::into_inner);
-            std::iter::from_fn(take).map(|index| (index, copy.member(rows[index].as_ref()))).collect()
+            let mut member = |row| caught("row", || copy.member(row)).unwrap_or_else(|broken| Err(broken.to_string()));
+            std::iter::from_fn(take).map(|index| (index, member(rows[index].as_ref()))).collect()
         });
         members.into_iter().flatten().collect()
     }

@@ -6,7 +6,7 @@ use equations::{DerivationError, EvaluationFailure};
 use integrate::{BoundaryError, CallError, DenseError, StopCause};
 use mechanics::{RemovalError, StartError};
 use scene::SceneError;
-use symbolic::CompileError;
+use symbolic::{Broken, CompileError};
 
 /// A motion that could not be started. How a motion that was started ended is [`crate::Ending`].
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -105,6 +105,9 @@ pub enum SolveError {
     /// A search was ended from outside.
     #[error("the search was ended: {cause}")]
     Interrupted { cause: StopCause },
+    /// A fault of the program.
+    #[error(transparent)]
+    Broken(#[from] Broken),
     /// The time integrator was called wrongly.
     #[error(transparent)]
     Call(#[from] CallError),

@@ -121,7 +121,7 @@ mod watch;
 pub mod words;
 
 pub use decision::{Finding, PlainScene, Section};
-pub use symbolic::Language;
+pub use symbolic::{Broken, Language, caught};
 
 pub use by_name::ByName;
 pub use charts::ChartChange;

@@ -1,9 +1,9 @@
 //! One point of a sweep: where two motions of a scene part, and whether they have to.
 
 use equations::Formulation;
-use scene::{Number, Scene};
-
 use mechanics::ConstantsRule;
+use scene::{Number, Scene};
+use symbolic::caught;
 
 use crate::costates::{Costates, is_costate};
 use crate::{
@@ -103,7 +103,8 @@ impl Sweep {
         let mut point = SweepPoint::default();
         let given = self.names.iter().cloned().zip(values.iter().copied());
         let (costates, others): (Vec<_>, Vec<_>) = given.partition(|(name, _)| is_costate(name));
-        if let Err(error) = self.read(&others).and_then(|scene| self.fill(&mut point, scene, &costates)) {
+        let work = || self.read(&others).and_then(|scene| self.fill(&mut point, scene, &costates));
+        if let Err(error) = caught("row", work).unwrap_or_else(|broken| Err(broken.into())) {
             // a fault of the text stands on several lines
             point.cause = error.to_string().lines().next().unwrap_or_default().into();
         }

@@ -12,6 +12,7 @@ import { pathToFileURL } from "node:url";
 import puppeteer from "puppeteer-core";
 
 import * as access from "./access.test.mjs";
+import { broken } from "./broken.test.mjs";
 import * as drawn from "./drawn.test.mjs";
 import * as further from "./further.test.mjs";
 import { frames, growth } from "./growth.test.mjs";
@@ -260,7 +261,7 @@ const tools = { open, leave, look, forget, fresh, link, must, after, choose, sli
 const ELSEWHERE = ["eachBody", "costates", "cleared", "refusals", "overlaps", "wayBack", "badLinks", "table", "tabs", "forces", "down", "camera", "differences",
   "runaway", "logarithms", "hand", "rolling", "halted"];
 // one that breaks off does not hide what the others find
-const single = { everyScene, eachBody, ...checks, ...access, ...drawn, ...looking, ...hands, ...takes, ...further, tour, tasks };
+const single = { everyScene, eachBody, ...checks, ...access, ...drawn, ...looking, ...hands, ...takes, ...further, broken, tour, tasks };
 const whole = (name, check) => () => check(tools).catch((error) => complaints.push(`${name}: ${error.stack}`));
 const named = (names) => names.map((name) => whole(name, single[name]));
 

@@ -45,7 +45,8 @@ onmessage = ({ data: { module, id, question } }) => {
     try {
       said = text();
     } catch {}
-    reply = { answer: { refused: `the computation broke off: ${said || error.message}` }, numbers: new Float64Array() };
+    said ||= `${error.message}: this is a fault of deltaq; please report it`;
+    reply = { answer: { refused: `the computation broke off: ${said}` }, numbers: new Float64Array() };
     start(program.module);
   }
   postMessage({ id, ...reply, milliseconds: performance.now() - began }, [reply.numbers.buffer]);

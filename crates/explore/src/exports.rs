@@ -4,7 +4,9 @@
 //! from the places that are asked for then.
 
 use std::cell::RefCell;
+use std::panic::PanicHookInfo;
 
+use symbolic::Broken;
 use wasm_bindgen::prelude::wasm_bindgen;
 
 use crate::{Answer, Explorer};
@@ -29,7 +31,8 @@ pub fn question_at(length: usize) -> usize {
 #[wasm_bindgen]
 pub fn ask() {
     ANSWER.set(Answer::default());
-    std::panic::set_hook(Box::new(|panic| ANSWER.set(Answer { text: panic.to_string(), numbers: Vec::new() })));
+    let said = |panic: &PanicHookInfo| Answer { text: Broken::of(panic).to_string(), numbers: Vec::new() };
+    std::panic::set_hook(Box::new(move |panic| ANSWER.set(said(panic))));
     let question = QUESTION.with_borrow(|bytes| String::from_utf8_lossy(bytes).into_owned());
     ANSWER.set(EXPLORER.with_borrow_mut(|explorer| explorer.answer(&question)));
 }

@@ -44,7 +44,8 @@ pub(crate) struct Profile<'a> {
 
 /// The others as they move near the minimum.
 struct Others {
-    svd: SVD<f64, Dyn, Dyn>,
+    /// None where there are no others.
+    svd: Option<SVD<f64, Dyn, Dyn>>,
     lengths: Vec<f64>,
     /// With the unknown that is held.
     slopes: Vec<f64>,
@@ -53,7 +54,10 @@ struct Others {
 impl Others {
     fn new(jacobian: &DMatrix<f64>, i: usize) -> Option<Self> {
         let (matrix, lengths) = scaled(&jacobian.clone().remove_column(i));
-        let svd = matrix.try_svd(true, true, f64::EPSILON, 1000)?;
+        let svd = match matrix.ncols() {
+            0 => None,
+            _ => Some(matrix.try_svd(true, true, f64::EPSILON, 1000)?),
+        };
         let others = Others { svd, lengths, slopes: Vec::new() };
         let (slopes, _) = others.chord(&jacobian.column(i).into_owned())?;
         Some(Others { slopes, ..others })
@@ -61,10 +65,11 @@ impl Others {
 
     /// `δ` and `|J δ|²`.
     fn chord(&self, r: &DVector<f64>) -> Option<(Vec<f64>, f64)> {
-        let limit = SHOWN * self.svd.singular_values.max();
-        let along = self.svd.solve(r, limit).ok()?;
-        let parts = self.svd.u.as_ref()?.tr_mul(r);
-        let seen = parts.iter().zip(self.svd.singular_values.iter()).filter(|(_, s)| **s > limit);
+        let Some(svd) = &self.svd else { return Some((Vec::new(), 0.0)) };
+        let limit = SHOWN * svd.singular_values.max();
+        let along = svd.solve(r, limit).ok()?;
+        let parts = svd.u.as_ref()?.tr_mul(r);
+        let seen = parts.iter().zip(svd.singular_values.iter()).filter(|(_, s)| **s > limit);
         let gain = seen.map(|(x, _)| x * x).sum();
         let step = |(x, l): (&f64, &f64)| if *l > 0.0 { -x / l } else { 0.0 };
         Some((along.iter().zip(&self.lengths).map(step).collect(), gain))

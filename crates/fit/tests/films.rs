@@ -125,6 +125,18 @@ fn a_sledge_is_chetaevs_and_its_epsilon_is_at_the_bound() {
     assert!(fit.chi_squared >= chetaev.fit.as_ref().unwrap().chi_squared - 1e-6);
 }
 
+/// The profile of the only unknown, on which the motion depends linearly, is a parabola.
+#[test]
+fn a_profile_needs_no_others() {
+    let scene = built_in("sledge");
+    let films = [film(&scene, "x,y,phi", 1e-3, 1, &times(1.0), sledge)];
+    let row = fitted_by(&[CHETAEV], &scene, &films, &["g~9"], &[]).remove(0);
+    let (problem, fit) = (row.problem.unwrap(), row.fit.unwrap());
+    let (value, error) = (fit.estimates[0].value, fit.estimates[0].error);
+    let rises = fit::profile(&problem, &fit, "g", &[value, value - error, value + 3.0 * error]).unwrap();
+    assert!(rises.iter().zip([0.0, 1.0, 9.0]).all(|(rise, square)| (rise - square).abs() < 1e-3), "{rises:?}");
+}
+
 /// What is known before is a measurement: of two normal ones the weighed mean, with the error of both.
 #[test]
 fn what_is_known_before_counts() {

@@ -77,7 +77,7 @@ impl Balance {
     /// The numbers at one sample.
     ///
     /// # Errors
-    /// [`JudgeError::MassMatrix`] and [`JudgeError::Dependent`].
+    /// [`JudgeError::MassMatrix`], [`JudgeError::NotFinite`] and [`JudgeError::Dependent`].
     pub fn at(&mut self, t: f64, state: [Vec<f64>; 3]) -> Result<Instant, JudgeError> {
         let (n, h) = (self.n, self.h);
         let mut rest = self.program.evaluate(&[&[t], &state[0][..], &state[1], &state[2]].concat());
@@ -108,9 +108,16 @@ impl Balance {
             parts: jacobian.row_iter().map(|row| row.transpose().component_mul(&v).norm()).collect(),
             state,
         };
-        let finite = [&instant.balance, &instant.rest, &instant.driven].iter().all(|v| v.iter().all(|x| x.is_finite()));
-        let regular = instant.along.clone().svd(false, false).singular_values;
-        if !finite || regular.min() <= 1e-12 * regular.max() {
+        let Instant { balance, momentum, inertia, constraint, rest, driven, along, curvature, .. } = &instant;
+        // what is squared has to stay finite
+        let lengths = [balance, momentum, inertia, constraint, rest, driven].map(|v| v.norm_squared());
+        let sizes = [along, curvature].map(|m| m.norm_squared());
+        let parts = instant.parts.iter().map(|x| x * x);
+        if lengths.into_iter().chain(sizes).chain(parts).any(|x| !x.is_finite()) {
+            return Err(JudgeError::NotFinite { t });
+        }
+        let regular = along.clone().svd(false, false).singular_values;
+        if regular.min() <= 1e-12 * regular.max() {
             return Err(JudgeError::Dependent { t });
         }
         Ok(instant)

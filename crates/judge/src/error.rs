@@ -33,8 +33,14 @@ pub enum JudgeError {
         noise: f64,
     },
     /// Constraints are dependent.
-    #[error("at t = {t}: the constraints are dependent, or something in the scene is not finite")]
+    #[error("at t = {t}: the constraints are dependent")]
     Dependent { t: f64 },
+    /// A force, a constraint or their squares are no finite numbers.
+    #[error("at t = {t}: a force or a constraint of the scene, or its square, is not finite")]
+    NotFinite { t: f64 },
+    /// A number of the judgement is no finite number.
+    #[error("the motion is so large that {what} is not finite: judge it in other units")]
+    TooLarge { what: String },
     /// The scene cannot be evaluated.
     #[error(transparent)]
     Compile(#[from] CompileError),

@@ -86,6 +86,21 @@ pub struct Judgement {
 }
 
 impl Judgement {
+    /// What of it is no finite number.
+    fn not_finite(&self) -> Option<String> {
+        let laws = self.laws.iter().map(|left| (left.law.name().into(), left.residual));
+        let constraints = (1..).zip(&self.constraints).map(|(i, &(m, r, p))| (format!("f_{i}"), m.hypot(r).hypot(p)));
+        let drifts = self.drifts.iter().map(|d| (d.name.clone(), d.start.abs() + d.largest));
+        let step = ("the step".to_owned(), self.step);
+        [step]
+            .into_iter()
+            .chain(laws)
+            .chain(constraints)
+            .chain(drifts)
+            .find(|(_, x)| !x.is_finite())
+            .map(|(what, _)| what)
+    }
+
     /// The law: the first of those that fit.
     pub fn law(&self) -> Option<Law> {
         self.fitting.first().copied()
@@ -107,6 +122,9 @@ pub fn judge(scene: &Scene, samples: &Samples, tolerance: f64) -> Result<Judgeme
     let coarse = balance.along(samples, reach - 1, reach)?;
     let noise = rms(fine.iter().zip(&coarse).map(|(a, b)| (&a.balance - &b.balance).norm()));
     let scale = rms(fine.iter().map(|i| i.inertia.norm() + i.balance.norm()));
+    if !(scale + noise).is_finite() {
+        return Err(JudgeError::TooLarge { what: "the sum of squares of forces".into() });
+    }
     if scale <= NOISES * noise {
         return Err(JudgeError::Rest { scale, noise });
     }
@@ -121,7 +139,7 @@ pub fn judge(scene: &Scene, samples: &Samples, tolerance: f64) -> Result<Judgeme
         let values = || fine.iter().map(move |i| i.constraint[c]);
         (values().fold(0.0, |m: f64, f| m.max(f.abs())), rms(values()), rms(fine.iter().map(|i| i.parts[c])))
     };
-    Ok(Judgement {
+    let judgement = Judgement {
         step: samples.step(),
         samples: fine.len(),
         scale,
@@ -134,7 +152,11 @@ pub fn judge(scene: &Scene, samples: &Samples, tolerance: f64) -> Result<Judgeme
         left_out: both(left_out(&fine), left_out(&coarse)),
         constraints: (0..h).map(constraint).collect(),
         drifts: drifts(scene, &fine)?,
-    })
+    };
+    match judgement.not_finite() {
+        Some(what) => Err(JudgeError::TooLarge { what }),
+        None => Ok(judgement),
+    }
 }
 
 /// The estimate with the better differences; what worse ones change is part of its error.

@@ -25,7 +25,11 @@ pub struct FirstOrder {
 }
 
 /// Part of `v` that is no combination of the columns of `basis`, and the coefficients of the other part.
+/// Where something is not finite, no combination is found.
 fn split(basis: &DMatrix<f64>, v: &DVector<f64>) -> (DVector<f64>, DVector<f64>) {
+    if !basis.iter().chain(v).all(|x| x.is_finite()) {
+        return (v.clone(), DVector::zeros(basis.ncols()));
+    }
     let svd = basis.clone().svd(true, true);
     let coefficients = svd.solve(v, 0.0).unwrap_or_else(|_| DVector::zeros(basis.ncols()));
     (v - basis * &coefficients, coefficients)
@@ -144,7 +148,7 @@ pub fn vakonomic(instants: &[Instant]) -> Option<(f64, Vec<Option<Number>>)> {
     let start = fit(&x, &right);
     let of = |row: &Vec<f64>| row.iter().zip(&start).map(|(x, n)| x * n.map_or(0.0, |n| n.value)).sum::<f64>();
     let left = rms(x.iter().zip(&right).map(|(x, y)| y - of(x)));
-    Some((left * (right.len() as f64 / instants.len() as f64).sqrt(), start))
+    Some((left * (right.len() as f64 / instants.len() as f64).sqrt(), start)).filter(|(left, _)| left.is_finite())
 }
 
 /// `s` of `A a = −(1 − s)(ḟ − A a)`: 0 where the constraint is differentiated as it is, 1 where the rate of

@@ -16,7 +16,8 @@ pub struct Number {
 
 /// The estimates `θ` of `y = X θ` with a row of `X` and an entry of `y` a line, in the order of time, and
 /// their errors: `(XᵀX)⁻¹ (Σ s sᵀ) (XᵀX)⁻¹`, `s` the sum of `x r` over one of twenty blocks of neighbours. A
-/// column of zeros has no estimate; where columns are dependent within 1e-10, none has.
+/// column of zeros has no estimate, nor has what is not finite; where columns are dependent within 1e-10,
+/// none has.
 pub fn fit(x: &[Vec<f64>], y: &[f64]) -> Vec<Option<Number>> {
     let width = x.first().map_or(0, Vec::len);
     let norms: Vec<f64> = (0..width).map(|j| x.iter().map(|row| row[j] * row[j]).sum::<f64>().sqrt()).collect();
@@ -45,7 +46,8 @@ pub fn fit(x: &[Vec<f64>], y: &[f64]) -> Vec<Option<Number>> {
     let free = count.saturating_sub(kept.len()).max(1);
     let covariance = &inverse * meat * &inverse * (count as f64 / free as f64);
     for (k, &j) in kept.iter().enumerate() {
-        numbers[j] = Some(Number { value: theta[k] / norms[j], error: covariance[(k, k)].sqrt() / norms[j] });
+        let number = Number { value: theta[k] / norms[j], error: covariance[(k, k)].sqrt() / norms[j] };
+        numbers[j] = Some(number).filter(|n| n.value.is_finite() && n.error.is_finite());
     }
     numbers
 }

@@ -29,5 +29,9 @@ fn at(x: f64, force: &str) -> Result<Instant, JudgeError> {
 fn constraints_that_are_parallel_to_a_million_millionth_are_refused_and_so_is_what_is_not_finite() {
     assert!(matches!(at(1e-12, "0"), Err(JudgeError::Dependent { t: 0.25 })));
     assert!(at(1e-11, "0").is_ok() && at(1e-3, "1/x").is_ok());
-    assert!(matches!(at(1e-3, "1/(x - 1e-3)"), Err(JudgeError::Dependent { t: 0.25 })));
+    assert!(matches!(at(1e-3, "1/(x - 1e-3)"), Err(JudgeError::NotFinite { t: 0.25 })));
+    // lengths are squared
+    assert!(at(1e-3, "1e150").is_ok());
+    assert!(matches!(at(1e-3, "1e160"), Err(JudgeError::NotFinite { t: 0.25 })));
+    assert!(matches!(at(1e199, "0"), Err(JudgeError::NotFinite { t: 0.25 })));
 }

@@ -116,7 +116,8 @@ fn beats(scene: &Scene) -> (f64, Vec<f64>) {
     let power = 10f64.powf(least.log10().floor());
     let beat = [1.0, 2.0, 5.0, 10.0].map(|digit| digit * power).into_iter().find(|beat| *beat >= least);
     let beat = beat.unwrap_or(10.0 * power);
-    let count = (scene.duration / beat * INSTANTS as f64 + 1e-9) as usize;
+    let most = DOTS as usize * INSTANTS;
+    let count = ((scene.duration / beat * INSTANTS as f64 + 1e-9) as usize).min(most);
     let times = (0..=count).map(|i| scene.start.t + beat * i as f64 / INSTANTS as f64);
     let end = scene.start.t + scene.duration;
     (beat, times.map(|t| t.min(end)).collect())

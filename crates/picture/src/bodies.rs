@@ -192,8 +192,10 @@ impl MovingPicture {
         out += "</g>\n";
         for motion in &self.motions {
             let (colour, _) = motion.style.outline();
-            let run = motion.path.iter().map(|&p| sheet.pixels(sheet.camera.project(p))).collect::<Vec<Place>>();
-            let path = Trace::new(&[run], sheet.extent, Coarseness::steps()[2]).path();
+            let pixels = |run: &[Space]| run.iter().map(|&p| sheet.pixels(sheet.camera.project(p))).collect();
+            let is_nowhere = |p: &Space| p.iter().any(|x| !x.is_finite());
+            let runs: Vec<Vec<Place>> = motion.path.split(is_nowhere).map(pixels).collect();
+            let path = Trace::new(&runs, sheet.extent, Coarseness::steps()[2]).path();
             let dash = motion.style.strokes().last().map_or("", |stroke| stroke.dash);
             out += &format!(
                 "<path d=\"{path}\" stroke=\"{colour}\" stroke-width=\"1.6\" stroke-linecap=\"round\" stroke-dasharray=\"{dash}\"/>\n"
@@ -240,9 +242,10 @@ impl Sheet {
 
     /// What is seen of solids at a step, as path data of the same commands at every step.
     fn path(&self, solids: &[&Solid], step: usize) -> String {
-        // what is far outside may lie anywhere outside
+        // what is far outside, or nowhere, may lie anywhere outside
         let near = |(x, y): Place| {
             let Extent { width: w, height: h } = self.extent;
+            let [x, y] = if x.is_nan() || y.is_nan() { [-w, -h] } else { [x, y] };
             (x.clamp(-w, 2.0 * w), y.clamp(-h, 2.0 * h))
         };
         let seen: Vec<_> = solids.iter().map(|s| s.seen(&self.camera, step)).collect();

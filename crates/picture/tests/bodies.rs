@@ -75,3 +75,21 @@ fn still_where_nothing_is_to_move() {
     assert_eq!((of("still"), of("moving")), (2, 2));
     assert_eq!(picture(Vec::new()).to_svg(), None);
 }
+
+/// A body that is nowhere from some time on leaves the picture then, and its path ends before.
+#[test]
+fn what_is_not_finite_leaves_the_picture() {
+    let mut gone = wheel(Style::Vakonomic, 5.0, false);
+    gone.solids.iter_mut().for_each(|solid| solid.poses[120..].iter_mut().for_each(|pose| pose.at[0] = f64::NAN));
+    gone.path[120..].iter_mut().for_each(|place| place[0] = f64::NAN);
+    let svg = picture(vec![wheel(Style::Chetaev, 5.0, false), gone]).to_svg().unwrap();
+    assert!(svg.contains("Vakonomic; leaves the picture at 5.0 s") && !svg.contains("NaN"), "{svg}");
+    let document = roxmltree::Document::parse(&svg).unwrap();
+    let paths = document.descendants().filter(|node| node.attribute("stroke-width") == Some("1.6"));
+    let paths: Vec<&str> = paths.filter_map(|node| node.attribute("d")).collect();
+    assert_eq!(paths.len(), 2);
+    // the second path goes half as far as the first, and not to a corner
+    let length = |path: &str| path[1..].split(['l', ' ']).nth(2).and_then(|dx| dx.parse::<f64>().ok()).unwrap();
+    let [whole, half] = [paths[0], paths[1]].map(length);
+    assert!((half / whole - 0.5).abs() < 0.01, "{paths:?}");
+}

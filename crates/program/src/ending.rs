@@ -6,7 +6,7 @@ use std::process::ExitCode;
 
 use anyhow::{Error, Result};
 use clap::Parser;
-use deltaq::Contradicted;
+use deltaq::{Broken, Contradicted, caught};
 
 use crate::answer::{Answer, Unwritten, complain, plain, print};
 
@@ -29,8 +29,9 @@ pub fn parse<Asked: Parser>() -> Result<Asked, ExitCode> {
     })
 }
 
-/// Prints the answer, or says what went wrong, and returns the exit code.
-pub fn finish(answer: Result<Answer>) -> ExitCode {
+/// Does the work, prints the answer, or says what went wrong, and returns the exit code.
+pub fn finish(work: impl FnOnce() -> Result<Answer>) -> ExitCode {
+    let answer = caught("program", work).unwrap_or_else(|broken| Err(broken.into()));
     answer.map_or_else(|error| failed(&error), |answer| printed(&answer))
 }
 
@@ -52,6 +53,7 @@ pub fn exit_code(error: &Error) -> u8 {
     match () {
         () if error.is::<Unwritten>() || error.chain().any(is_full) => 1,
         () if error.is::<Contradicted>() => 4,
+        () if error.is::<Broken>() => 5,
         () => 2,
     }
 }

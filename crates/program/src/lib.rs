@@ -2,7 +2,8 @@
 //! answers on the terminal, options and exit codes.
 //!
 //! [`finish`] has the exit codes: 1 where the answer cannot be written, 2 for bad input, 3 for an answer that
-//! cannot be trusted, 4 where results contradict each other, which is a fault of the program.
+//! cannot be trusted, 4 where results contradict each other and 5 where a computation breaks off: both are
+//! faults of the program.
 
 mod answer;
 mod ending;

@@ -1,7 +1,7 @@
 //! What a terminal is told, and exit codes.
 
 use anyhow::Error;
-use deltaq::Contradicted;
+use deltaq::{Broken, Contradicted};
 use program::{Unwritten, exit_code, plain};
 
 #[test]
@@ -18,6 +18,7 @@ fn every_kind_of_error_has_its_exit_code() {
         Error::msg("full").context(Unwritten),
         contradicted(),
         contradicted().context("scene"),
+        Error::from(Broken::default()),
     ];
-    assert_eq!(errors.map(|error| exit_code(&error)), [2, 1, 4, 4]);
+    assert_eq!(errors.map(|error| exit_code(&error)), [2, 1, 4, 4, 5]);
 }

@@ -7,7 +7,7 @@ use numpy::{AllowTypeChange, Element, PyArray, PyArray1, PyArrayDyn, PyArrayLike
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use symbolic::Expr;
+use symbolic::{CompileError, Evaluator, Expr};
 
 use crate::errors;
 
@@ -156,15 +156,19 @@ impl Points {
         Ok(Points { rows: [t, q, v], count })
     }
 
-    /// The expressions of a system at each point, row after row.
-    pub(crate) fn values(&self, system: &System, expressions: &[Expr]) -> PyResult<Vec<f64>> {
+    /// Expressions of a system, to be evaluated at points.
+    pub(crate) fn program(system: &System, expressions: &[Expr]) -> Result<Evaluator<f64>, CompileError> {
         let inputs = [&[system.time][..], &system.positions(), &system.velocities()].concat();
-        let mut program = system.evaluator(&inputs, expressions).map_err(errors::solve)?;
+        system.evaluator(&inputs, expressions)
+    }
+
+    /// Their values at each point, row after row.
+    pub(crate) fn values(&self, mut program: Evaluator<f64>) -> Vec<f64> {
         let mut values = Vec::new();
         for i in 0..self.count.unwrap_or(1) {
             values.extend_from_slice(program.evaluate(&self.rows.each_ref().map(|rows| rows.row(i)).concat()));
         }
-        Ok(values)
+        values
     }
 }
 

@@ -1,7 +1,6 @@
 //! Equations whose parameters and free constants are numbers of a call.
 
 use std::collections::HashMap;
-use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use deltaq::{ByName, Choice, Form, Prepared, Settings, SolveError};
 use mechanics::ConstantsRule;
@@ -10,14 +9,15 @@ use pyo3::prelude::*;
 use scene::Scene;
 
 use crate::errors;
+use crate::shared::Shared;
 
 /// A scene and a choice, and its equations with other parameters as inputs.
 pub(crate) struct AtRunTime {
-    scene: Mutex<(Scene, Choice)>,
+    scene: Shared<(Scene, Choice)>,
     /// Names of the states with all parameters folded in.
     states: Vec<String>,
     /// Those that no call works with, by the names of the parameters that are inputs.
-    kept: Mutex<HashMap<Vec<String>, Vec<Ready>>>,
+    kept: Shared<HashMap<Vec<String>, Vec<Box<Ready>>>>,
 }
 
 /// Equations for other numbers, and the free constants that they had first.
@@ -29,24 +29,20 @@ struct Ready {
 
 impl AtRunTime {
     pub(crate) fn new(scene: Scene, choice: Choice, states: Vec<String>) -> AtRunTime {
-        AtRunTime { scene: Mutex::new((scene, choice)), states, kept: Mutex::default() }
+        AtRunTime { scene: Shared::new((scene, choice)), states, kept: Shared::default() }
     }
 
-    pub(crate) fn scene_and_choice(&self) -> MutexGuard<'_, (Scene, Choice)> {
-        self.scene.lock().unwrap_or_else(PoisonError::into_inner)
-    }
-
-    fn kept(&self) -> MutexGuard<'_, HashMap<Vec<String>, Vec<Ready>>> {
-        self.kept.lock().unwrap_or_else(PoisonError::into_inner)
+    pub(crate) fn scene_and_choice(&self) -> PyResult<(Scene, Choice)> {
+        self.scene.copy()
     }
 
     /// Equations with parameters of these names as inputs: kept ones, or those that are derived and compiled
     /// now.
-    fn ready_for(&self, names: &[String]) -> PyResult<Ready> {
-        if let Some(ready) = self.kept().get_mut(names).and_then(Vec::pop) {
+    fn ready_for(&self, names: &[String]) -> PyResult<Box<Ready>> {
+        if let Some(ready) = self.kept.with(|kept| kept.get_mut(names).and_then(Vec::pop))? {
             return Ok(ready);
         }
-        let (scene, choice) = self.scene_and_choice().clone();
+        let (scene, choice) = self.scene_and_choice()?;
         let g = &scene.system.graph;
         let known: Vec<String> = scene.system.parameters.iter().map(|p| g.name(p.symbol)).collect();
         if let Some(name) = names.iter().find(|name| !known.contains(name)) {
@@ -68,11 +64,11 @@ impl AtRunTime {
             )));
         }
         let constants = by_name.varying().constants().to_vec();
-        Ok(Ready { by_name, constants })
+        Ok(Box::new(Ready { by_name, constants }))
     }
 
-    fn keep(&self, names: Vec<String>, ready: Ready) {
-        self.kept().entry(names).or_default().push(ready);
+    fn keep(&self, names: Vec<String>, ready: Box<Ready>) -> PyResult<()> {
+        self.kept.with(|kept| kept.entry(names).or_default().push(ready))
     }
 
     /// Calls `body` with the equations for these parameters, for states of the caller's own.
@@ -93,7 +89,7 @@ impl AtRunTime {
             prepared.compiled.set_guess(&prepared.guess);
         }
         let result = body(prepared);
-        self.keep(names, ready);
+        self.keep(names, ready)?;
         Ok(result)
     }
 
@@ -114,7 +110,7 @@ impl AtRunTime {
             y0.into_iter().for_each(|y0| prepared.start = y0);
             body(prepared)
         });
-        self.keep(names, ready);
+        self.keep(names, ready)?;
         result.map_err(errors::solve)
     }
 }

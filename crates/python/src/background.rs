@@ -5,10 +5,23 @@ use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::thread::{Builder, scope};
 use std::time::Duration;
 
+use deltaq::caught;
 use integrate::Interrupt;
 use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
-use symbolic::cancellable;
+use symbolic::{cancellable, work_on, worked_on};
+
+use crate::errors;
+
+/// Runs `work`, which is short, while other threads of Python go on.
+pub(crate) fn apart<T: Send>(py: Python<'_>, work: impl FnOnce() -> T + Send) -> PyResult<T> {
+    py.detach(|| whole(work))
+}
+
+/// Runs `work`, which may hold Python's lock; `FaultError` where it breaks.
+pub(crate) fn whole<T>(work: impl FnOnce() -> T) -> PyResult<T> {
+    caught("call", work).map_err(|fault| errors::broken(&fault))
+}
 
 /// How often signals are looked at.
 const POLL: Duration = Duration::from_millis(50);
@@ -22,8 +35,10 @@ pub(crate) fn run<T: Send>(py: Python<'_>, interrupt: &Interrupt, work: impl FnO
     let (sender, mut receiver) = channel();
     scope(|threads| {
         let unwanted = interrupt.clone();
+        let about = worked_on();
         let body = move || {
-            let result = cancellable(move || unwanted.is_raised(), work);
+            work_on(about);
+            let result = cancellable(move || unwanted.is_raised(), || caught("work", work));
             // The receiver is gone only after this thread is.
             let _ = sender.send(());
             result
@@ -43,6 +58,7 @@ pub(crate) fn run<T: Send>(py: Python<'_>, interrupt: &Interrupt, work: impl FnO
         }
         let result = py.detach(|| worker.join()).unwrap_or_else(|panic| resume_unwind(panic));
         signal?;
-        result.ok_or_else(|| PyRuntimeError::new_err("the work was ended"))
+        let result = result.ok_or_else(|| PyRuntimeError::new_err("the work was ended"))?;
+        result.map_err(|fault| errors::broken(&fault))
     })
 }

@@ -127,7 +127,7 @@ impl System {
         threads: usize,
     ) -> PyResult<Connections> {
         let given = arguments::constants(constants.as_ref(), mu0)?;
-        let scene = self.scene().clone();
+        let scene = self.scene()?;
         let (settings, interrupt) = arguments::settings("auto", tolerance, true, 1_000_000, None, None)?;
         let formulation = arguments::formulation(formulation)?;
         let (scene, choice) = arguments::choice(py, &interrupt, scene, (formulation, removal), given)?;

@@ -1,10 +1,7 @@
 //! Equations of motion as functions of arrays.
 
-use std::sync::{Mutex, MutexGuard, PoisonError};
-
 use deltaq::{
-    Choice, EquationStyle, Language, Prepared, SolveError, code, constant_names, derive_at, equations_text, prepare,
-    setting,
+    EquationStyle, Language, Prepared, SolveError, code, constant_names, derive_at, equations_text, prepare, setting,
 };
 use equations::{Compiled, EvaluationFailure, Formulation, Role};
 use integrate::Method;
@@ -17,8 +14,10 @@ use scene::Scene;
 use crate::arguments::Numbers;
 use crate::arrays::{Array, Floats, States, array, list};
 use crate::at_run_time::AtRunTime;
+use crate::background::apart;
 use crate::kept::Reduced;
 use crate::outputs::{Names, Outputs, observed};
+use crate::shared::Shared;
 use crate::system::System;
 use crate::{arguments, background, errors};
 
@@ -28,9 +27,9 @@ use crate::{arguments, background, errors};
 /// number and y of shape (m,), or k of them at once, y of shape (k, m) with t a number or of shape (k,).
 #[pyclass(frozen, module = "deltaq")]
 pub(crate) struct Equations {
-    ready: Mutex<Prepared>,
+    ready: Shared<Prepared>,
     /// Those that no thread works with: each call takes one, and brings it back.
-    spare: Mutex<Vec<Prepared>>,
+    spare: Shared<Vec<Box<Prepared>>>,
     /// Scene and choice; equations for other numbers.
     pub(crate) at_run_time: AtRunTime,
     dimension: usize,
@@ -56,7 +55,7 @@ impl Equations {
         (formulation, removal): (&'static Formulation, Option<&str>),
         given: Option<ConstantsRule>,
     ) -> PyResult<Equations> {
-        let (py, scene) = (system.py(), system.get().scene().clone());
+        let (py, scene) = (system.py(), system.get().scene()?);
         let (settings, interrupt) = arguments::settings("auto", 1e-11, true, 1_000_000, None, None)?;
         let is_given = given.is_some();
         let (scene, mut choice) = arguments::choice(py, &interrupt, scene, (formulation, removal), given)?;
@@ -74,40 +73,30 @@ impl Equations {
         let states: Vec<String> = equations.states.iter().map(|y| equations.graph.name(y.symbol)).collect();
         Ok(Equations {
             system: system.clone().unbind(),
-            spare: Mutex::default(),
+            spare: Shared::default(),
             dimension: scene.system.dimension(),
             at_run_time: AtRunTime::new(scene, choice, states.clone()),
             formulation: equations.formulation,
             removal: equations.removal.as_ref().map(|r| r.name.clone()),
             states,
             constants: constant_names(equations),
-            ready: Mutex::new(made),
+            ready: Shared::new(made),
         })
     }
 
-    fn ready(&self) -> MutexGuard<'_, Prepared> {
-        self.ready.lock().unwrap_or_else(PoisonError::into_inner)
-    }
-
-    fn scene(&self) -> Scene {
-        self.scene_and_choice().0.clone()
-    }
-
-    pub(crate) fn scene_and_choice(&self) -> MutexGuard<'_, (Scene, Choice)> {
-        self.at_run_time.scene_and_choice()
+    fn scene(&self) -> PyResult<Scene> {
+        Ok(self.at_run_time.scene_and_choice()?.0)
     }
 
     /// Calls `body` with equations that no other thread has, from the same guess in each call.
-    pub(crate) fn with<T>(&self, body: impl FnOnce(&mut Prepared) -> T) -> T {
-        let spare = || self.spare.lock().unwrap_or_else(PoisonError::into_inner);
-        let kept = spare().pop();
-        let mut ready = kept.unwrap_or_else(|| self.ready().clone());
+    pub(crate) fn with<T>(&self, body: impl FnOnce(&mut Prepared) -> T) -> PyResult<T> {
+        let mut ready = self.spare.with(Vec::pop)?.map_or_else(|| self.ready.copy().map(Box::new), Ok)?;
         if !ready.guess.is_empty() {
             ready.compiled.set_guess(&ready.guess);
         }
         let result = body(&mut ready);
-        spare().push(ready);
-        result
+        self.spare.with(|spare| spare.push(ready))?;
+        Ok(result)
     }
 
     /// What `read` writes, equally many values at each point, where the equations are compiled as `method`
@@ -126,89 +115,93 @@ impl Equations {
             at.each(|t, y| rows.next().map_or(Ok(()), |row| read(&mut ready.compiled, t, y, row)))?;
             Ok(values)
         };
-        py.detach(|| match parameters {
-            None => self.with(work),
+        apart(py, || match parameters {
+            None => self.with(work)?,
             Some(Numbers(numbers)) => self.at_run_time.with_numbers(numbers, work)?,
-        })
+        })?
     }
 
     fn at(&self, t: &Floats<'_>, y: &Floats<'_>) -> PyResult<States> {
         States::read(t, y, self.states.len())
     }
 
-    fn code(&self, language: Language) -> PyResult<String> {
-        let scene = self.scene();
-        code(&scene, &self.ready(), language).map_err(errors::solve)
+    fn code(&self, py: Python<'_>, language: Language) -> PyResult<String> {
+        let (scene, ready) = (self.scene()?, self.ready.copy()?);
+        apart(py, move || code(&scene, &ready, language))?.map_err(errors::solve)
     }
 
     /// The state with these coordinates, velocities and multipliers, and the places of the velocities in it.
     fn state(&self, q: &[f64], v: &[f64], mu: &[f64]) -> PyResult<(Vec<f64>, Vec<usize>)> {
-        let ready = self.ready();
-        let equations = &ready.equations;
-        let place =
-            |list: &[symbolic::Expr], symbol| list.iter().position(|&e| equations.graph.as_symbol(e) == Some(symbol));
-        let multipliers: Vec<_> = equations.multipliers.iter().map(|m| m.expression).collect();
-        let (mut y, mut velocities) = (Vec::new(), vec![None; q.len()]);
-        for state in &equations.states {
-            let value = match state.role {
-                Role::Position => place(&equations.coordinates, state.symbol).map(|i| q[i]),
-                Role::Velocity => place(&equations.velocities, state.symbol).map(|i| {
-                    velocities[i] = Some(y.len());
-                    v[i]
-                }),
-                Role::Multiplier => place(&multipliers, state.symbol).and_then(|i| mu.get(i).copied()),
-                _ => None,
-            };
-            y.extend(value);
-        }
-        let places: Option<Vec<usize>> = velocities.into_iter().collect();
-        match places.filter(|_| y.len() == equations.states.len()) {
-            Some(places) => Ok((y, places)),
-            None => Err(PyValueError::new_err(format!(
+        let found = self.ready.with(|ready| state(&ready.equations, q, v, mu))?;
+        found.ok_or_else(|| {
+            PyValueError::new_err(format!(
                 "the states of the {} formulation ({}) are not coordinates, velocities and the given mu; use rates",
                 self.formulation,
                 self.states.join(", ")
-            ))),
-        }
+            ))
+        })
     }
+}
+
+/// The state with these coordinates, velocities and multipliers, and the places of the velocities in it.
+fn state(equations: &equations::Equations, q: &[f64], v: &[f64], mu: &[f64]) -> Option<(Vec<f64>, Vec<usize>)> {
+    let place =
+        |list: &[symbolic::Expr], symbol| list.iter().position(|&e| equations.graph.as_symbol(e) == Some(symbol));
+    let multipliers: Vec<_> = equations.multipliers.iter().map(|m| m.expression).collect();
+    let (mut y, mut velocities) = (Vec::new(), vec![None; q.len()]);
+    for state in &equations.states {
+        let value = match state.role {
+            Role::Position => place(&equations.coordinates, state.symbol).map(|i| q[i]),
+            Role::Velocity => place(&equations.velocities, state.symbol).map(|i| {
+                velocities[i] = Some(y.len());
+                v[i]
+            }),
+            Role::Multiplier => place(&multipliers, state.symbol).and_then(|i| mu.get(i).copied()),
+            _ => None,
+        };
+        y.extend(value);
+    }
+    let places: Option<Vec<usize>> = velocities.into_iter().collect();
+    places.filter(|_| y.len() == equations.states.len()).map(|places| (y, places))
 }
 
 #[pymethods]
 impl Equations {
     /// The equations and what was left out of them, in the language of scenes.
     #[getter]
-    fn text(&self) -> String {
-        equations_text(&self.ready().equations, EquationStyle::Plain)
+    fn text(&self) -> PyResult<String> {
+        self.ready.with(|ready| equations_text(&ready.equations, EquationStyle::Plain))
     }
 
     /// The equations in LaTeX: one `aligned` environment.
     #[getter]
-    fn latex(&self) -> String {
-        let equations = &self.ready().equations;
-        let latex = |e| equations.graph.latex(e);
-        let lines: Vec<String> =
-            equations.statements.iter().map(|s| format!("{} &= {}", latex(s.left), latex(s.right))).collect();
-        format!("\\begin{{aligned}}\n{}\n\\end{{aligned}}", lines.join(" \\\\\n"))
+    fn latex(&self) -> PyResult<String> {
+        self.ready.with(|Prepared { equations, .. }| {
+            let latex = |e| equations.graph.latex(e);
+            let lines: Vec<String> =
+                equations.statements.iter().map(|s| format!("{} &= {}", latex(s.left), latex(s.right))).collect();
+            format!("\\begin{{aligned}}\n{}\n\\end{{aligned}}", lines.join(" \\\\\n"))
+        })
     }
 
     /// A file of C99: functions for rates and outputs without allocation, the start, the parameters.
     ///
     /// SolveError where unknowns of the instant are not found by linear equations; so in all three languages.
     #[pyo3(signature = ())]
-    fn to_c(&self) -> PyResult<String> {
-        self.code(Language::C)
+    fn to_c(&self, py: Python<'_>) -> PyResult<String> {
+        self.code(py, Language::C)
     }
 
     /// A module of Python: rates(t, y) and outputs(t, y) in NumPy, for one state or many at once.
     #[pyo3(signature = ())]
-    fn to_numpy(&self) -> PyResult<String> {
-        self.code(Language::Numpy)
+    fn to_numpy(&self, py: Python<'_>) -> PyResult<String> {
+        self.code(py, Language::Numpy)
     }
 
     /// A module of Python: RATES, OUTPUTS, MATRIX and RIGHT as matrices of SymPy in STATES and UNKNOWNS.
     #[pyo3(signature = ())]
-    fn to_sympy(&self) -> PyResult<String> {
-        self.code(Language::Sympy)
+    fn to_sympy(&self, py: Python<'_>) -> PyResult<String> {
+        self.code(py, Language::Sympy)
     }
 
     /// The state y(t0) that belongs to the start of the system, shape (m,).
@@ -217,12 +210,12 @@ impl Equations {
     #[pyo3(signature = (constants=None))]
     fn initial_state<'py>(&self, py: Python<'py>, constants: Option<Bound<'_, PyAny>>) -> Array<'py> {
         let rule = arguments::constants(constants.as_ref(), None)?;
-        let Prepared { equations, start, .. } = self.ready().clone();
+        let Prepared { equations, start, .. } = self.ready.copy()?;
         let start = match rule {
             None => start,
             Some(rule) => {
                 let (settings, interrupt) = arguments::settings("auto", 1e-11, true, 1_000_000, None, None)?;
-                let scene = self.scene();
+                let scene = self.scene()?;
                 let work = move || prepare(setting(&scene), equations, &rule, &settings);
                 background::run(py, &interrupt, work)?.map_err(errors::solve)?.start
             }
@@ -256,7 +249,7 @@ impl Equations {
     fn outputs(&self, py: Python<'_>, t: Floats<'_>, y: Floats<'_>) -> PyResult<Outputs> {
         let at = self.at(&t, &y)?;
         let work = |ready: &mut Prepared| -> PyResult<_> {
-            let mut observables = Observables::of(&self.scene().system).map_err(errors::solve)?;
+            let mut observables = Observables::of(&self.scene()?.system).map_err(errors::solve)?;
             let mut rows = Vec::new();
             at.each(|t, y| {
                 rows.push(observed(&mut observables, t, ready.compiled.outputs(t, y)?));
@@ -264,7 +257,7 @@ impl Equations {
             })?;
             Ok((rows, Names::of(&ready.equations, &observables)))
         };
-        let (rows, names) = py.detach(|| self.with(work))?;
+        let (rows, names) = apart(py, || self.with(work))???;
         Outputs::new(py, &rows, self.dimension, &names, at.count)
     }
 
@@ -291,13 +284,13 @@ impl Equations {
         let (y, places) = self.state(&q, &v, &mu)?;
         let mut rates = vec![0.0; y.len()];
         let work = |ready: &mut Prepared| ready.compiled.rates(t, &y, &mut rates);
-        py.detach(|| self.with(work)).map_err(|error| errors::evaluation(&error, t))?;
+        apart(py, || self.with(work))??.map_err(|error| errors::evaluation(&error, t))?;
         array(py, places.into_iter().map(|i| rates[i]).collect(), None, &[self.dimension])
     }
 
     fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Reduced<'py>> {
         let (py, Equations { system, formulation, removal, .. }) = (slf.py(), slf.get());
-        let given = slf.get().scene_and_choice().1.constants.clone();
+        let given = slf.get().at_run_time.scene_and_choice()?.1.constants;
         let state = PyDict::new(py);
         state.set_item("system", system)?;
         state.set_item("formulation", formulation)?;
@@ -306,11 +299,11 @@ impl Equations {
         Ok((py.import("deltaq")?.getattr("_again")?, ("Equations", state)))
     }
 
-    fn _repr_latex_(&self) -> String {
-        format!("$\\displaystyle {}$", self.latex())
+    fn _repr_latex_(&self) -> PyResult<String> {
+        Ok(format!("$\\displaystyle {}$", self.latex()?))
     }
 
-    fn __str__(&self) -> String {
+    fn __str__(&self) -> PyResult<String> {
         self.text()
     }
 

@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use deltaq::Broken;
 use equations::EvaluationFailure;
 use pyo3::create_exception;
 use pyo3::exceptions::{PyException, PyOSError, PyValueError};
@@ -24,6 +25,7 @@ create_exception!(deltaq, StartError, SolveError, "Start values could not be fou
 create_exception!(deltaq, CompileError, SolveError, "The derived equations cannot be compiled.");
 create_exception!(deltaq, EvaluationError, SolveError, "Equations that cannot be evaluated at a point.");
 create_exception!(deltaq, BoundaryError, SolveError, "No free constants meet the condition at the horizon.");
+create_exception!(deltaq, FaultError, DeltaqError, "A fault of deltaq itself, with its place; please report it.");
 create_exception!(deltaq, CallError, SolveError, "The time integrator was called wrongly.");
 
 /// `UnknownNameError`: one class for all names, which two classes have been caught by.
@@ -49,6 +51,11 @@ pub(crate) fn file(path: &Path, error: &std::io::Error) -> PyErr {
     let text = error.to_string();
     let words = text.split(" (os error").next().unwrap_or(&text).to_owned();
     PyOSError::new_err((error.raw_os_error(), words, path.as_os_str().to_owned()))
+}
+
+/// What is raised where deltaq itself is at fault.
+pub(crate) fn broken(broken: &Broken) -> PyErr {
+    FaultError::new_err(broken.to_string())
 }
 
 pub(crate) fn scene(py: Python<'_>, error: &scene::SceneError) -> PyErr {
@@ -82,6 +89,7 @@ pub(crate) fn solve(error: impl Into<deltaq::SolveError>) -> PyErr {
         | Error::Ended { .. }
         | Error::TwoPoint { .. }
         | Error::Interrupted { .. } => BoundaryError::new_err(text),
+        Error::Broken(error) => broken(&error),
         Error::Call(_) | Error::Tolerance { .. } => CallError::new_err(text),
         Error::ConstantCount { .. }
         | Error::ConstantNotFinite { .. }

@@ -1,7 +1,5 @@
 //! Films of motions, fitted.
 
-use std::sync::{Mutex, MutexGuard, PoisonError};
-
 use deltaq::Settings;
 use fit::{
     Aim, Design, Deviations, Film, FitError, Question, ROBUST, Range, Row, Sampling, Unknown, design_value,
@@ -12,13 +10,15 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
 use crate::arrays::{Array, Floats, array};
+use crate::background::whole;
+use crate::shared::Shared;
 use crate::system::System;
 use crate::{arguments, background, errors};
 
 /// Fits of formulations to films, to be asked further.
 #[pyclass(frozen, module = "deltaq")]
 pub(crate) struct _Fitted {
-    rows: Mutex<Vec<Row>>,
+    rows: Shared<Vec<Row>>,
     /// The answer as JSON.
     #[pyo3(get)]
     answer: String,
@@ -45,46 +45,50 @@ where
 }
 
 impl _Fitted {
-    fn rows(&self) -> MutexGuard<'_, Vec<Row>> {
-        self.rows.lock().unwrap_or_else(PoisonError::into_inner)
+    /// χ² of formulation `place` at these unknowns, and half its slopes; none where there is no motion.
+    fn squares(&self, py: Python<'_>, place: usize, theta: &[f64], slopes: bool) -> PyResult<Option<(f64, Vec<f64>)>> {
+        let found = self.ask(py, |rows| {
+            let problem = rows[place].problem.as_mut().ok_or_else(|| "it was not fitted".to_owned())?;
+            if theta.len() != problem.unknowns().len() {
+                let (found, needed) = (theta.len(), problem.unknowns().len());
+                return Err(format!("theta has {found} entries; {needed} are needed"));
+            }
+            let found = problem.weighed(theta, slopes).ok();
+            Ok(found.map(|(values, jacobian)| {
+                let by = if slopes { jacobian.tr_mul(&values).iter().copied().collect() } else { Vec::new() };
+                (values.norm_squared(), by)
+            }))
+        })?;
+        found.map_err(PyValueError::new_err)
     }
 
-    /// χ² of formulation `place` at these unknowns, and half its slopes; none where there is no motion.
-    fn squares(&self, place: usize, theta: &[f64], slopes: bool) -> PyResult<Option<(f64, Vec<f64>)>> {
-        let mut rows = self.rows();
-        let problem = rows[place].problem.as_mut().ok_or_else(|| PyValueError::new_err("it was not fitted"))?;
-        if theta.len() != problem.unknowns().len() {
-            let (found, needed) = (theta.len(), problem.unknowns().len());
-            return Err(PyValueError::new_err(format!("theta has {found} entries; {needed} are needed")));
-        }
-        let found = problem.weighed(theta, slopes).ok();
-        Ok(found.map(|(values, jacobian)| {
-            let by = if slopes { jacobian.tr_mul(&values).iter().copied().collect() } else { Vec::new() };
-            (values.norm_squared(), by)
-        }))
+    /// An answer of the fits, which can take long or be waited for long.
+    fn ask<T: Send>(&self, py: Python<'_>, ask: impl FnOnce(&mut Vec<Row>) -> T + Send) -> PyResult<T> {
+        py.detach(|| self.rows.with(ask))
     }
 }
 
 #[pymethods]
 impl _Fitted {
     /// Names of the unknowns of formulation `place`, in the order of theta, with the least that each can be.
-    fn unknowns(&self, place: usize) -> Vec<(String, Option<f64>)> {
-        let rows = self.rows();
-        let problem = rows[place].problem.as_ref();
-        problem.map_or(Vec::new(), |problem| problem.unknowns().iter().map(|u| (u.label(), u.bound)).collect())
+    fn unknowns(&self, py: Python<'_>, place: usize) -> PyResult<Vec<(String, Option<f64>)>> {
+        self.ask(py, |rows| {
+            let problem = rows[place].problem.as_ref();
+            problem.map_or(Vec::new(), |problem| problem.unknowns().iter().map(|u| (u.label(), u.bound)).collect())
+        })
     }
 
     /// χ² with priors; infinite where there is no motion.
     fn chi_squared(&self, py: Python<'_>, place: usize, theta: Floats<'_>) -> PyResult<f64> {
         let theta: Vec<f64> = theta.as_array().iter().copied().collect();
-        let found = py.detach(|| self.squares(place, &theta, false))?;
+        let found = self.squares(py, place, &theta, false)?;
         Ok(found.map_or(f64::INFINITY, |(value, _)| value))
     }
 
     /// Its derivatives, shape (P,); zero where there is no motion.
     fn slopes<'py>(&self, py: Python<'py>, place: usize, theta: Floats<'py>) -> Array<'py> {
         let theta: Vec<f64> = theta.as_array().iter().copied().collect();
-        let found = py.detach(|| self.squares(place, &theta, true))?;
+        let found = self.squares(py, place, &theta, true)?;
         let slopes = found.map_or(vec![0.0; theta.len()], |(_, by)| by.into_iter().map(|x| 2.0 * x).collect());
         let width = slopes.len();
         array(py, slopes, None, &[width])
@@ -92,19 +96,19 @@ impl _Fitted {
 
     /// How χ² rises above its least where an unknown has these values, shape (k,), and the others are fitted
     /// again; None where there is none of this name.
-    fn rises(&self, py: Python<'_>, place: usize, name: &str, at: Vec<f64>) -> Option<Vec<f64>> {
-        py.detach(|| {
-            let rows = self.rows();
+    fn rises(&self, py: Python<'_>, place: usize, name: &str, at: Vec<f64>) -> PyResult<Option<Vec<f64>>> {
+        self.ask(py, |rows| {
             let (problem, fit) = (rows[place].problem.as_ref()?, rows[place].fit.as_ref().ok()?);
             profile(problem, fit, name, &at)
         })
     }
 
     /// Residuals of formulation `place`: film, column, time, (fitted - seen)/sigma.
-    fn residuals(&self, place: usize) -> Vec<(usize, usize, f64, f64)> {
-        let rows = self.rows();
-        let fit = rows[place].fit.as_ref().ok();
-        fit.map_or(Vec::new(), |fit| fit.residuals.iter().map(|r| (r.film, r.column, r.t, r.value)).collect())
+    fn residuals(&self, py: Python<'_>, place: usize) -> PyResult<Vec<(usize, usize, f64, f64)>> {
+        self.ask(py, |rows| {
+            let fit = rows[place].fit.as_ref().ok();
+            fit.map_or(Vec::new(), |fit| fit.residuals.iter().map(|r| (r.film, r.column, r.t, r.value)).collect())
+        })
     }
 }
 
@@ -127,9 +131,10 @@ impl System {
         tolerance: f64,
         max_steps: usize,
     ) -> PyResult<_Fitted> {
-        let scene = self.scene().clone();
+        let scene = self.scene()?;
         let deviations = Deviations::written(&sigma).map_err(refused)?;
-        let film = |(name, text): &(String, String)| Film::read(&scene, name, text, &deviations).map_err(refused);
+        let film =
+            |(name, text): &(String, String)| whole(|| Film::read(&scene, name, text, &deviations))?.map_err(refused);
         let mut films = tables.iter().map(film).collect::<PyResult<Vec<_>>>()?;
         for (film, name, value) in known {
             let count = films.len();
@@ -157,7 +162,7 @@ impl System {
             let columns = film.columns.iter().enumerate().map(|(c, own)| (own.name.clone(), own.sigma, column(c)));
             (film.name.clone(), film.t.clone(), columns.collect())
         };
-        Ok(_Fitted { rows: Mutex::new(rows), answer, films: films.iter().map(seen).collect() })
+        Ok(_Fitted { rows: Shared::new(rows), answer, films: films.iter().map(seen).collect() })
     }
 
     /// The film that would show most, as JSON: see `design`.
@@ -180,11 +185,11 @@ impl System {
         max_steps: usize,
         threads: usize,
     ) -> PyResult<String> {
-        let scene = self.scene().clone();
+        let scene = self.scene()?;
         let law: Vec<Unknown> = read(&law)?;
         let deviations = Deviations::written(&sigma).map_err(refused)?;
         let times: Sampling = film.parse().map_err(refused)?;
-        let film = Film::planned(&scene, &columns, times, &deviations).map_err(refused)?;
+        let film = whole(|| Film::planned(&scene, &columns, times, &deviations))?.map_err(refused)?;
         let films = vec![film; films.max(1)];
         let (unknowns, over): (Vec<Unknown>, Vec<Range>) = (read(&free)?, read(&over)?);
         let settings = settings(tolerance, max_steps)?;

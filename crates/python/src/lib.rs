@@ -24,6 +24,7 @@ mod reading;
 mod residuals;
 mod scene_text;
 mod sensitivities;
+mod shared;
 mod system;
 mod trajectory;
 
@@ -37,8 +38,8 @@ mod _native {
         ensemble::Ensemble,
         equations::Equations,
         errors::{
-            BoundaryError, CallError, CompileError, DeltaqError, DerivationError, EvaluationError, RemovalError,
-            SceneError, SolveError, StartError,
+            BoundaryError, CallError, CompileError, DeltaqError, DerivationError, EvaluationError, FaultError,
+            RemovalError, SceneError, SolveError, StartError,
         },
         films::_Fitted,
         linearization::{Linearization, LinearizationSweep, StabilityChange},

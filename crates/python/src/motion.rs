@@ -1,6 +1,6 @@
 //! Motions, read off at many times.
 
-use std::sync::{Arc, Mutex, OnceLock, PoisonError};
+use std::sync::{Arc, OnceLock};
 
 use deltaq::{
     Choice, ErrorEstimate, Seconds, Sensitivities, Setting, Settings, SolveError, constant_names, error_estimates,
@@ -16,6 +16,7 @@ use crate::arguments::rule_value;
 use crate::arrays::{Floats, columns, fixed, times, within};
 use crate::kept::kept;
 use crate::outputs::{Names, Outputs, Row, observed};
+use crate::shared::Shared;
 use crate::system::System;
 use crate::{errors, sensitivities};
 
@@ -210,7 +211,7 @@ kept!(
 );
 
 /// A motion, and the program of what is observed in it.
-type Integrated = Mutex<(deltaq::Motion, Observables)>;
+type Integrated = Shared<(deltaq::Motion, Observables)>;
 
 /// What a run cost, by name.
 pub(crate) fn work(py: Python<'_>, work: &Work) -> PyResult<Py<PyDict>> {
@@ -277,7 +278,7 @@ impl Motion {
             work: work(py, &motion.work)?,
             projection: projection.unbind(),
             seconds: seconds.into_py_dict(py)?.unbind(),
-            motion: OnceLock::from(Arc::new(Mutex::new((motion, program)))),
+            motion: OnceLock::from(Arc::new(Shared::new((motion, program)))),
         })
     }
 }
@@ -315,13 +316,12 @@ impl Motion {
         };
         let instants: Vec<f64> = (0..t.count().unwrap_or(1)).map(inside).collect::<PyResult<_>>()?;
         let integrated = self.integrated(py)?;
-        let read = || {
-            let (motion, program) = &mut *integrated.lock().unwrap_or_else(PoisonError::into_inner);
+        let read = |(motion, program): &mut (deltaq::Motion, Observables)| {
             let row = |&t: &f64| Ok(observed(program, t, motion.at(t)?));
             let rows = instants.iter().map(row).collect::<Result<Vec<_>, SolveError>>()?;
             Ok((rows, Names::of(&motion.equations, program)))
         };
-        let (rows, names) = py.detach(read).map_err(|error: SolveError| errors::solve(error))?;
+        let (rows, names) = py.detach(|| integrated.with(read))?.map_err(|error: SolveError| errors::solve(error))?;
         Outputs::new(py, &rows, self.coordinate_names.len(), &names, t.count())
     }
 

@@ -14,7 +14,7 @@ impl System {
     /// The certificate as JSON, from the start or from almost every one, or why there is none.
     #[pyo3(signature = (almost_every_start))]
     fn _certificate(&self, py: Python<'_>, almost_every_start: bool) -> PyResult<(Option<String>, Option<String>)> {
-        let (scene, interrupt) = (self.scene().clone(), Interrupt::default());
+        let (scene, interrupt) = (self.scene()?, Interrupt::default());
         let work = move || -> Result<_, deltaq::SolveError> {
             let found = certificate(&scene, almost_every_start)?;
             let sound = if found.is_ok() { holds_beside_numbers(&scene) } else { Ok(()) };
@@ -32,7 +32,7 @@ impl System {
     #[pyo3(signature = (formulation, degree, names))]
     fn _integrals(&self, py: Python<'_>, formulation: &str, degree: u8, names: Vec<String>) -> PyResult<String> {
         let (interrupt, own) = (Interrupt::default(), arguments::formulation(formulation)?);
-        let (scene, choice) = arguments::choice(py, &interrupt, self.scene().clone(), (own, None), None)?;
+        let (scene, choice) = arguments::choice(py, &interrupt, self.scene()?, (own, None), None)?;
         let work = move || Integrals::find(&scene, &choice, degree.into(), &names);
         let found = background::run(py, &interrupt, work)?.map_err(|fault| match fault {
             NoAnswer::Open(Open::Name { .. }) => errors::unknown(fault.to_string()),

@@ -14,6 +14,7 @@ use scenery::{Drawn, moving};
 
 use crate::arguments::Table;
 use crate::arrays::{Floats, Rows, list};
+use crate::background::whole;
 use crate::comparison::{Comparison, compare};
 use crate::ensemble::{self, Ensemble, Varied};
 use crate::equations::Equations;
@@ -65,7 +66,7 @@ impl System {
         constants: Option<Bound<'_, PyAny>>,
     ) -> PyResult<Linearization> {
         let given = arguments::constants(constants.as_ref(), mu0)?;
-        let scene = self.scene().clone();
+        let scene = self.scene()?;
         let interrupt = Interrupt::default();
         let formulation = arguments::formulation(formulation)?;
         let (scene, choice) = arguments::choice(py, &interrupt, scene, (formulation, removal), given)?;
@@ -96,7 +97,7 @@ impl System {
         };
         let name: String = name.extract()?;
         let values = list(&name, &values.extract()?)?;
-        let scene = slf.get().scene().clone();
+        let scene = slf.get().scene()?;
         let formulation = arguments::formulation(formulation)?;
         let (scene, choice) = arguments::choice(py, &Interrupt::default(), scene, (formulation, removal), given)?;
         LinearizationSweep::over(slf, scene, choice, (&name, values), (free.unwrap_or_default(), find))
@@ -149,7 +150,7 @@ impl System {
         let (settings, interrupt) = arguments::settings(method, tolerance, project, max_steps, max_step, time_limit)?;
         let (formulation, in_form) = arguments::in_form(form, formulation)?;
         let settings = Settings { form: in_form, ..settings };
-        let scene = slf.get().scene().clone();
+        let scene = slf.get().scene()?;
         let (mut scene, choice) = arguments::choice(py, &interrupt, scene, (formulation, removal), given)?;
         let times = match times {
             None => None,
@@ -210,7 +211,7 @@ impl System {
     ) -> PyResult<Ensemble> {
         let (py, constants) = (slf.py(), arguments::constants(constants.as_ref(), mu0)?);
         let (settings, interrupt) = arguments::settings("taylor", tolerance, project, max_steps, max_step, time_limit)?;
-        let (scene, given) = (slf.get().scene().clone(), constants.is_some());
+        let (scene, given) = (slf.get().scene()?, constants.is_some());
         let formulation = arguments::formulation(formulation)?;
         let (scene, choice) = arguments::choice(py, &interrupt, scene, (formulation, removal), constants)?;
         let (times, end) = times.map_or_else(
@@ -247,7 +248,7 @@ impl System {
     ) -> PyResult<Comparison> {
         let (py, fits) = (slf.py(), arguments::fits(fits)?);
         let (settings, interrupt) = arguments::settings("auto", tolerance, true, max_steps, max_step, time_limit)?;
-        let scene = slf.get().scene().clone();
+        let scene = slf.get().scene()?;
         let compared = background::run(py, &interrupt, move || compare(scene, fits, &settings))?;
         Comparison::new(slf, compared.map_err(errors::solve)?)
     }
@@ -273,7 +274,7 @@ impl System {
             PyResult::Ok([arguments::formulation(&first)?, arguments::formulation(&second)?])
         };
         let formulations = formulations.map(read).transpose()?;
-        let (name, width) = (self.name(), names.len());
+        let (name, width) = (self.name()?, names.len());
         let work = || -> Result<Vec<SweepPoint>, deltaq::SolveError> {
             let sweep = Sweep::new(&name, &self.text, &self.overrides, &names, formulations, &settings)?;
             let rows: Vec<&[f64]> = values.chunks_exact(width.max(1)).collect();
@@ -294,7 +295,7 @@ impl System {
     /// None where nothing is seen to move. Between times a curve is straight.
     #[pyo3(signature = (curves))]
     fn _moving(&self, curves: Vec<(String, String, Floats<'_>, Floats<'_>)>) -> PyResult<Option<String>> {
-        let mut scene = self.scene().clone();
+        let mut scene = self.scene()?;
         let mut motions = Vec::new();
         let mut end = scene.start.t;
         for (label, formulation, times, coordinates) in curves {
@@ -312,7 +313,7 @@ impl System {
             motions.push(Drawn { label, style, at: Box::new(at) });
         }
         scene.duration = end - scene.start.t;
-        let picture = moving(&scene, motions).map_err(|error| PyValueError::new_err(error.to_string()))?;
-        Ok(picture.and_then(|picture| picture.to_svg()))
+        let drawn = whole(|| moving(&scene, motions).map(|picture| picture.and_then(|picture| picture.to_svg())))?;
+        drawn.map_err(|error| PyValueError::new_err(error.to_string()))
     }
 }

@@ -1,7 +1,5 @@
 //! What a motion misses of data, as a function of numbers that never raises.
 
-use std::sync::{Mutex, MutexGuard, PoisonError};
-
 use deltaq::{Choice, Model, Reading, Settings};
 use equations::Outputs;
 use mechanics::ConstantsRule;
@@ -12,6 +10,8 @@ use scene::Scene;
 
 use crate::arguments::{Numbers, Table, unknown};
 use crate::arrays::{Array, Floats, array, finite, list};
+use crate::background::whole;
+use crate::shared::Shared;
 use crate::system::System;
 use crate::{arguments, errors};
 
@@ -24,7 +24,7 @@ use crate::{arguments, errors};
 /// derivatives zero, and `ended` says why. Numbers that are no start give that at all times.
 #[pyclass(frozen, module = "deltaq")]
 pub(crate) struct Residuals {
-    model: Mutex<Model>,
+    model: Shared<Model>,
     /// Names of the numbers p, length P.
     #[pyo3(get)]
     names: Vec<String>,
@@ -37,7 +37,7 @@ pub(crate) struct Residuals {
     places: Vec<Place>,
     /// By column: data, and what residuals are over.
     data: Vec<(Vec<f64>, f64)>,
-    ended: Mutex<Option<String>>,
+    ended: Shared<Option<String>>,
     /// How it was asked for.
     call: (Py<PyAny>, Py<PyTuple>),
 }
@@ -74,7 +74,7 @@ impl Residuals {
             return Err(PyValueError::new_err(format!("penalty is {penalty}; it must be above 0 and finite")));
         }
         let asked: Vec<&str> = names.iter().map(String::as_str).collect();
-        let model = Model::new(scene, choice, &asked, times, settings).map_err(errors::solve)?;
+        let model = whole(|| Model::new(scene, choice, &asked, times, settings))?.map_err(errors::solve)?;
         let coordinates: Vec<&str> = scene.system.coordinates.iter().map(|c| c.name.as_str()).collect();
         let multipliers = model.multipliers();
         let known = || {
@@ -116,12 +116,8 @@ impl Residuals {
         if let Some((name, _)) = sigmas.iter().find(|(name, _)| !columns.contains(name)) {
             return Err(unknown("column", name, columns.iter().map(String::as_str)));
         }
-        let (model, ended) = (Mutex::new(model), Mutex::new(None));
+        let (model, ended) = (Shared::new(model), Shared::default());
         Ok(Residuals { model, names, columns, penalty, places, data: rows, ended, call })
-    }
-
-    fn model(&self) -> MutexGuard<'_, Model> {
-        self.model.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     /// What `read` gives for these numbers, and how it ended.
@@ -129,15 +125,15 @@ impl Residuals {
         &self,
         py: Python<'_>,
         p: &Floats<'_>,
-        read: impl Fn(&mut Model, &[f64]) -> Reading + Sync,
+        read: impl Fn(&mut Model, &[f64]) -> Reading + Send + Sync,
     ) -> PyResult<Reading> {
         let p: Vec<f64> = p.as_array().iter().copied().collect();
         if p.len() != self.names.len() {
             let (found, needed) = (p.len(), self.names.len());
             return Err(PyValueError::new_err(format!("p has {found} entries; {needed} are needed")));
         }
-        let reading = py.detach(|| read(&mut self.model(), &p));
-        self.ended.lock().unwrap_or_else(PoisonError::into_inner).clone_from(&reading.ended);
+        let reading = py.detach(|| self.model.with(|model| read(model, &p)))?;
+        self.ended.with(|ended| ended.clone_from(&reading.ended))?;
         Ok(reading)
     }
 
@@ -182,8 +178,8 @@ impl Residuals {
 
     /// Why the motion of the last call ended before the last time; None where it did not.
     #[getter]
-    fn ended(&self) -> Option<String> {
-        self.ended.lock().unwrap_or_else(PoisonError::into_inner).clone()
+    fn ended(&self) -> PyResult<Option<String>> {
+        self.ended.copy()
     }
 
     fn __len__(&self) -> usize {
@@ -250,7 +246,7 @@ impl System {
         let positional = (names.clone(), times.clone(), &data.0).into_pyobject(py)?;
         let call = partial(slf.getattr("residuals")?, &options)?.unbind();
         let is_given = given.is_some();
-        let scene = slf.get().scene().clone();
+        let scene = slf.get().scene()?;
         let formulation = arguments::formulation(formulation)?;
         let (settings, interrupt) = arguments::settings(method, tolerance, true, max_steps, None, None)?;
         let (scene, mut choice) = arguments::choice(py, &interrupt, scene, (formulation, removal), given)?;

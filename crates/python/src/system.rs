@@ -1,19 +1,22 @@
 //! Systems, and what can be asked of them.
 
 use std::path::Path;
-use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use deltaq::{integrability, removals};
+use integrate::Interrupt;
 use numpy::PyArrayDyn;
 use pyo3::prelude::*;
 use pyo3::types::{IntoPyDict, PyDict};
 use scene::Scene;
+use symbolic::{work_on, worked_on};
 
 use crate::arguments::{Numbers, Table};
 use crate::arrays::{Array, Floats, Points, array, fixed};
-use crate::errors;
+use crate::background::apart;
 use crate::kept::kept;
 use crate::scene_text::{Arguments, Formula, Formulas, write};
+use crate::shared::Shared;
+use crate::{background, errors};
 
 /// A point of a motion: time, coordinates, velocities.
 #[pyclass(frozen, get_all, module = "deltaq")]
@@ -67,7 +70,9 @@ impl State {
 /// SceneError names the line of the scene file that the arguments amount to.
 #[pyclass(frozen, module = "deltaq")]
 pub(crate) struct System {
-    scene: Mutex<Scene>,
+    scene: Shared<Scene>,
+    /// What its faults are about.
+    about: String,
     /// What the scene was read from.
     pub(crate) text: String,
     pub(crate) overrides: Overrides,
@@ -84,17 +89,18 @@ impl System {
         text: String,
         overrides: Overrides,
     ) -> PyResult<System> {
-        let scene = py.detach(|| match path {
+        let scene = apart(py, || match path {
             Some(path) => Scene::parse_file(path, &text, &overrides),
             None => Scene::parse_with(name, &text, &overrides),
-        });
-        let scene = Mutex::new(scene.map_err(|error| errors::scene(py, &error))?);
-        Ok(System { scene, text, overrides })
+        })?;
+        let scene = Shared::new(scene.map_err(|error| errors::scene(py, &error))?);
+        Ok(System { scene, about: worked_on(), text, overrides })
     }
 
-    /// The scene. No lock of Python is waited for while it is held.
-    pub(crate) fn scene(&self) -> MutexGuard<'_, Scene> {
-        self.scene.lock().unwrap_or_else(PoisonError::into_inner)
+    /// A copy of the scene, on which this thread works from now on.
+    pub(crate) fn scene(&self) -> PyResult<Scene> {
+        work_on(self.about.clone());
+        self.scene.copy()
     }
 }
 
@@ -166,136 +172,140 @@ impl System {
 
     /// Name: that of the file without its ending.
     #[getter]
-    pub(crate) fn name(&self) -> String {
-        self.scene().name.clone()
+    pub(crate) fn name(&self) -> PyResult<String> {
+        self.scene.with(|scene| scene.name.clone())
     }
 
     /// Title, one line.
     #[getter]
-    fn title(&self) -> String {
-        self.scene().title.clone()
+    fn title(&self) -> PyResult<String> {
+        self.scene.with(|scene| scene.title.clone())
     }
 
     /// Where the example is from, empty where that is not said.
     #[getter]
-    fn source(&self) -> String {
-        self.scene().source.clone()
+    fn source(&self) -> PyResult<String> {
+        self.scene.with(|scene| scene.source.clone())
     }
 
     /// Remarks, empty where there are none.
     #[getter]
-    fn notes(&self) -> String {
-        self.scene().notes.clone()
+    fn notes(&self) -> PyResult<String> {
+        self.scene.with(|scene| scene.notes.clone())
     }
 
     /// Names of the coordinates, length n.
     #[getter]
-    fn coordinates(&self) -> Vec<String> {
-        self.scene().system.coordinates.iter().map(|c| c.name.clone()).collect()
+    fn coordinates(&self) -> PyResult<Vec<String>> {
+        self.scene.with(|scene| scene.system.coordinates.iter().map(|c| c.name.clone()).collect())
     }
 
     /// Units of the coordinates, by name.
     #[getter]
     fn units<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        self.scene().system.coordinates.iter().map(|c| (&c.name, &c.unit)).into_py_dict(py)
+        self.scene()?.system.coordinates.iter().map(|c| (&c.name, &c.unit)).into_py_dict(py)
     }
 
     /// Number of coordinates, n.
     #[getter]
-    fn dimension(&self) -> usize {
-        self.scene().system.dimension()
+    fn dimension(&self) -> PyResult<usize> {
+        self.scene.with(|scene| scene.system.dimension())
     }
 
     /// Values of the parameters, by name.
     #[getter]
     fn parameters<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let scene = self.scene();
+        let scene = self.scene()?;
         scene.system.parameters.iter().map(|p| (scene.system.graph.name(p.symbol), p.value)).into_py_dict(py)
     }
 
     /// The Lagrangian, as text.
     #[getter]
-    fn lagrangian(&self) -> String {
-        let scene = self.scene();
-        scene.system.graph.plain(scene.system.lagrangian)
+    fn lagrangian(&self) -> PyResult<String> {
+        self.scene.with(|scene| scene.system.graph.plain(scene.system.lagrangian))
     }
 
     /// The constraints, as text, length h.
     #[getter]
-    fn constraints(&self) -> Vec<String> {
-        let scene = self.scene();
-        scene.system.constraints.iter().map(|&f| scene.system.graph.plain(f)).collect()
+    fn constraints(&self) -> PyResult<Vec<String>> {
+        self.scene.with(|Scene { system, .. }| system.constraints.iter().map(|&f| system.graph.plain(f)).collect())
     }
 
     /// What rates of virtual displacements satisfy, as text, length h; empty where that is not prescribed.
     #[getter]
-    fn r#virtual(&self) -> Vec<String> {
-        let scene = self.scene();
-        scene.system.virtual_conditions.iter().map(|&w| scene.system.graph.plain(w)).collect()
+    fn r#virtual(&self) -> PyResult<Vec<String>> {
+        self.scene
+            .with(|Scene { system, .. }| system.virtual_conditions.iter().map(|&w| system.graph.plain(w)).collect())
     }
 
     /// The generalized forces other than zero, as text, by coordinate.
     #[getter]
     fn forces<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let scene = self.scene();
-        let g = &scene.system.graph;
-        let pairs = scene.system.coordinates.iter().zip(&scene.system.forces);
-        pairs.filter(|(_, force)| !g.is_zero(**force)).map(|(c, &force)| (&c.name, g.plain(force))).into_py_dict(py)
+        let texts = |Scene { system, .. }: &mut Scene| -> Vec<(String, String)> {
+            let g = &system.graph;
+            let pairs = system.coordinates.iter().zip(&system.forces).filter(|(_, force)| !g.is_zero(**force));
+            pairs.map(|(c, &force)| (c.name.clone(), g.plain(force))).collect()
+        };
+        self.scene.with(texts)?.into_py_dict(py)
     }
 
     /// The Lagrangian and the constraints in LaTeX: one `aligned` environment.
     #[getter]
-    fn latex(&self) -> String {
-        let scene = self.scene();
-        let mechanics::System { graph: g, lagrangian, constraints, .. } = &scene.system;
-        let constraints = constraints.iter().map(|&f| format!(" \\\\\n0 &= {}", g.latex(f)));
-        let lines = format!("L &= {}", g.latex(*lagrangian)) + &constraints.collect::<String>();
-        format!("\\begin{{aligned}}\n{lines}\n\\end{{aligned}}")
+    fn latex(&self) -> PyResult<String> {
+        self.scene.with(|scene| {
+            let mechanics::System { graph: g, lagrangian, constraints, .. } = &scene.system;
+            let constraints = constraints.iter().map(|&f| format!(" \\\\\n0 &= {}", g.latex(f)));
+            let lines = format!("L &= {}", g.latex(*lagrangian)) + &constraints.collect::<String>();
+            format!("\\begin{{aligned}}\n{lines}\n\\end{{aligned}}")
+        })
     }
 
-    fn _repr_latex_(&self) -> String {
-        format!("$\\displaystyle {}$", self.latex())
+    fn _repr_latex_(&self) -> PyResult<String> {
+        Ok(format!("$\\displaystyle {}$", self.latex()?))
     }
 
     /// The start: t0, q0 and v0 with f(q0, v0, t0) = 0.
     #[getter]
     fn start(&self, py: Python<'_>) -> PyResult<State> {
-        let mechanics::State { t, q, v } = self.scene().start.clone();
+        let mechanics::State { t, q, v } = self.scene.with(|scene| scene.start.clone())?;
         let n = q.len();
         Ok(State { t, q: fixed(py, q, None, &[n])?.unbind(), v: fixed(py, v, None, &[n])?.unbind() })
     }
 
     /// Multipliers mu0 at the start of vakonomic motions, length h.
     #[getter]
-    fn multipliers(&self) -> Vec<f64> {
-        self.scene().multipliers.clone()
+    fn multipliers(&self) -> PyResult<Vec<f64>> {
+        self.scene.with(|scene| scene.multipliers.clone())
     }
 
     /// Length of the run, in the unit of time.
     #[getter]
-    fn duration(&self) -> f64 {
-        self.scene().duration
+    fn duration(&self) -> PyResult<f64> {
+        self.scene.with(|scene| scene.duration)
     }
 
     /// Times at which a step ends, where something is switched.
     #[getter]
-    fn breakpoints(&self) -> Vec<f64> {
-        self.scene().system.breakpoints.clone()
+    fn breakpoints(&self) -> PyResult<Vec<f64>> {
+        self.scene.with(|scene| scene.system.breakpoints.clone())
     }
 
     /// Names of removals for the removed-constraint formulation: those written by hand, then automatic ones.
     ///
     /// RemovalError where there is none.
     #[getter]
-    fn removals(&self) -> PyResult<Vec<String>> {
-        let known = removals(&self.scene()).map_err(errors::solve)?;
-        Ok(known.into_iter().map(|r| r.name).collect())
+    fn removals(&self, py: Python<'_>) -> PyResult<Vec<String>> {
+        let scene = self.scene()?;
+        let known = background::run(py, &Interrupt::default(), move || removals(&scene))?;
+        Ok(known.map_err(errors::solve)?.into_iter().map(|r| r.name).collect())
     }
 
     /// Frobenius' verdict on the constraints, in words; RemovalError where they are dependent at the start.
     #[getter]
-    fn integrability(&self) -> PyResult<String> {
-        Ok(integrability(&self.scene()).map_err(errors::solve)?.to_string())
+    fn integrability(&self, py: Python<'_>) -> PyResult<String> {
+        let scene = self.scene()?;
+        let found = background::run(py, &Interrupt::default(), move || integrability(&scene))?;
+        Ok(found.map_err(errors::solve)?.to_string())
     }
 
     /// The same system with other numbers in some places; overrides as in `load`, over those of before.
@@ -308,30 +318,30 @@ impl System {
         let is_new = |name: &String| overrides.iter().any(|(new, _)| new == name);
         let kept = self.overrides.iter().filter(|(name, _)| !is_new(name)).cloned();
         let all = kept.chain(overrides.iter().cloned()).collect();
-        System::read(py, (&self.name(), None), self.text.clone(), all)
+        System::read(py, (&self.name()?, None), self.text.clone(), all)
     }
 
     fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<(Bound<'py, PyAny>, (String, String, Overrides))> {
         let system = slf.get();
-        let arguments = (system.name(), system.text.clone(), system.overrides.clone());
+        let arguments = (system.name()?, system.text.clone(), system.overrides.clone());
         Ok((slf.py().import("deltaq")?.getattr("_read_again")?, arguments))
     }
 
     /// The system as a scene file's text, every start value a number; `parse` of it gives the same system.
     #[pyo3(signature = ())]
-    fn to_toml(&self) -> String {
-        self.scene().to_toml()
+    fn to_toml(&self) -> PyResult<String> {
+        self.scene.with(|scene| scene.to_toml())
     }
 
     /// Constraint residuals f(q, v, t), shape (h,) or (k, h); q, v: (n,) or (k, n); t: a number or (k,).
     #[pyo3(signature = (t, q, v))]
     fn constraint<'py>(&self, py: Python<'py>, t: Floats<'_>, q: Floats<'_>, v: Floats<'_>) -> Array<'py> {
-        let points = Points::read([t, q, v], self.dimension())?;
-        let (values, width) = py.detach(|| {
-            let system = &self.scene().system;
-            PyResult::Ok((points.values(system, &system.constraints)?, system.constraints.len()))
-        })?;
-        array(py, values, points.count, &[width])
+        let points = Points::read([t, q, v], self.dimension()?)?;
+        let compile =
+            |Scene { system, .. }: &mut Scene| (Points::program(system, &system.constraints), system.constraints.len());
+        let (program, width) = self.scene.with(compile)?;
+        let program = program.map_err(errors::solve)?;
+        array(py, apart(py, || points.values(program))?, points.count, &[width])
     }
 
     /// Mass matrix M(q, v, t) = d²L/dv², shape (n, n) or (k, n, n); arguments as in `constraint`.
@@ -339,18 +349,14 @@ impl System {
     /// Distances of configurations are measured by it everywhere: sqrt(dq' M dq).
     #[pyo3(signature = (t, q, v))]
     fn mass<'py>(&self, py: Python<'py>, t: Floats<'_>, q: Floats<'_>, v: Floats<'_>) -> Array<'py> {
-        let n = self.dimension();
+        let n = self.dimension()?;
         let points = Points::read([t, q, v], n)?;
-        let values = py.detach(|| {
-            let system = &self.scene().system;
-            points.values(system, system.velocity_hessian().entries())
-        })?;
-        array(py, values, points.count, &[n, n])
+        let compile = |Scene { system, .. }: &mut Scene| Points::program(system, system.velocity_hessian().entries());
+        let program = self.scene.with(compile)?.map_err(errors::solve)?;
+        array(py, apart(py, || points.values(program))?, points.count, &[n, n])
     }
 
-    fn __repr__(&self) -> String {
-        let scene = self.scene();
-        let names: Vec<&str> = scene.system.coordinates.iter().map(|c| c.name.as_str()).collect();
-        format!("<deltaq.System {:?}, coordinates ({})>", scene.title, names.join(", "))
+    fn __repr__(&self) -> PyResult<String> {
+        Ok(format!("<deltaq.System {:?}, coordinates ({})>", self.title()?, self.coordinates()?.join(", ")))
     }
 }

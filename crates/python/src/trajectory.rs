@@ -81,10 +81,8 @@ impl Equations {
         if let Some(found) = y0.as_ref().map(Vec::len).filter(|found| *found != width) {
             return Err(PyValueError::new_err(format!("y0 has {found} entries; {width} are needed")));
         }
-        let (begin, (times, end)) = {
-            let (scene, _) = &*self.scene_and_choice();
-            (scene.start.t, ensemble::times(&times, scene)?)
-        };
+        let (scene, _) = self.at_run_time.scene_and_choice()?;
+        let (begin, (times, end)) = (scene.start.t, ensemble::times(&times, &scene)?);
         let is_end = |&t: &f64| t == begin || t == end;
         let mut options = Options {
             projection: settings.projection,
@@ -110,7 +108,7 @@ impl Equations {
         let as_derived = y0.is_none() && parameters.is_none() && rule.is_none();
         let numbers = parameters.map_or(Vec::new(), |numbers| numbers.0);
         let ran = background::run(py, &interrupt, || match as_derived {
-            true => self.with(run).map_err(errors::solve),
+            true => self.with(run)?.map_err(errors::solve),
             false => self.at_run_time.started(numbers, rule, y0, run),
         })?;
         let (run, reached, states, seconds) = ran?;

@@ -1,4 +1,8 @@
-"""Systems that the tests share, with what is known of them."""
+"""Systems that the tests share, with what is known of them. A panic is no refusal that a test may expect: it is not caught."""
+
+import os
+
+os.environ.setdefault("DELTAQ_PANICS", "through")
 
 import numpy as np
 import pytest

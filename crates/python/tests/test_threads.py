@@ -102,3 +102,10 @@ def test_a_program_that_embeds_it(tmp_path):
     ended = subprocess.run([sys.executable, "-W", "error", session, tmp_path], capture_output=True, text=True, timeout=120)
     assert (ended.returncode, ended.stdout) == (0, "the session has ended\n"), ended.stderr
     assert (tmp_path / "slid.png").stat().st_size > 10_000
+
+
+def test_eight_threads_with_one_object():
+    # in a process of its own: what freezes holds Python's lock
+    ended = subprocess.run([sys.executable, Path(__file__).with_name("together.py")], capture_output=True, text=True, timeout=120)
+    assert ended.returncode == 0, ended.stderr
+    assert "8 threads" in ended.stdout

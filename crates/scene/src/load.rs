@@ -4,6 +4,7 @@ use std::cell::RefCell;
 use std::io::Read;
 use std::path::Path;
 
+use symbolic::work_on;
 use toml::de::DeTable;
 
 use super::context::Context;
@@ -134,6 +135,7 @@ fn load<N: Clone + Into<Number>>(
     text: &str,
     overrides: &[(String, N)],
 ) -> Result<Scene, SceneError> {
+    work_on(format!("scene {name}, digest {:016x}", digest(text, overrides)));
     let faults = RefCell::default();
     let source = Source { file, text, faults: &faults };
     let scene = Overrides::new(source, overrides).and_then(|overrides| read(name, source, overrides));
@@ -144,6 +146,14 @@ fn load<N: Clone + Into<Number>>(
         (_, Some(error)) => Err(error),
         (Err(()), None) => unreachable!("what is no scene has a fault"),
     }
+}
+
+/// By which a scene is known again (FNV-1a, 64 bits).
+fn digest<N: Clone + Into<Number>>(text: &str, overrides: &[(String, N)]) -> u64 {
+    let number = |x: &N| Into::<Number>::into(x.clone()).to_string();
+    let given = overrides.iter().map(|(name, x)| format!("{name}={}\n", number(x))).collect::<String>();
+    let bytes = text.bytes().chain(given.bytes());
+    bytes.fold(0xcbf2_9ce4_8422_2325, |digest, byte| (digest ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3))
 }
 
 /// Looks at as much as can be looked at: faults that leave the rest readable are noted.

@@ -1,7 +1,7 @@
 //! `[view]`: the bodies that are drawn.
 
-use mechanics::{Body, Kind, Pose, Shape, State, Touch, View};
-use symbolic::{Expr, Graph, Matrix};
+use mechanics::{Body, Kind, Shape, State, Touch, View};
+use symbolic::{Evaluator, Expr, Graph, Matrix};
 
 use super::context::Context;
 use super::names::check_symbols;
@@ -27,9 +27,8 @@ pub(super) fn read(context: &Context) -> Result<View, SceneError> {
 /// At the start everything is finite, and what rotates is a rotation.
 pub(super) fn check(context: &Context, view: &View, start: &State) -> Result<(), SceneError> {
     let Some(section) = context.root.section("view")? else { return Ok(()) };
-    let poses = view.poses(&context.system).unwrap_or_else(|e| unreachable!("every symbol was looked at: {e}"));
-    for (entry, pose) in section.entries().zip({ poses }.at(start.t, &start.q)) {
-        context.source.note(check_pose(&entry.section()?, &pose));
+    for (entry, body) in section.entries().zip(&view.bodies) {
+        context.source.note(check_body(context, &entry.section()?, &view.graph, body, start));
     }
     Ok(())
 }
@@ -113,25 +112,34 @@ fn value(context: &Context, g: &Graph, entry: &Entry, expected: &'static str) ->
     Ok(value)
 }
 
-fn check_pose(section: &Section, pose: &Pose) -> Result<(), SceneError> {
-    let Pose { at, rotation: r, touches } = pose;
+fn check_body(context: &Context, section: &Section, g: &Graph, body: &Body, start: &State) -> Result<(), SceneError> {
     let blame = |key: &str, kind| {
         let span = section.get(key).map_or(section.span.clone(), |entry| entry.span);
-        Err(section.source.error(&span, kind))
+        section.source.error(&span, kind)
     };
-    for (key, values) in [("at", &at[..]), ("rotation", r.as_flattened()), ("touches", touches.as_flattened())] {
-        if let Some(&value) = values.iter().find(|x| !x.is_finite()) {
-            let what = format!("{}.{key} at the start", section.path);
-            return blame(key, SceneErrorKind::NotFinite { what, value });
+    let system = &context.system;
+    let inputs = [&[system.time], &system.positions()[..]].concat();
+    let values = |key: &str, expressions: &[Expr]| {
+        let tape = g.compile(&inputs, expressions, &system.parameter_values());
+        let tape = tape.map_err(|error| blame(key, SceneErrorKind::Start(error.into())))?;
+        let values = Evaluator::<f64>::new(tape).evaluate(&[&[start.t], &start.q[..]].concat()).to_vec();
+        let what = || format!("{}.{key} at the start", section.path);
+        match values.iter().find(|x| !x.is_finite()) {
+            Some(&value) => Err(blame(key, SceneErrorKind::NotFinite { what: what(), value })),
+            None => Ok(values),
         }
-    }
+    };
+    values("at", &body.at)?;
+    values("touches", &body.touches.iter().flat_map(|touch| touch.at).collect::<Vec<_>>())?;
+    let r = values("rotation", body.rotation.entries())?;
+    let r = [0, 3, 6].map(|i| [r[i], r[i + 1], r[i + 2]]);
     let dot = |a: &[f64; 3], b: &[f64; 3]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
     let off = |i: usize, j: usize| (dot(&r[i], &r[j]) - f64::from(u8::from(i == j))).abs();
     let residual = (0..9).map(|k| off(k / 3, k % 3)).fold(0.0, f64::max);
     let cross = [0, 1, 2].map(|i| r[0][(i + 1) % 3] * r[1][(i + 2) % 3] - r[0][(i + 2) % 3] * r[1][(i + 1) % 3]);
     let determinant = dot(&cross, &r[2]);
     if residual > LIMIT || determinant < 0.0 {
-        return blame("rotation", SceneErrorKind::NoRotation { residual, limit: LIMIT, determinant });
+        return Err(blame("rotation", SceneErrorKind::NoRotation { residual, limit: LIMIT, determinant }));
     }
     Ok(())
 }

@@ -13,7 +13,7 @@ thread_local! {
 }
 
 /// What the stack is unwound with.
-struct Cancelled;
+pub(crate) struct Cancelled;
 
 /// Does `work` on this thread until `is_unwanted` says so: `None` then. It is asked at every 256th new
 /// expression. The graphs that the work has built on are whole, with more expressions than before.

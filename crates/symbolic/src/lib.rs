@@ -35,6 +35,7 @@ mod apply;
 mod arena;
 mod atoms;
 mod bounded;
+mod broken;
 mod calculus;
 mod cancel;
 mod code;
@@ -81,6 +82,7 @@ mod tape;
 mod value;
 
 pub use bounded::Bounded;
+pub use broken::{Broken, caught, work_on, worked_on};
 pub use cancel::cancellable;
 pub use code::{Code, Language};
 pub use evaluate::CompileError;

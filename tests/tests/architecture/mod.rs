@@ -3,4 +3,5 @@
 mod arrows;
 mod circles;
 mod harnesses;
+mod locks;
 mod modules;

@@ -8,6 +8,7 @@ use crate::clock::Clock;
 use crate::metric::subtract;
 use crate::{Breach, Doubt, ErrorEstimate, SolveError};
 use equations::Outputs;
+use symbolic::caught;
 
 /// What became of a member, read off.
 #[derive(Clone, Debug)]
@@ -81,8 +82,9 @@ impl Ensemble {
                 Ok(found) if found.run.left_chart && options.estimate => found.run.stopped(),
                 _ => None,
             };
-            if let Some(found) = stopped.and_then(|t| self.singly(member, t, times, options)) {
-                *motion = Ok(found);
+            let found = caught("row", || stopped.and_then(|t| self.singly(member, t, times, options)));
+            if let Some(found) = found.map_err(SolveError::from).transpose() {
+                *motion = found;
             }
         };
         motions.iter_mut().zip(members).for_each(singly);
@@ -180,7 +182,8 @@ fn read_all(reader: &Reader, members: &[EnsembleMember], runs: &[Outcome], optio
         let mut done = Vec::new();
         while let Some(index) = take() {
             if let Ok(run) = &runs[index] {
-                done.push((index, reader.read(&members[index], run, options)));
+                let read = caught("row", || reader.read(&members[index], run, options));
+                done.push((index, read.unwrap_or_else(|broken| Err(broken.into()))));
             }
         }
         done

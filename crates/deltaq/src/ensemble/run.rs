@@ -1,11 +1,13 @@
 //! Members integrated in lanes, over threads; those that have to be, alone.
 
+use std::cell::RefCell;
 use std::sync::{Mutex, PoisonError};
 
 use equations::{Compiled, Equations, LaneEquations, Plan};
 use integrate::{
     Interrupt, LANES, Lane, LaneProblem, LaneStart, Options, ProjectionReport, Start, Status, StopCause, Work,
 };
+use symbolic::caught;
 
 use super::threads::{Take, shared};
 use super::{Ensemble, EnsembleMember};
@@ -189,7 +191,19 @@ impl Task<'_> {
                     done.push((index, self.alone(&mut compiled, index, why.clone())));
                 }
             }
-            Ok(lanes) => self.in_lanes(lanes.clone(), &mut compiled, take, &mut done),
+            Ok(lanes) => loop {
+                let under_way = RefCell::default();
+                let work = || self.in_lanes(lanes.clone(), &mut compiled, take, &mut done, &under_way);
+                let Err(broken) = caught("lanes", work) else { break };
+                // which of them it was is seen where each is alone
+                compiled = self.compiled.clone();
+                let mut under_way: Vec<usize> = under_way.into_inner();
+                if under_way.is_empty() {
+                    let Some(next) = take() else { break };
+                    under_way.push(next);
+                }
+                self.leave(under_way, &broken.to_string());
+            },
         }
         while let Some((index, why)) = self.take_left() {
             done.push((index, self.alone(&mut compiled, index, why)));
@@ -197,13 +211,22 @@ impl Task<'_> {
         done
     }
 
-    fn in_lanes(&self, lanes: LaneEquations, compiled: &mut Compiled, take: Take, done: &mut Vec<(usize, Outcome)>) {
+    /// Members in lanes until none is left to take; those that were begun and have not ended are `under_way`.
+    fn in_lanes(
+        &self,
+        lanes: LaneEquations,
+        compiled: &mut Compiled,
+        take: Take,
+        done: &mut Vec<(usize, Outcome)>,
+        under_way: &RefCell<Vec<usize>>,
+    ) {
         let n = lanes.dimension();
         let mut refused = Vec::new();
         let mut problem = Riders { lanes, members: self.members };
         let mut next = || {
             loop {
                 let index = take().filter(|_| !self.is_interrupted())?;
+                under_way.borrow_mut().push(index);
                 match self.start(compiled, index) {
                     Ok(start) => return Some((index, start)),
                     Err(error) => refused.push((index, Err(error))),
@@ -211,18 +234,22 @@ impl Task<'_> {
             }
         };
         integrate::integrate_lanes(&mut problem, &mut next, self.times, self.options, &mut |index, outcome| {
+            under_way.borrow_mut().retain(|&begun| begun != index);
             match outcome {
                 Ok(run) => {
                     let states = run.states.chunks_exact(n).map(<[f64]>::to_vec).collect();
                     let (work, projection) = (run.work, run.projection);
                     done.push((index, Ok(MemberRun { states, work, projection, ..MemberRun::default() })));
                 }
-                Err(why) => {
-                    self.left.lock().unwrap_or_else(PoisonError::into_inner).push((index, why.to_string()));
-                }
+                Err(why) => self.leave(vec![index], &why.to_string()),
             }
         });
         done.append(&mut refused);
+    }
+
+    fn leave(&self, indices: Vec<usize>, why: &str) {
+        let mut left = self.left.lock().unwrap_or_else(PoisonError::into_inner);
+        left.extend(indices.into_iter().map(|index| (index, why.to_owned())));
     }
 
     fn take_left(&self) -> Option<(usize, String)> {
@@ -260,6 +287,10 @@ impl Task<'_> {
     }
 
     fn alone(&self, compiled: &mut Compiled, index: usize, why: String) -> Outcome {
+        caught("row", || self.run_alone(compiled, index, why)).unwrap_or_else(|broken| Err(broken.into()))
+    }
+
+    fn run_alone(&self, compiled: &mut Compiled, index: usize, why: String) -> Outcome {
         let member = &self.members[index];
         member.set(compiled);
         let start = Start { t: member.t, y: self.states(index) };

@@ -2,6 +2,8 @@
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 
+use symbolic::{caught, work_on, worked_on};
+
 /// Gives the next item that no thread has taken yet.
 pub(super) type Take<'a> = &'a dyn Fn() -> Option<usize>;
 
@@ -26,12 +28,18 @@ pub(super) fn shared<T: Send>(
     let take = || Some(next.fetch_add(1, Ordering::Relaxed)).filter(|&index| index < count);
     let mut results: Vec<Option<T>> = (0..count).map(|_| None).collect();
     let mut put = |done: Vec<(usize, T)>| done.into_iter().for_each(|(index, value)| results[index] = Some(value));
+    let about = worked_on();
+    let other = || {
+        work_on(about.clone());
+        caught("thread", || work(&take))
+    };
     std::thread::scope(|scope| {
         let others = threads.min(count.div_ceil(group)).saturating_sub(1);
-        let others: Vec<_> = (0..others).map(|_| scope.spawn(|| work(&take))).collect();
+        let others: Vec<_> = (0..others).map(|_| scope.spawn(other)).collect();
         put(work(&take));
         for other in others {
-            put(other.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic)));
+            let done = other.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic));
+            put(done.unwrap_or_else(|broken| broken.hand_on()));
         }
     });
     results

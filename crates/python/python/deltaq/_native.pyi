@@ -47,6 +47,8 @@ class EvaluationError(SolveError):
     """Equations that cannot be evaluated at a point."""
 class BoundaryError(SolveError):
     """No free constants meet the condition at the horizon."""
+class FaultError(DeltaqError):
+    """A fault of deltaq itself, with its place; please report it."""
 class CallError(SolveError):
     """The time integrator was called wrongly."""
 

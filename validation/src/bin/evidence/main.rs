@@ -24,7 +24,7 @@ use program::Answer;
 static ALLOCATOR: mimalloc::MiMalloc = mimalloc::MiMalloc;
 
 fn main() -> ExitCode {
-    program::parse::<Cli>().map_or_else(|code| code, |cli| program::finish(run(cli)))
+    program::parse::<Cli>().map_or_else(|code| code, |cli| program::finish(|| run(cli)))
 }
 
 fn run(cli: Cli) -> Result<Answer> {
