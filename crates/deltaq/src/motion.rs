@@ -219,7 +219,8 @@ pub fn solve(
     let by = motion.method.as_ref().map(|chosen| chosen.method);
     motion.doubt = Doubt::of([&steps[0], &steps[1]], motion.end, motion.is_complete(), by);
     if motion.doubt.is_none() && !settings.plain {
-        (motion.doubt, motion.breaches) = watched(&mut motion, Watch::new(setting.system, &motion.equations, &[])?);
+        let watch = Watch::new(setting.system, &motion.equations, &[])?;
+        (motion.doubt, motion.breaches) = watched(&mut motion, watch);
         if motion.doubt.is_none() {
             motion.count_round_off(setting, &Settings { method: by, ..settings.clone() })?;
         }
