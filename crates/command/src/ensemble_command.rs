@@ -11,12 +11,10 @@ use deltaq::{Choice, Ensemble, EnsembleOptions, Settings, setting};
 use integrate::Method;
 
 use crate::cli::{EnsembleArguments, Format, MotionArguments};
-use crate::sink::Sink;
 use crate::solve_command::{choice, settings, times};
 use members::Members;
 use output::{Answers, Outcome, Seconds};
-use program::Answer;
-use program::parallel;
+use program::{Answer, Lines, Sink, parallel};
 use resume::resume;
 use scene::Scene;
 
@@ -61,15 +59,15 @@ pub(crate) fn run(arguments: &EnsembleArguments, quiet: bool) -> Result<Answer> 
         seconds.integrate += clock.elapsed().as_secs_f64();
         motions.into_iter().map(Outcome::of).collect::<Vec<_>>()
     };
-    let head = answers.head();
-    let (mut sink, mut reads_on) = Sink::open(arguments.out.as_deref(), &head, "ensemble", |lines, is_ours| {
-        // an answer in one piece begins anew
-        if arguments.motion.format == Format::Json {
-            return Ok(());
-        }
-        let first = |answers: &Answers| outcomes(0..1).iter().map(|first| answers.rows(0, first)).collect();
-        resume(&mut answers, lines, is_ours, first)
-    })?;
+    let head = answers.head()?;
+    // an answer in one piece begins anew
+    let resume = (arguments.motion.format == Format::Csv).then_some(
+        |lines: &mut Lines, is_ours: &dyn Fn(bool) -> Result<()>| {
+            let first = |answers: &Answers| outcomes(0..1).iter().map(|first| answers.rows(0, first)).collect();
+            resume(&mut answers, lines, is_ours, first)
+        },
+    );
+    let (mut sink, mut reads_on) = Sink::open(arguments.out.as_deref(), &head, "ensemble", resume)?;
     let bar = parallel::progress(members.count(), quiet);
     while reads_on && answers.done < members.count() {
         bar.set_position(answers.done as u64);
@@ -80,7 +78,8 @@ pub(crate) fn run(arguments: &EnsembleArguments, quiet: bool) -> Result<Answer> 
     bar.finish_and_clear();
     let complaint = answers.complaint();
     reads_on = reads_on && sink.write(&answers.end(&seconds))?;
-    let text = if reads_on { sink.close(&format!("{} members", members.count()))? } else { String::new() };
+    let file = if reads_on { sink.close()? } else { None };
+    let text = file.map_or(String::new(), |path| format!("{} members in {}\n", members.count(), path.display()));
     Ok(Answer { text, complaint })
 }
 

@@ -4,7 +4,7 @@ use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::thread;
 use std::time::Duration;
 
-use anyhow::{Context, Result, bail};
+use anyhow::{Context, Result, bail, ensure};
 use deltaq::{
     Choice, ErrorEstimate, Form, Motion, STEP_LIMIT, Setting, Settings, Steps, default_constants, error_estimates,
     formulation_in, removal, removal_names, removals, sensitivities, setting, solve_by_steps, solve_choice,
@@ -23,6 +23,9 @@ use crate::columns::{Columns, derivative_row, error_row, header, named_columns, 
 use deltaq::Stepping;
 use program::parallel;
 use program::{Answer, pretty};
+
+/// Most numbers in an answer: it and its JSON fit into 2 GB.
+const MOST_NUMBERS: usize = 12_000_000;
 
 /// Times at which invariants are sampled, less one: those of error estimates.
 const SAMPLES: usize = 200;
@@ -49,6 +52,10 @@ pub(crate) fn run(arguments: &SolveArguments, quiet: bool) -> Result<Answer> {
         Some(text) => times(text, &scene)?,
         None => equidistant(scene.start.t, scene.start.t + scene.duration, 101),
     };
+    let (n, h) = (scene.system.dimension(), scene.system.constraints.len());
+    let columns = 1 + 3 * n + 2 * h + scene.system.watched.len() + 2 * (2 * n + h) * arguments.sensitivities.len();
+    let most = MOST_NUMBERS / columns;
+    ensure!(wanted.len() <= most, "--times: of this scene and {columns} columns at most {most} times are possible");
     let steps = steps(arguments)?;
     let watched = Interrupt::default();
     (settings.interrupt, settings.times) = (Some(watched.clone()), Some(wanted.clone()));
@@ -93,7 +100,7 @@ pub(crate) fn run(arguments: &SolveArguments, quiet: bool) -> Result<Answer> {
             };
             let derivatives = derived.as_ref().map_or(Vec::new(), |derived| columns.derivative_names(derived));
             let names = [columns.names(), columns.error_names(), program.names().to_vec(), derivatives].concat();
-            header(&names) + &rows.map(line).collect::<String>()
+            header(&names)? + &rows.map(line).collect::<String>()
         }
         Format::Json => {
             let mut value = json_of(&scene, &choice, &mut motion, &grid)?;
@@ -102,6 +109,7 @@ pub(crate) fn run(arguments: &SolveArguments, quiet: bool) -> Result<Answer> {
             columns.write(&mut value, &rows);
             derived.iter().for_each(|derived| value["sensitivities"] = columns.derivatives(derived));
             value["observables"] = named_columns(program.names(), &observed, |row| row);
+            drop((rows, so_far, observed, motion));
             pretty("solve", &value)
         }
     };

@@ -111,6 +111,10 @@ pub fn sorted(mut object: Value) -> Value {
 
 fn printed(kind: &str, object: &Value) -> String {
     let version = if matches!(kind, "solve" | "linearize" | "certificate" | "compare") { 2 } else { 1 };
-    let text = format!("{object:#}\n");
-    text.replacen('{', &format!("{{\n  \"schema\": \"deltaq/{kind}/{version}\","), 1)
+    let mut text = format!("{object:#}\n");
+    let head = format!("{{\n  \"schema\": \"deltaq/{kind}/{version}\",");
+    // in place: an answer may take half of the memory
+    text.reserve_exact(head.len());
+    text.replace_range(..1, &head);
+    text
 }

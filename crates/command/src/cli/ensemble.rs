@@ -82,7 +82,7 @@ pub struct EnsembleArguments {
     /// FROM..TO:COUNT means the same.
     #[arg(long, value_name = "NAME=FROM:TO:COUNT", value_parser = range)]
     pub vary: Vec<Range>,
-    /// File to write; to the terminal if left out.
+    /// File to write; to standard output if left out or `-`. What deltaq did not write is not replaced.
     #[arg(long, value_name = "FILE")]
     pub out: Option<PathBuf>,
 }

@@ -12,7 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _parts
-from ._native import DeltaqError, System, UnknownNameError, __version__, _Fitted
+from ._native import _TABLE_SIZE, DeltaqError, System, UnknownNameError, __version__, _Fitted
 from ._needs import needed
 from ._sweep import _Grid, _written
 
@@ -173,7 +173,8 @@ def _table(table: Any) -> str:
 
 def _read(film: Any, place: int) -> tuple[str, str]:
     if isinstance(film, (str, os.PathLike)):
-        return str(film), Path(film).read_text("utf-8")
+        with Path(film).open(encoding="utf-8") as file:
+            return str(film), file.read(_TABLE_SIZE + 1)
     return f"film {place}", _table(film)
 
 
