@@ -8,6 +8,9 @@ use equations::{Equations, Outputs};
 use scene::{Scene, table_cell};
 use serde_json::{Map, Value, json};
 
+/// Most numbers of an answer that are in memory at once: with their JSON they fit into 2 GB.
+pub const MOST_NUMBERS: usize = 12_000_000;
+
 /// Names of the columns.
 pub struct Columns {
     coordinates: Vec<String>,

@@ -6,11 +6,12 @@ mod resume;
 
 use std::time::Instant;
 
-use anyhow::{Result, bail};
+use anyhow::{Result, bail, ensure};
 use deltaq::{Choice, Ensemble, EnsembleOptions, Settings, setting};
 use integrate::Method;
 
 use crate::cli::{EnsembleArguments, Format, MotionArguments};
+use crate::columns::MOST_NUMBERS;
 use crate::solve_command::{choice, settings, times};
 use members::Members;
 use output::{Answers, Outcome, Seconds};
@@ -18,7 +19,7 @@ use program::{Answer, Lines, Sink, parallel};
 use resume::resume;
 use scene::Scene;
 
-/// Members integrated before they are written down.
+/// Most members integrated before they are written down.
 const CHUNK: usize = 4096;
 
 /// Runs the command.
@@ -60,6 +61,9 @@ pub(crate) fn run(arguments: &EnsembleArguments, quiet: bool) -> Result<Answer> 
         motions.into_iter().map(Outcome::of).collect::<Vec<_>>()
     };
     let head = answers.head()?;
+    let most = MOST_NUMBERS / answers.names().len();
+    ensure!(times.len() <= most, "--times: of this scene at most {most} times are possible");
+    let chunk = CHUNK.min(most / times.len().max(1));
     // an answer in one piece begins anew
     let resume = (arguments.motion.format == Format::Csv).then_some(
         |lines: &mut Lines, is_ours: &dyn Fn(bool) -> Result<()>| {
@@ -71,7 +75,7 @@ pub(crate) fn run(arguments: &EnsembleArguments, quiet: bool) -> Result<Answer> 
     let bar = parallel::progress(members.count(), quiet);
     while reads_on && answers.done < members.count() {
         bar.set_position(answers.done as u64);
-        let next = (answers.done + CHUNK).min(members.count());
+        let next = (answers.done + chunk).min(members.count());
         let text: String = outcomes(answers.done..next).iter().map(|outcome| answers.add(outcome)).collect();
         reads_on = sink.write(&text)?;
     }

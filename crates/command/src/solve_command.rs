@@ -19,13 +19,10 @@ use scene::Scene;
 use serde_json::{Map, Value, json};
 
 use crate::cli::{Format, FreeArguments, Limits, MotionArguments, SolveArguments};
-use crate::columns::{Columns, derivative_row, error_row, header, named_columns, row};
+use crate::columns::{Columns, MOST_NUMBERS, derivative_row, error_row, header, named_columns, row};
 use deltaq::Stepping;
 use program::parallel;
 use program::{Answer, pretty};
-
-/// Most numbers in an answer: it and its JSON fit into 2 GB.
-const MOST_NUMBERS: usize = 12_000_000;
 
 /// Times at which invariants are sampled, less one: those of error estimates.
 const SAMPLES: usize = 200;

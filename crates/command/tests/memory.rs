@@ -58,6 +58,9 @@ fn a_million_rows_are_answered_or_refused_in_two_gigabytes() {
     let (code, _, stderr) = limited("fit sledge motion.csv --free x,y --sigma 1mm");
     let said = "the films have 6000000 numbers, and at most 300000 are fitted";
     assert!(code == Some(2) && stderr.contains(said), "{stderr}");
+    let members = "ensemble sledge -f chetaev --quiet --set duration=0.01 --times 0:0.01:1000 --vary g=1:2:";
+    let (code, written, stderr) = limited(&format!("{members}2500 > members.csv"));
+    assert_eq!((code, written), (Some(0), 0), "{stderr}");
     let (code, _, stderr) = limited("solve disc -f chetaev --times 0:1:1000000");
     assert!(code == Some(2) && stderr.contains("columns at most "), "{stderr}");
 }

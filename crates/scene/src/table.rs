@@ -15,6 +15,8 @@ use symbolic::excerpt;
 pub const TABLE_SIZE: usize = 400_000_000;
 const MOST_ROWS: usize = 1_000_000;
 const MOST_COLUMNS: usize = 10_000;
+const MOST_CELLS: usize = 50_000_000;
+const LONGEST_NAME: usize = 1_000;
 
 /// A table: a header, which is row 0, and rows of as many cells, between commas. Cells may stand in quotation
 /// marks, those in them doubled; blanks around cells, empty lines and lines that begin with `#` do not count.
@@ -152,6 +154,7 @@ impl<'t> Table<'t> {
                 0 => (width, table.columns) = (found, table.header(found)?),
                 _ if found != width => return refused(cell, TableFault::Ragged { found, expected: width }),
                 rows if rows > MOST_ROWS => return refused(cell, too_large(MOST_ROWS, "rows")),
+                _ if table.cells.len() > MOST_CELLS => return refused(cell, too_large(MOST_CELLS, "cells")),
                 _ => {}
             }
             table.lines.push(line);
@@ -166,6 +169,9 @@ impl<'t> Table<'t> {
         let mark = [(';', "semicolons"), ('\t', "tabs")].into_iter().find(|(mark, _)| columns[0].contains(*mark));
         if let (1, Some((_, name))) = (width, mark) {
             return self.refused(0, 0, TableFault::Separator(name));
+        }
+        if let Some(i) = columns.iter().position(|name| name.len() > LONGEST_NAME) {
+            return self.refused(0, i, TableFault::TooLarge { limit: LONGEST_NAME, of: "bytes in a name" });
         }
         let mut known = HashMap::new();
         for (i, name) in columns.iter().enumerate().filter(|(_, name)| !name.is_empty()) {

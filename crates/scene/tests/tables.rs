@@ -32,6 +32,8 @@ fn gaps_are_no_numbers() {
 #[test]
 fn what_is_no_table_has_its_place() {
     let long = "x".repeat(50_000_000);
+    let names = (0..10_000).map(|i| i.to_string()).collect::<Vec<_>>().join(",") + "\n";
+    let wide = names + &("1,".repeat(9_999) + "1\n").repeat(5_001);
     for (text, said) in [
         ("t;x\n0;1\n", "m.csv:1:1: cells are separated by semicolons, and have to be by commas"),
         ("\n\u{e4}\tx\n", "m.csv:2:1: cells are separated by tabs, and have to be by commas"),
@@ -43,7 +45,9 @@ fn what_is_no_table_has_its_place() {
         ("t,x\n1,2,3\n", "m.csv:2:5: 3 cells, and the header has 2"),
         (&",".repeat(10_000), "m.csv:1:10001: the table has more than 10000 columns"),
         (&("t\n".to_owned() + &"1\n".repeat(1_000_001)), "m.csv:1000002:1: the table has more than 1000000 rows"),
-        (&format!("t,{long}\n1,{long}\n"), "m.csv:2:3: column `xxx"),
+        (&format!("t,x\n1,{long}\n"), "m.csv:2:3: column `x`: `xxx"),
+        (&format!("t,{long}\n1,2\n"), "m.csv:1:3: the table has more than 1000 bytes in a name"),
+        (&wide, "m.csv:5001:19999: the table has more than 50000000 cells"),
     ] {
         let read = Table::read("m.csv", text).and_then(|table| table.number(1, 1));
         let told = read.unwrap_err().to_string();

@@ -168,7 +168,8 @@ def _table(table: Any) -> str:
     if len({len(values) for values in columns.values()}) > 1:
         raise ValueError(f"columns have different lengths: {', '.join(f'{name} {len(x)}' for name, x in columns.items())}")
     rows = zip(*columns.values())
-    return "\n".join([",".join(columns), *(",".join(repr(float(x)) for x in row) for row in rows)]) + "\n"
+    names = ",".join('"' + name.replace('"', '""') + '"' for name in columns)
+    return "\n".join([names, *(",".join(repr(float(x)) for x in row) for row in rows)]) + "\n"
 
 
 def _read(film: Any, place: int) -> tuple[str, str]:
