@@ -64,8 +64,8 @@ pub struct Limits {
     /// left out, the tolerance alone decides.
     #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
     pub max_step: Option<f64>,
-    /// Maximum seconds of the clock per run; of an ensemble, per run of 4096 members, or of fewer with very many
-    /// times.
+    /// Maximum seconds of the clock per run; of an ensemble, per run of 4096 members, or of fewer with very
+    /// many times.
     #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
     pub time_limit: Option<f64>,
 }
