@@ -186,6 +186,7 @@ fn there_is_one_rule_for_every_out() {
     answer(&["new", &scene], 0);
     refused(&["new", &scene], &["scene.toml is not of deltaq"]);
     assert_eq!(answer(&["new", "-"], 0), answer(&["new"], 0));
+    (0..2).for_each(|_| drop(answer(&["new", "--schema", &at("schema.json")], 0)));
 }
 
 #[cfg(unix)]

@@ -7,9 +7,6 @@ use std::io::{ErrorKind, Write, stderr, stdout};
 use anyhow::{Context, Result};
 use serde_json::Value;
 
-use crate::files::{File, write_all};
-use crate::options::{Output, TextOrJson};
-
 /// How a command ended: the text to print, and whether it can be trusted.
 pub struct Answer {
     /// For standard output.
@@ -72,25 +69,6 @@ pub struct Unwritten;
 impl Display for Unwritten {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
         f.write_str("cannot write the answer")
-    }
-}
-
-impl Output {
-    /// Writes the files to the folder asked for, if any; then prints JSON of this kind, or text.
-    pub fn answer(
-        &self,
-        kind: &str,
-        files: impl FnOnce() -> Result<Vec<File>>,
-        text: impl FnOnce() -> String,
-        json: impl FnOnce() -> Value,
-    ) -> Result<String> {
-        if let Some(folder) = &self.out {
-            write_all(folder, &files()?)?;
-        }
-        Ok(match self.format {
-            TextOrJson::Text => text(),
-            TextOrJson::Json => pretty(kind, &json()),
-        })
     }
 }
 

@@ -3,12 +3,11 @@
 use std::borrow::Cow;
 use std::collections::BTreeSet;
 use std::fs;
-use std::io::Read;
 use std::path::{Path, PathBuf};
 
-use anyhow::{Context, Result, ensure};
+use anyhow::Result;
 
-use crate::sink::Sink;
+use crate::sink::{LIST, Sink, may_replace};
 
 /// A file of a report.
 #[derive(Clone, Debug)]
@@ -17,47 +16,6 @@ pub struct File {
     pub path: PathBuf,
     /// Text.
     pub text: String,
-}
-
-/// Names of the files that deltaq wrote to a folder that is not its own, one in a line.
-const LIST: &str = ".deltaq";
-
-/// How files of deltaq begin: answers for machines, tables of members.
-const BEGINNINGS: [&str; 2] = ["{\n  \"schema\": \"deltaq/", "member,"];
-
-/// What else only they hold: tables of points, answers about integrals, the page that explores.
-const MARKS: [&str; 4] = [
-    ",verdict,apart,largest,limit,",
-    ",measure,multiplier,",
-    "\nansatz        ",
-    "<script type=\"application/json\" id=\"chosen\">",
-];
-
-/// Bytes of a file that are looked at for them.
-const LOOKED_AT: u64 = 8 << 20;
-
-/// Whether a file at this place may be written: nothing is there, a device, or what deltaq wrote.
-///
-/// # Errors
-/// A link, and what is not of deltaq.
-pub fn may_replace(path: &Path) -> Result<()> {
-    let told = path.display();
-    let Ok(there) = fs::symlink_metadata(path) else { return Ok(()) };
-    if fs::metadata(path).is_ok_and(|behind| !behind.is_file()) {
-        return Ok(());
-    }
-    ensure!(!there.is_symlink(), "{told} is a link, which is not replaced: remove it, or write to another place");
-    let mut text = Vec::new();
-    let read = fs::File::open(path).and_then(|file| file.take(LOOKED_AT).read_to_end(&mut text));
-    read.with_context(|| format!("cannot read {told}"))?;
-    let text = String::from_utf8_lossy(&text);
-    let ours = BEGINNINGS.iter().any(|head| text.starts_with(head)) || MARKS.iter().any(|mark| text.contains(mark));
-    ensure!(
-        ours || text.is_empty(),
-        "{told} is not of deltaq, as far as it and the list `{LIST}` tell, and not replaced: remove it, or write to \
-         another place"
-    );
-    Ok(())
 }
 
 /// Whether all of a folder is deltaq's: it has the verdicts of the main job.

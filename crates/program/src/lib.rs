@@ -15,7 +15,7 @@ pub mod turns;
 
 pub use answer::{Answer, Unwritten, complain, plain, pretty, print, sorted};
 pub use ending::{exit_code, finish, parse};
-pub use files::{File, is_own, may_replace, write_all, write_own};
+pub use files::{File, is_own, write_all, write_own};
 pub use lines::Lines;
 pub use options::{Common, Output, TextOrJson, by_name, folder};
-pub use sink::{Sink, file, keep};
+pub use sink::{Sink, file, keep, may_replace};

@@ -2,9 +2,13 @@
 
 use std::path::PathBuf;
 
+use anyhow::Result;
 use clap::builder::{PathBufValueParser, PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Args, ValueEnum};
+use serde_json::Value;
 
+use crate::answer::pretty;
+use crate::files::{File, write_all};
 use crate::parallel;
 
 /// Options of every command.
@@ -36,6 +40,25 @@ pub struct Output {
     /// Output format.
     #[arg(long, value_enum, default_value_t = TextOrJson::Text)]
     pub format: TextOrJson,
+}
+
+impl Output {
+    /// Writes the files to the folder asked for, if any; then prints JSON of this kind, or text.
+    pub fn answer(
+        &self,
+        kind: &str,
+        files: impl FnOnce() -> Result<Vec<File>>,
+        text: impl FnOnce() -> String,
+        json: impl FnOnce() -> Value,
+    ) -> Result<String> {
+        if let Some(folder) = &self.out {
+            write_all(folder, &files()?)?;
+        }
+        Ok(match self.format {
+            TextOrJson::Text => text(),
+            TextOrJson::Json => pretty(kind, &json()),
+        })
+    }
 }
 
 /// A folder for files; not `-`, which is standard output.

@@ -1,14 +1,58 @@
 //! Where an answer goes: to standard output, or to a file that has its name when it is whole.
 
 use std::fs::{self, File, OpenOptions};
-use std::io::Write;
+use std::io::{Read, Write};
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Error, Result, ensure};
 use tempfile::NamedTempFile;
 
-use crate::files::may_replace;
 use crate::{Lines, print};
+
+/// Names of the files that deltaq wrote to a folder that is not its own, one in a line.
+pub(crate) const LIST: &str = ".deltaq";
+
+/// How the schema of scenes begins.
+const SCHEMA: &str =
+    "{\n  \"$schema\": \"https://json-schema.org/draft/2020-12/schema\",\n  \"title\": \"deltaq scene\"";
+
+/// How files of deltaq begin: answers for machines, tables of members.
+const BEGINNINGS: [&str; 3] = ["{\n  \"schema\": \"deltaq/", SCHEMA, "member,"];
+
+/// What else only they hold: tables of points, answers about integrals, the page that explores.
+const MARKS: [&str; 4] = [
+    ",verdict,apart,largest,limit,",
+    ",measure,multiplier,",
+    "\nansatz        ",
+    "<script type=\"application/json\" id=\"chosen\">",
+];
+
+/// Bytes of a file that are looked at for them.
+const LOOKED_AT: u64 = 8 << 20;
+
+/// Whether a file at this place may be written: nothing is there, a device, or what deltaq wrote.
+///
+/// # Errors
+/// A link, and what is not of deltaq.
+pub fn may_replace(path: &Path) -> Result<()> {
+    let told = path.display();
+    let Ok(there) = fs::symlink_metadata(path) else { return Ok(()) };
+    if fs::metadata(path).is_ok_and(|behind| !behind.is_file()) {
+        return Ok(());
+    }
+    ensure!(!there.is_symlink(), "{told} is a link, which is not replaced: remove it, or write to another place");
+    let mut text = Vec::new();
+    let read = File::open(path).and_then(|file| file.take(LOOKED_AT).read_to_end(&mut text));
+    read.with_context(|| format!("cannot read {told}"))?;
+    let text = String::from_utf8_lossy(&text);
+    let ours = BEGINNINGS.iter().any(|head| text.starts_with(head)) || MARKS.iter().any(|mark| text.contains(mark));
+    ensure!(
+        ours || text.is_empty(),
+        "{told} is not of deltaq, as far as it and the list `{LIST}` tell, and not replaced: remove it, or write to \
+         another place"
+    );
+    Ok(())
+}
 
 /// Where the pieces of an answer go. What is not closed leaves nothing behind, but a part that a later call
 /// goes on with.
