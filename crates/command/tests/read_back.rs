@@ -8,7 +8,7 @@ use serde_json::Value;
 use crate::support::{answer, refused};
 
 /// Names with commas, quotation marks, parentheses and blanks.
-const NAMES: [&str; 5] = ["atan2(y,x)", "say \\\"it\\\", (now)", " y ", "#x", "a;b"];
+const NAMES: [&str; 6] = ["atan2(y,x)", "say \\\"it\\\", (now)", " y ", "#x", "a;b", "path [1]"];
 
 /// A sledge on a slope with these observables.
 fn scene() -> String {

@@ -85,8 +85,8 @@ impl Film {
     pub fn read(scene: &Scene, name: &str, text: &str, deviations: &Deviations) -> Result<Film, FitError> {
         let table = Table::read(name, text)?;
         let at = |i: usize, error| FitError::At { place: table.place(0, i), error: Box::new(error) };
-        let heads = table.columns.iter().enumerate();
-        let heads = heads.map(|(i, cell)| head(cell).map_err(|error| at(i, error))).collect::<Result<Vec<_>, _>>()?;
+        let head = |i: usize| head(scene, &table.columns[i]).map_err(|error| at(i, error));
+        let heads = (0..table.columns.len()).map(head).collect::<Result<Vec<_>, _>>()?;
         let time = heads.iter().position(|(name, _)| *name == "t");
         let time = time.map_or_else(|| table.column("t"), Ok)?;
         let is_seen = |&i: &usize| expression(scene, heads[i].0).is_ok() || !is_added(heads[i].0);
@@ -140,10 +140,10 @@ impl Film {
 }
 
 /// The name and the unit of a cell of the header.
-fn head(cell: &str) -> Result<(&str, f64), FitError> {
+fn head<'t>(scene: &Scene, cell: &'t str) -> Result<(&'t str, f64), FitError> {
     match cell.strip_suffix(']').and_then(|cell| cell.rsplit_once('[')) {
-        Some((name, of)) => Ok((name.trim(), unit(of.trim())?)),
-        None => Ok((cell, 1.0)),
+        Some((name, of)) if named(scene, cell).is_none() => Ok((name.trim(), unit(of.trim())?)),
+        _ => Ok((cell, 1.0)),
     }
 }
 
@@ -159,14 +159,15 @@ pub(crate) fn column(scene: &Scene, name: &str, deviations: &Deviations) -> Resu
     Ok(Column { name: name.into(), sigma: deviations.of(name, written)? })
 }
 
+/// What has this name in `[film]` or among what is watched.
+fn named(scene: &Scene, name: &str) -> Option<Expr> {
+    let filmed = scene.film.iter().map(|filmed| (&filmed.name, filmed.expression));
+    let watched = scene.system.watched.iter().map(|watched| (&watched.name, watched.expression));
+    filmed.chain(watched).find(|(own, _)| *own == name).map(|(_, expression)| expression)
+}
+
 /// What a column shows, in the graph of this reading of the scene.
 pub(crate) fn expression(scene: &Scene, name: &str) -> Result<Expr, FitError> {
-    if let Some(filmed) = scene.film.iter().find(|filmed| filmed.name == name) {
-        return Ok(filmed.expression);
-    }
-    if let Some(watched) = scene.system.watched.iter().find(|watched| watched.name == name) {
-        return Ok(watched.expression);
-    }
     let refused = |error: symbolic::ParseError| FitError::Column { column: name.into(), reason: error.to_string() };
-    scene.system.expression(name).map_err(refused)
+    named(scene, name).map_or_else(|| scene.system.expression(name).map_err(refused), Ok)
 }
