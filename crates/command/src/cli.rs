@@ -208,7 +208,7 @@ pub struct ExploreArguments {
     pub scene: Option<String>,
     #[command(flatten)]
     pub set: Overrides,
-    /// File for the page.
+    /// File for the page; `-` for standard output. What deltaq did not write is not replaced.
     #[arg(long, value_name = "FILE", default_value = "explore.html")]
     pub out: PathBuf,
 }
@@ -218,7 +218,8 @@ pub struct ExploreArguments {
 pub struct ProveArguments {
     #[command(flatten)]
     pub scene: SceneArguments,
-    /// File for the certificate, which `validation/proof/verify.py` checks; `-` for the terminal.
+    /// File for the certificate, which `validation/proof/verify.py` checks; `-` for standard output. What
+    /// deltaq did not write is not replaced.
     #[arg(long, value_name = "FILE")]
     pub out: PathBuf,
     /// Prove it for a start drawn at random, and so for almost every start, in the place of the scene's own.

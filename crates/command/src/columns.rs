@@ -1,9 +1,15 @@
 //! Columns of a motion's table: one per coordinate, per velocity and per multiplier.
 
+use std::collections::HashSet;
+
+use anyhow::{Result, bail};
 use deltaq::{ErrorEstimate, Sensitivities};
 use equations::{Equations, Outputs};
-use scene::Scene;
+use scene::{Scene, table_cell};
 use serde_json::{Map, Value, json};
+
+/// Most numbers of an answer that are in memory at once: with their JSON they fit into 2 GB.
+pub const MOST_NUMBERS: usize = 12_000_000;
 
 /// Names of the columns.
 pub struct Columns {
@@ -103,13 +109,16 @@ pub fn print(numbers: &[f64]) -> String {
     text
 }
 
-/// The first line of a table, by RFC 4180: names with commas, quotation marks or ends of lines are quoted.
-pub fn header(names: &[String]) -> String {
-    let cell = |name: &String| match name.contains([',', '"', '\n', '\r']) {
-        true => format!("\"{}\"", name.replace('"', "\"\"")),
-        false => name.clone(),
-    };
-    names.iter().map(cell).collect::<Vec<_>>().join(",") + "\n"
+/// The first line of a table.
+///
+/// # Errors
+/// Two columns of one name: nobody could read the table.
+pub fn header(names: &[String]) -> Result<String> {
+    let mut known = HashSet::new();
+    if let Some(twice) = names.iter().find(|name| !known.insert(*name)) {
+        bail!("two columns of the table are called `{twice}`: give one of them another name in the scene");
+    }
+    Ok(names.iter().map(|name| table_cell(name)).collect::<Vec<_>>().join(",") + "\n")
 }
 
 /// A cause as a cell of a table: in one line and quotation marks; empty without one.

@@ -6,21 +6,20 @@ mod resume;
 
 use std::time::Instant;
 
-use anyhow::{Result, bail};
+use anyhow::{Result, bail, ensure};
 use deltaq::{Choice, Ensemble, EnsembleOptions, Settings, setting};
 use integrate::Method;
 
 use crate::cli::{EnsembleArguments, Format, MotionArguments};
-use crate::sink::Sink;
+use crate::columns::MOST_NUMBERS;
 use crate::solve_command::{choice, settings, times};
 use members::Members;
 use output::{Answers, Outcome, Seconds};
-use program::Answer;
-use program::parallel;
+use program::{Answer, Lines, Sink, parallel};
 use resume::resume;
 use scene::Scene;
 
-/// Members integrated before they are written down.
+/// Most members integrated before they are written down.
 const CHUNK: usize = 4096;
 
 /// Runs the command.
@@ -61,26 +60,30 @@ pub(crate) fn run(arguments: &EnsembleArguments, quiet: bool) -> Result<Answer> 
         seconds.integrate += clock.elapsed().as_secs_f64();
         motions.into_iter().map(Outcome::of).collect::<Vec<_>>()
     };
-    let head = answers.head();
-    let (mut sink, mut reads_on) = Sink::open(arguments.out.as_deref(), &head, "ensemble", |lines, is_ours| {
-        // an answer in one piece begins anew
-        if arguments.motion.format == Format::Json {
-            return Ok(());
-        }
-        let first = |answers: &Answers| outcomes(0..1).iter().map(|first| answers.rows(0, first)).collect();
-        resume(&mut answers, lines, is_ours, first)
-    })?;
+    let head = answers.head()?;
+    let most = MOST_NUMBERS / answers.names().len();
+    ensure!(times.len() <= most, "--times: of this scene at most {most} times are possible");
+    let chunk = CHUNK.min(most / times.len().max(1));
+    // an answer in one piece begins anew
+    let resume = (arguments.motion.format == Format::Csv).then_some(
+        |lines: &mut Lines, is_ours: &dyn Fn(bool) -> Result<()>| {
+            let first = |answers: &Answers| outcomes(0..1).iter().map(|first| answers.rows(0, first)).collect();
+            resume(&mut answers, lines, is_ours, first)
+        },
+    );
+    let (mut sink, mut reads_on) = Sink::open(arguments.out.as_deref(), &head, "ensemble", resume)?;
     let bar = parallel::progress(members.count(), quiet);
     while reads_on && answers.done < members.count() {
         bar.set_position(answers.done as u64);
-        let next = (answers.done + CHUNK).min(members.count());
+        let next = (answers.done + chunk).min(members.count());
         let text: String = outcomes(answers.done..next).iter().map(|outcome| answers.add(outcome)).collect();
         reads_on = sink.write(&text)?;
     }
     bar.finish_and_clear();
     let complaint = answers.complaint();
     reads_on = reads_on && sink.write(&answers.end(&seconds))?;
-    let text = if reads_on { sink.close(&format!("{} members", members.count()))? } else { String::new() };
+    let file = if reads_on { sink.close()? } else { None };
+    let text = file.map_or(String::new(), |path| format!("{} members in {}\n", members.count(), path.display()));
     Ok(Answer { text, complaint })
 }
 

@@ -1,10 +1,9 @@
 //! `deltaq explore`: the page in which scenes are explored.
 
 use std::collections::BTreeMap;
-use std::fs::create_dir_all;
 
-use anyhow::{Context, Result, ensure};
-use program::write_one;
+use anyhow::{Result, ensure};
+use program::keep;
 use serde_json::json;
 
 use crate::cli::ExploreArguments;
@@ -18,8 +17,7 @@ const CHOSEN: &str = "<script type=\"application/json\" id=\"chosen\">null</scri
 /// Writes the page, with a scene chosen and numbers set in it; the text of a file goes into the page.
 ///
 /// # Errors
-/// No such scene, no such number in it; a file that cannot be written. A faulty text without numbers is none:
-/// the page shows its faults.
+/// No such scene, faults of it, no such number in it; a file that cannot be written.
 pub(crate) fn run(arguments: &ExploreArguments) -> Result<String> {
     let mut page = PAGE.to_owned();
     ensure!(arguments.scene.is_some() || arguments.set.overrides.is_empty(), "--set needs a scene in which to set it");
@@ -27,9 +25,7 @@ pub(crate) fn run(arguments: &ExploreArguments) -> Result<String> {
         let text = catalogue::source(name)?;
         let is_built_in = catalogue::built_in().any(|(known, _)| known == name);
         let set = &arguments.set.overrides;
-        if !set.is_empty() {
-            catalogue::read(name, &text, set)?;
-        }
+        catalogue::read(name, &text, set)?;
         let numbers: BTreeMap<_, _> = set.iter().map(|(name, number)| (name, number.value())).collect();
         let text = if is_built_in { None } else { Some(text) };
         let chosen = json!({ "name": name, "text": text, "set": numbers });
@@ -38,10 +34,5 @@ pub(crate) fn run(arguments: &ExploreArguments) -> Result<String> {
         ensure!(page.contains(CHOSEN), "the page has no place for a scene; cargo xtask explore builds it anew");
         page = page.replacen(CHOSEN, &CHOSEN.replace("null", &chosen), 1);
     }
-    let out = &arguments.out;
-    if let Some(folder) = out.parent() {
-        create_dir_all(folder).with_context(|| format!("cannot create {}", folder.display()))?;
-    }
-    write_one(out, &page)?;
-    Ok(format!("{}: open it in a browser\n", out.display()))
+    keep(Some(&arguments.out), page, |file| format!("{file}: open it in a browser\n"))
 }

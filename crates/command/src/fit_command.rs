@@ -9,6 +9,7 @@ use fit::{
     quantity,
 };
 use program::{Answer, TextOrJson, parallel, pretty, write_all};
+use scene::table_text;
 
 use crate::cli::FitArguments;
 use crate::fit_pictures::pictures;
@@ -23,8 +24,7 @@ pub fn run(arguments: &FitArguments) -> Result<Answer> {
     let mut films = Vec::new();
     for file in &arguments.films {
         let name = file.display().to_string();
-        let text = std::fs::read_to_string(file).with_context(|| format!("cannot read {name}"))?;
-        films.push(Film::read(&scene, &name, &text, &deviations).context(name)?);
+        films.push(Film::read(&scene, &name, &table_text(file)?, &deviations)?);
     }
     for known in &arguments.known {
         let (film, number) = self::known(known, films.len())?;
@@ -76,7 +76,10 @@ fn complaint(rows: &[Row]) -> Option<String> {
 fn text(films: &[Film], rows: &[Row]) -> String {
     let mut text = String::new();
     for film in films {
-        let _ = writeln!(text, "{}: {} samples, {} numbers", film.name, film.t.len(), film.count());
+        let gaps = if film.gaps() > 0 { format!(", {} gaps", film.gaps()) } else { String::new() };
+        let left_out = film.left_out.join(", ");
+        let left_out = if left_out.is_empty() { left_out } else { format!("; not looked at: {left_out}") };
+        let _ = writeln!(text, "{}: {} samples, {} numbers{gaps}{left_out}", film.name, film.t.len(), film.count());
     }
     for row in rows {
         let _ = writeln!(text, "\n{}: {}", row.choice.label, row.verdict.words());

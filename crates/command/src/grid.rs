@@ -1,15 +1,14 @@
 //! Tables over one or more numbers.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use anyhow::{Result, bail, ensure};
 use pages::Swept;
-use program::{Lines, parallel};
+use program::{Lines, Sink, parallel};
 use scene::Number;
 
 use crate::cli::{MOST_MEMBERS, Range};
 use crate::columns::header;
-use crate::sink::Sink;
 
 /// Points computed before they are written down.
 const CHUNK: usize = 64;
@@ -62,13 +61,14 @@ impl<'a> Grid<'a> {
         quiet: bool,
         row: impl Fn(&[f64]) -> String + Sync,
     ) -> Result<Option<String>> {
-        let head = header(&self.names().chain(columns.iter().copied()).map(String::from).collect::<Vec<_>>());
+        let head = header(&self.names().chain(columns.iter().copied()).map(String::from).collect::<Vec<_>>())?;
         let computed = |index: usize| self.begin(index) + &row(&self.point(index));
         let mut done = 0;
-        let (mut sink, mut reads_on) = Sink::open(path, &head, "sweep", |lines, is_ours| {
+        let resume = |lines: &mut Lines, is_ours: &dyn Fn(bool) -> Result<()>| {
             done = whole_rows(lines, is_ours, self, &computed)?;
             Ok(())
-        })?;
+        };
+        let (mut sink, mut reads_on) = Sink::open(path, &head, "sweep", Some(resume))?;
         let bar = parallel::progress(self.count, quiet);
         while reads_on && done < self.count {
             bar.set_position(done as u64);
@@ -78,7 +78,8 @@ impl<'a> Grid<'a> {
             reads_on = sink.write(&rows.concat())?;
         }
         bar.finish_and_clear();
-        if reads_on { sink.close(&format!("{} points", self.count)).map(Some) } else { Ok(None) }
+        let told = |path: PathBuf| format!("{} points in {}\n", self.count, path.display());
+        if reads_on { Ok(Some(sink.close()?.map_or(String::new(), told))) } else { Ok(None) }
     }
 
     /// How the row of a point begins.

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use anyhow::Result;
 use integrals::{Integrals, Reversed, reversible_scene};
-use program::{Answer, File, TextOrJson, pretty, write_all, write_one};
+use program::{Answer, File, TextOrJson, keep, pretty, write_all};
 
 use scene::Number;
 
@@ -33,13 +33,8 @@ pub fn run(arguments: &IntegralsArguments, quiet: bool) -> Result<Answer> {
         let missing = write_certificates(arguments, &found, folder)?;
         complaint = if missing.is_empty() { None } else { Some(missing) };
     }
-    let text = match &arguments.out {
-        None => text,
-        Some(file) => {
-            write_one(file, &text)?;
-            format!("{}: the answers are in {}\n", scene.name, file.display())
-        }
-    };
+    let told = |file: &str| format!("{}: the answers are in {file}\n", scene.name);
+    let text = keep(arguments.out.as_deref(), text, told)?;
     Ok(Answer { text, complaint })
 }
 

@@ -5,6 +5,7 @@ use std::fmt::Write;
 use anyhow::{Context, Result, bail};
 use judge::{Judgement, Number, Order, Samples, judge, order};
 use program::{Answer, TextOrJson, pretty};
+use scene::table_text;
 use serde_json::{Value, json};
 
 use crate::cli::JudgeArguments;
@@ -27,10 +28,11 @@ pub fn run(arguments: &JudgeArguments) -> Result<Answer> {
     }
     let (mut motions, mut judgements) = (Vec::new(), Vec::new());
     for file in files {
-        let text = std::fs::read_to_string(file).with_context(|| format!("cannot read {}", file.display()))?;
-        let samples = Samples::read(&scene.system, &text).with_context(|| file.display().to_string())?;
-        let judgement = judge(&scene, &samples, arguments.tolerance).with_context(|| file.display().to_string())?;
-        judgements.push((file.display().to_string(), judgement));
+        let (name, text) = (file.display().to_string(), table_text(file)?);
+        let samples = Samples::read(&scene.system, &name, &text)?;
+        drop(text);
+        let judgement = judge(&scene, &samples, arguments.tolerance).with_context(|| name.clone())?;
+        judgements.push((name, judgement));
         motions.push(samples);
     }
     let steps = if given.is_empty() { motions.iter().map(Samples::step).collect() } else { given.clone() };

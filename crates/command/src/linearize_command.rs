@@ -54,7 +54,7 @@ pub(crate) fn run(arguments: &LinearizeArguments) -> Result<String> {
     }
     Ok(match arguments.format {
         TableFormat::Table => page(),
-        TableFormat::Csv => csv(&sweep),
+        TableFormat::Csv => csv(&sweep)?,
         TableFormat::Json => {
             let mut object = json_of(&scene, &sweep);
             (object["scene"], object["formulation"]) = (json!(scene.name), json!(choice.formulation.name));
@@ -65,15 +65,15 @@ pub(crate) fn run(arguments: &LinearizeArguments) -> Result<String> {
 }
 
 /// One line an eigenvalue other than zero.
-fn csv(sweep: &Sweep) -> String {
-    let mut text = header(&[&sweep.name, "real", "imaginary", "error"].map(String::from));
+fn csv(sweep: &Sweep) -> Result<String> {
+    let mut text = header(&[&sweep.name, "real", "imaginary", "error"].map(String::from))?;
     for point in &sweep.points {
         let x = point.value;
         let lines =
             point.part.eigenvalues.iter().map(|e| format!("{x:?},{:?},{:?},{:?}\n", e.value.re, e.value.im, e.error));
         text.extend(lines);
     }
-    text
+    Ok(text)
 }
 
 fn json_of(scene: &Scene, sweep: &Sweep) -> Value {

@@ -22,7 +22,6 @@ mod prove_command;
 mod scene_commands;
 mod schema;
 mod show_command;
-mod sink;
 mod solve_command;
 mod sweep_command;
 mod watch;

@@ -6,9 +6,7 @@ use serde_json::json;
 
 use crate::cli::ProveArguments;
 use pages::{membership::value as membership_value, membership_sentence};
-use program::TextOrJson;
-use program::write_one;
-use program::{Answer, pretty};
+use program::{Answer, TextOrJson, file, keep, pretty};
 
 /// Writes the certificate; where there is none, says what is known instead.
 ///
@@ -17,38 +15,29 @@ use program::{Answer, pretty};
 pub fn run(arguments: &ProveArguments) -> Result<Answer> {
     let ProveArguments { scene: given, out, almost_every, format } = arguments;
     let scene = given.find()?;
-    let to_terminal = out.as_os_str() == "-";
     let reason = match certificate(&scene, *almost_every)? {
         Err(reason) => reason,
         Ok(certificate) => {
             holds_beside_numbers(&scene)?;
             let order = certificate.order;
             let text = pretty("certificate", &certificate.value(&given.set.written()));
-            if to_terminal {
-                return Ok(text.into());
-            }
-            write_one(out, &text)?;
-            return Ok(match format {
+            let told = |file: &str| match format {
                 TextOrJson::Text => {
                     let what = "no μ₀ makes the vakonomic motion Chetaev's";
                     let start = if *almost_every { " from almost every start" } else { "" };
-                    format!(
-                        "{}: {what}{start}: proved (order {order}); the certificate is in {}\n",
-                        scene.name,
-                        out.display()
-                    )
+                    format!("{}: {what}{start}: proved (order {order}); the certificate is in {file}\n", scene.name)
                 }
                 TextOrJson::Json => {
-                    let value = json!({ "answer": "none", "proved": true, "order": order, "certificate": out });
+                    let value = json!({ "answer": "none", "proved": true, "order": order, "certificate": file });
                     pretty("prove", &value)
                 }
-            }
-            .into());
+            };
+            return Ok(keep(Some(out), text, told)?.into());
         }
     };
     let found = membership(&scene, scene.start.t + scene.duration).transpose();
-    let text = match (format, to_terminal) {
-        (TextOrJson::Json, false) => {
+    let text = match (format, file(Some(out))) {
+        (TextOrJson::Json, Some(_)) => {
             let unconstrained = json!({ "answer": "unconstrained" });
             pretty("prove", &found.as_ref().map_or(unconstrained, |found| membership_value(Some(found))))
         }

@@ -1,15 +1,14 @@
 //! `deltaq new` and `deltaq check`: a scene to begin with, and all that is wrong with one.
 
 use std::fmt::Write;
-use std::fs::OpenOptions;
 use std::io::{IsTerminal, Write as _, stderr};
 
-use anyhow::{Context, Result, bail};
+use anyhow::{Result, bail};
 use scene::{Scene, SceneError};
 
 use crate::cli::{CheckArguments, NewArguments};
 use crate::schema::schema;
-use program::plain;
+use program::{keep, plain};
 
 const TEMPLATE: &str = include_str!("template.toml");
 
@@ -20,14 +19,10 @@ pub(crate) fn new(arguments: &NewArguments) -> Result<String> {
         None => TEMPLATE.to_string(),
         Some(name) => catalogue::source(name)?,
     };
-    let Some(path) = &arguments.file else { return Ok(text) };
-    let file = OpenOptions::new().write(true).create_new(true).open(path);
-    let mut file = file.with_context(|| format!("{} cannot be made", path.display()))?;
-    file.write_all(text.as_bytes()).with_context(|| format!("{} cannot be written", path.display()))?;
-    let path = path.display();
-    let next =
-        if arguments.schema { String::new() } else { format!("; next: deltaq check {path}, deltaq compare {path}") };
-    Ok(format!("{path} written{next}\n"))
+    keep(arguments.file.as_deref(), text, |path| {
+        let next = format!("; next: deltaq check {path}, deltaq compare {path}");
+        format!("{path} written{}\n", if arguments.schema { "" } else { &next })
+    })
 }
 
 /// What each scene is; or all faults of all of them, and an error.

@@ -4,7 +4,7 @@ use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::thread;
 use std::time::Duration;
 
-use anyhow::{Context, Result, bail};
+use anyhow::{Context, Result, bail, ensure};
 use deltaq::{
     Choice, ErrorEstimate, Form, Motion, STEP_LIMIT, Setting, Settings, Steps, default_constants, error_estimates,
     formulation_in, removal, removal_names, removals, sensitivities, setting, solve_by_steps, solve_choice,
@@ -19,7 +19,7 @@ use scene::Scene;
 use serde_json::{Map, Value, json};
 
 use crate::cli::{Format, FreeArguments, Limits, MotionArguments, SolveArguments};
-use crate::columns::{Columns, derivative_row, error_row, header, named_columns, row};
+use crate::columns::{Columns, MOST_NUMBERS, derivative_row, error_row, header, named_columns, row};
 use deltaq::Stepping;
 use program::parallel;
 use program::{Answer, pretty};
@@ -49,6 +49,10 @@ pub(crate) fn run(arguments: &SolveArguments, quiet: bool) -> Result<Answer> {
         Some(text) => times(text, &scene)?,
         None => equidistant(scene.start.t, scene.start.t + scene.duration, 101),
     };
+    let (n, h) = (scene.system.dimension(), scene.system.constraints.len());
+    let columns = 1 + 3 * n + 2 * h + scene.system.watched.len() + 2 * (2 * n + h) * arguments.sensitivities.len();
+    let most = MOST_NUMBERS / columns;
+    ensure!(wanted.len() <= most, "--times: of this scene and {columns} columns at most {most} times are possible");
     let steps = steps(arguments)?;
     let watched = Interrupt::default();
     (settings.interrupt, settings.times) = (Some(watched.clone()), Some(wanted.clone()));
@@ -95,7 +99,7 @@ pub(crate) fn run(arguments: &SolveArguments, quiet: bool) -> Result<Answer> {
             };
             let derivatives = derived.as_ref().map_or(Vec::new(), |derived| columns.derivative_names(derived));
             let names = [columns.names(), columns.error_names(), program.names().to_vec(), derivatives].concat();
-            header(&names) + &rows.map(line).collect::<String>()
+            header(&names)? + &rows.map(line).collect::<String>()
         }
         Format::Json => {
             let mut value = json_of(&scene, &choice, &mut motion, &grid)?;
@@ -104,6 +108,7 @@ pub(crate) fn run(arguments: &SolveArguments, quiet: bool) -> Result<Answer> {
             columns.write(&mut value, &rows);
             derived.iter().for_each(|derived| value["sensitivities"] = columns.derivatives(derived));
             value["observables"] = named_columns(program.names(), &observed, |row| row);
+            drop((rows, so_far, observed, motion));
             pretty("solve", &value)
         }
     };

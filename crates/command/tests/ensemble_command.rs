@@ -147,7 +147,7 @@ fn faults_have_their_place() {
         refused(&["ensemble", "sledge", "-f", "chetaev", "--members", &path], words);
     };
     file("g,phi\n9,1\n9,one\n", &["m.csv:3:3", "`one`", "phi"]);
-    file("g,phi\n9,1,2\n", &["m.csv:2:5", "more numbers than the 2"]);
+    file("g,phi\n9,1,2\n", &["m.csv:2:5", "3 cells, and the header has 2"]);
     file("g,gg\n9,1\n", &["m.csv:1:3", "`gg`", "alpha"]);
     file("duration\n9\n", &["m.csv:1:1", "--set"]);
     file("mu0_1\n9\n", &["m.csv:1:1", "vakonomic"]);

@@ -29,8 +29,17 @@ fn a_page_opens_with_the_scene_asked_for() {
     refused(&["explore", "disc", "--set", "mm=2", "--out", &out], &["`mm`"]);
     refused(&["explore", "--set", "m=2", "--out", &out], &["--set needs a scene"]);
     // whatever the text, it stays in its place
-    let text = "title = \"</script><b>\"\n";
-    std::fs::write(&own, text).expect("a file");
+    let text = include_str!("../../catalogue/scenes/bowl.toml");
+    let title = text.lines().find(|line| line.starts_with("title")).expect("a title");
+    let text = text.replace(title, "title = \"</script><b>\"");
+    std::fs::write(&own, &text).expect("a file");
     assert_eq!(chosen(&page(&[&own])), json!({ "name": own, "text": text, "set": {} }));
+    assert_eq!(chosen(&answer(&["explore", &own, "--out", "-"], 0).0)["name"], own);
+    // of no scene and of a faulty one there is no page
+    for (text, said) in [("", "title"), ("title = \"</script><b>\"\n", "coordinates"), ("title = ", "expected")] {
+        std::fs::write(&own, text).expect("a file");
+        refused(&["explore", &own, "--out", &path("none.html")], &["own.toml", said]);
+        assert!(!folder.path().join("none.html").exists());
+    }
     refused(&["explore", "no-such-scene", "--out", &out], &["neither a file nor one of the built-in scenes"]);
 }

@@ -49,7 +49,7 @@ fn what_makes_no_sense_is_refused() {
         assert!(complaint.contains(said) && found.status.code() == Some(2), "{said}: {complaint}");
     };
     let good = "t,x\n0.1,0\n0.2,0\n0.3,0\n";
-    refused("t,x\n0.1,0\n0.1,0\n", &["--sigma", "1mm"], "line 3: t = 0.1 is not later");
+    refused("t,x\n0.1,0\n0.1,0\n", &["--sigma", "1mm"], "film.csv:3:1: t = 0.1 is not later");
     refused("t,z\n0.1,0\n", &["--sigma", "1mm"], "no expression belongs to the column `z`");
     refused(good, &["--sigma", "0"], "the standard deviation of `x` is 0");
     refused(good, &[], "the column `x` has no standard deviation");

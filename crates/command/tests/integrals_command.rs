@@ -23,6 +23,15 @@ fn a_table_goes_to_a_file() {
     let (told, _) = answer(&[&words[..], &[file.to_str().expect("UTF-8")]].concat(), 0);
     let table = std::fs::read_to_string(&file).expect("a table");
     assert!(told.contains("2 points") && table.lines().count() == 3, "{told}{table}");
+    // every answer takes the place of another one, and of nothing else
+    let [file, mine] = ["table.csv", "mine.csv"].map(|name| folder.path().join(name).display().to_string());
+    std::fs::write(&mine, "K,mine\n").expect("written");
+    for words in [&words[..6], &words[..4], &[&words[..4], &["--format", "json"]].concat(), &words[..6]] {
+        answer(&[words, &["--out", &file]].concat(), 0);
+        assert_eq!(std::fs::read_to_string(&file).expect("an answer"), answer(words, 0).0);
+        refused(&[words, &["--out", &mine]].concat(), &["mine.csv is not of deltaq"]);
+        assert_eq!(answer(&[words, &["--out", "-"]].concat(), 0), answer(words, 0));
+    }
 }
 
 #[test]

@@ -20,6 +20,7 @@ mod members;
 mod memory;
 mod output;
 mod prove_command;
+mod read_back;
 mod shell;
 mod singularities;
 mod support;

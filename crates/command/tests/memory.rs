@@ -33,3 +33,34 @@ fn a_million_seconds_with_two_times_take_under_60_megabytes() {
     let turned: f64 = printed.lines().last().and_then(|line| line.split(',').nth(3)?.parse().ok()).expect("a row");
     assert!((turned - 1_000_000.3).abs() < 1e-5 || (turned - 1_100_000.3).abs() < 1e-5, "{turned}");
 }
+
+/// What asks for more than memory holds is told its limit; the largest that is answered fits into 2 GB.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_million_rows_are_answered_or_refused_in_two_gigabytes() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let motion = folder.path().join("motion.csv");
+    let program = env!("CARGO_BIN_EXE_deltaq");
+    let limited = |call: &str| {
+        let call = format!("ulimit -v 2000000; exec '{program}' {call}");
+        let output = std::process::Command::new("sh").args(["-c", &call]).current_dir(&folder).output();
+        let output = output.expect("a shell");
+        (output.status.code(), output.stdout.len(), text(&output.stderr))
+    };
+    let solve = "solve sledge -f chetaev --times 0:1:1000000 --format";
+    let (code, written, _) = limited(&format!("{solve} csv > motion.csv"));
+    assert_eq!((code, written), (Some(0), 0));
+    assert!(std::fs::metadata(&motion).expect("a table").len() > 200_000_000);
+    let (code, written, stderr) = limited(&format!("{solve} json"));
+    assert!(code == Some(0) && written > 300_000_000, "{code:?}, {written}: {stderr}");
+    let (code, _, stderr) = limited("judge sledge motion.csv");
+    assert!(code == Some(2) && stderr.contains("there are 1000000 samples, and of this scene at most"), "{stderr}");
+    let (code, _, stderr) = limited("fit sledge motion.csv --free x,y --sigma 1mm");
+    let said = "the films have 6000000 numbers, and at most 300000 are fitted";
+    assert!(code == Some(2) && stderr.contains(said), "{stderr}");
+    let members = "ensemble sledge -f chetaev --quiet --set duration=0.01 --times 0:0.01:1000 --vary g=1:2:";
+    let (code, written, stderr) = limited(&format!("{members}2500 > members.csv"));
+    assert_eq!((code, written), (Some(0), 0), "{stderr}");
+    let (code, _, stderr) = limited("solve disc -f chetaev --times 0:1:1000000");
+    assert!(code == Some(2) && stderr.contains("columns at most "), "{stderr}");
+}

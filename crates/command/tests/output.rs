@@ -139,6 +139,56 @@ fn pages_obey_no_text_of_a_scene_and_replace_only_what_is_ours() {
     assert_eq!(fs::read_to_string(&table).expect("the table"), "my,own\n");
 }
 
+/// `--out` has one meaning: a file is made anew, takes the place of an answer and of nothing else, and `-` is
+/// standard output, which holds no folder.
+#[test]
+fn there_is_one_rule_for_every_out() {
+    let members = ["ensemble", "sledge", "-f", "chetaev", "--vary", "phi=0..0.3:2", "--out"];
+    let files: [&[&str]; 7] = [
+        &members,
+        &["prove", "sledge", "--out"],
+        &["integrals", "suslov", "--degree", "1", "--out"],
+        &["integrals", "suslov", "--degree", "1", "--format", "json", "--out"],
+        &["integrals", "suslov", "--degree", "0", "--sweep", "K=0:1:2", "--out"],
+        &["explore", "disc", "--out"],
+        &["explore", "--out"],
+    ];
+    let folder = tempfile::tempdir().expect("a folder");
+    let at = |name: &str| folder.path().join(name).display().to_string();
+    for (i, call) in files.iter().enumerate() {
+        let to = |file: &str, code: i32| answer(&[call, &[file][..]].concat(), code);
+        let (own, mine) = (at(&format!("new/{i}")), at("mine"));
+        let on_terminal = to("-", 0).0;
+        for _ in 0..2 {
+            assert!(to(&own, 0).0.contains(&own), "{call:?}");
+            assert_eq!(fs::read_to_string(&own).expect("an answer"), on_terminal, "{call:?}");
+        }
+        fs::write(&mine, "mine").expect("written");
+        assert!(to(&mine, 2).1.contains("mine is not of deltaq"), "{call:?}");
+        assert!(to(&at("mine/in/it"), 2).1.contains("mine/in"), "{call:?}");
+        assert!(to("..", 2).1.contains("--out .. names no file"), "{call:?}");
+        assert_eq!(fs::read_to_string(&mine).expect("the file"), "mine");
+    }
+    let left = |folder: &str| fs::read_dir(at(folder)).expect("a folder").count();
+    assert_eq!((left("new"), left("")), (files.len(), 2));
+    for folder in [
+        &["compare", "bowl", "--set", "duration=0.1", "--out"][..],
+        &["compare", "sledge", "--sweep", "g=1:2:2", "--out"],
+        &["linearize", "bicycle", "--sweep", "v=4:6:3", "--out"],
+        &["bench", "bowl", "--out"],
+        &["integrals", "suslov", "--certificates"],
+        &["fit", "sledge", "film.csv", "--free=x", "--pictures"],
+    ] {
+        refused(&[folder, &["-"]].concat(), &["this is standard output, and a folder is needed"]);
+    }
+    // a scene to begin with is a text of one's own from then on
+    let scene = at("scene.toml");
+    answer(&["new", &scene], 0);
+    refused(&["new", &scene], &["scene.toml is not of deltaq"]);
+    assert_eq!(answer(&["new", "-"], 0), answer(&["new"], 0));
+    (0..2).for_each(|_| drop(answer(&["new", "--schema", &at("schema.json")], 0)));
+}
+
 #[cfg(unix)]
 #[test]
 fn nothing_is_written_through_a_link() {
@@ -189,7 +239,7 @@ fn a_run_without_memory_stops_with_a_cause() {
     // what few times need is little
     let (code, stderr) = solve("0,1e5");
     assert_eq!(code, Some(0), "{stderr}");
-    let (code, stderr) = solve("0:1e5:100001");
+    let (code, stderr) = solve("0:1e5:60001");
     assert_eq!(code, Some(3), "{stderr}");
     assert!(stderr.contains("no memory for more"), "{stderr}");
 }

@@ -49,7 +49,8 @@ fn without_a_certificate_there_is_a_reason() {
     let (_, complaint) = answer(&["prove", &file("logarithm.toml"), "--out", &path], 3);
     assert!(complaint.contains("a logarithm is taken at the start"), "{complaint}");
     assert!(!Path::new(&path).exists());
-    refused(&["prove", "sledge", "--out", &file("no/such/folder")], &["cannot write", "no/such/folder"]);
+    std::fs::write(file("mine"), "").expect("written");
+    refused(&["prove", "sledge", "--out", &file("mine/c.json")], &["cannot create", "mine"]);
 }
 
 #[test]

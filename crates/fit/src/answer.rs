@@ -12,6 +12,9 @@ use crate::question::{SLIP, has_constants, is_constant, is_law, problem_of};
 use crate::search::{POOR, begun};
 use crate::{EXCLUDED, Film, Fit, FitError, Problem, Question, Row, Unknown, Verdict, fit, verdicts};
 
+/// Most numbers of all films: with them a fit takes minutes.
+const MOST_NUMBERS: usize = 300_000;
+
 /// Times as many starts of a search for constants, where no formulation fits.
 const MORE_STARTS: usize = 4;
 
@@ -24,13 +27,17 @@ type Fitted = Result<(Problem, Fit), FitError>;
 /// Fits every formulation that is wanted and gives verdicts. One that cannot be fitted has the reason.
 ///
 /// # Errors
-/// [`FitError::Unknown`] for a number of another law.
+/// [`FitError::TooLong`]; [`FitError::Unknown`] for a number of another law.
 pub fn fit_formulations(
     scene: &Scene,
     films: &[Film],
     question: &Question,
     wanted: &[&'static Formulation],
 ) -> Result<Vec<Row>, FitError> {
+    let found: usize = films.iter().map(Film::count).sum();
+    if found > MOST_NUMBERS {
+        return Err(FitError::TooLong { found, limit: MOST_NUMBERS });
+    }
     let (scene, law, unknowns) = question.prepared(scene)?;
     let question = &Question { unknowns: &unknowns, law: &law, ..question.clone() };
     let asked = |f: &Formulation| match is_law(f) {

@@ -11,6 +11,9 @@ pub enum FitError {
     /// The table cannot be read.
     #[error(transparent)]
     Table(#[from] TableError),
+    /// What a table says makes no sense, at `FILE:LINE:COLUMN`.
+    #[error("{place}: {error}")]
+    At { place: String, error: Box<FitError> },
     /// The table shows nothing.
     #[error("there is no column but `t`")]
     NoColumn,
@@ -27,8 +30,8 @@ pub enum FitError {
     #[error("the standard deviation of `{of}` is {found}; it must be finite and above 0")]
     Deviation { of: String, found: f64 },
     /// A film begins before the scene.
-    #[error("line {line}: t = {t} is before the start of the scene, t = {start}")]
-    BeforeTheStart { line: usize, t: f64, start: f64 },
+    #[error("t = {t} is before the start of the scene, t = {start}")]
+    BeforeTheStart { t: f64, start: f64 },
     /// There are no more numbers in the films than unknowns.
     #[error("the films have {found} numbers, and there are {unknowns} unknowns; more numbers are needed")]
     TooShort {
@@ -36,6 +39,9 @@ pub enum FitError {
         found: usize,
         unknowns: usize,
     },
+    /// There are more numbers in the films than are fitted.
+    #[error("the films have {found} numbers, and at most {limit} are fitted: leave out rows or columns")]
+    TooLong { found: usize, limit: usize },
     /// A quantity cannot be read.
     #[error("`{text}` is no number with a unit; units are {units}")]
     Quantity { text: String, units: String },

@@ -1,6 +1,6 @@
 //! A film as a table: times, and observed columns.
 
-use scene::{Scene, Table, TableError};
+use scene::{Scene, Table};
 use symbolic::Expr;
 
 use crate::FitError;
@@ -16,7 +16,7 @@ pub struct Column {
 }
 
 /// A film of one motion of a scene.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Film {
     /// Its name for messages.
     pub name: String,
@@ -30,6 +30,8 @@ pub struct Film {
     pub lines: Vec<usize>,
     /// Numbers of the scene with another, known value in this film: `("psi'", 6.0)`.
     pub known: Vec<(String, f64)>,
+    /// Columns that `deltaq solve` adds to a motion and that no film shows.
+    pub left_out: Vec<String>,
 }
 
 /// Standard deviations of columns: by name, or of all that have no other.
@@ -73,36 +75,43 @@ pub(crate) fn positive(of: &str, found: f64) -> Result<f64, FitError> {
 }
 
 impl Film {
-    /// Reads a table, CSV, with a column `t`. Every other column has the name of an entry of `[film]`, or is
-    /// an expression of coordinates, velocities and parameters: `x`, `x'`, `a*theta`. A unit may follow:
-    /// `x [mm]`. Empty cells and `nan` are gaps; a row of gaps only is left out.
+    /// Reads a table, CSV, with a column `t`. Every other column has the name of an entry of `[film]` or of
+    /// `[observables]`, or is an expression of coordinates, velocities and parameters: `x`, `x'`,
+    /// `a*theta`. A unit may follow: `x [mm]`. Empty cells and `nan` are gaps; a row of gaps only is left
+    /// out, and so are multipliers, errors and derivatives in the table of a motion.
     ///
     /// # Errors
-    /// [`FitError`] with the line where there is one.
+    /// [`FitError`] with its place.
     pub fn read(scene: &Scene, name: &str, text: &str, deviations: &Deviations) -> Result<Film, FitError> {
-        let table = Table::read(text)?;
-        let heads = table.columns.iter().map(|cell| head(cell)).collect::<Result<Vec<_>, _>>()?;
+        let table = Table::read(name, text)?;
+        let at = |i: usize, error| FitError::At { place: table.place(0, i), error: Box::new(error) };
+        let head = |i: usize| head(scene, &table.columns[i]).map_err(|error| at(i, error));
+        let heads = (0..table.columns.len()).map(head).collect::<Result<Vec<_>, _>>()?;
         let time = heads.iter().position(|(name, _)| *name == "t");
-        let time = time.ok_or_else(|| TableError::ColumnMissing("t".into()))?;
-        let seen: Vec<usize> = (0..heads.len()).filter(|&i| i != time).collect();
-        let columns = seen.iter().map(|&i| column(scene, heads[i].0, deviations)).collect::<Result<Vec<_>, _>>()?;
+        let time = time.map_or_else(|| table.column("t"), Ok)?;
+        let is_seen = |&i: &usize| expression(scene, heads[i].0).is_ok() || !is_added(heads[i].0);
+        let others = (0..heads.len()).filter(|&i| i != time);
+        let (seen, added): (Vec<usize>, Vec<usize>) = others.partition(is_seen);
+        let left_out = added.iter().map(|&i| heads[i].0.to_owned()).collect();
+        let column = |&i: &usize| column(scene, heads[i].0, deviations).map_err(|error| at(i, error));
+        let columns = seen.iter().map(column).collect::<Result<Vec<_>, _>>()?;
         if columns.is_empty() {
-            return Err(FitError::NoColumn);
+            return Err(at(0, FitError::NoColumn));
         }
         let times = table.times(time)?;
-        let (rows, known, t) = (Vec::new(), Vec::new(), Vec::new());
-        let mut film = Film { name: name.into(), t, columns, rows, lines: Vec::new(), known };
-        for (row, (&line, t)) in table.lines.iter().zip(times).enumerate() {
+        let mut film = Film { name: name.into(), columns, left_out, ..Film::default() };
+        for (row, t) in table.rows().zip(times) {
             let t = t * heads[time].1;
             if t < scene.start.t {
-                return Err(FitError::BeforeTheStart { line, t, start: scene.start.t });
+                let error = FitError::BeforeTheStart { t, start: scene.start.t }.into();
+                return Err(FitError::At { place: table.place(row, time), error });
             }
             let value = |&i: &usize| Ok(table.number_or_gap(row, i)?.map(|x| x * heads[i].1));
             let values = seen.iter().map(value).collect::<Result<Vec<_>, FitError>>()?;
             if values.iter().any(Option::is_some) {
                 film.t.push(t);
                 film.rows.push(values);
-                film.lines.push(line);
+                film.lines.push(table.lines[row]);
             }
         }
         Ok(film)
@@ -123,14 +132,25 @@ impl Film {
     pub fn count(&self) -> usize {
         self.rows.iter().flatten().flatten().count()
     }
+
+    /// Cells that are empty, of rows that are not.
+    pub fn gaps(&self) -> usize {
+        self.rows.iter().flatten().filter(|cell| cell.is_none()).count()
+    }
 }
 
 /// The name and the unit of a cell of the header.
-fn head(cell: &str) -> Result<(&str, f64), FitError> {
+fn head<'t>(scene: &Scene, cell: &'t str) -> Result<(&'t str, f64), FitError> {
     match cell.strip_suffix(']').and_then(|cell| cell.rsplit_once('[')) {
-        Some((name, of)) => Ok((name.trim(), unit(of.trim())?)),
-        None => Ok((cell, 1.0)),
+        Some((name, of)) if named(scene, cell).is_none() => Ok((name.trim(), unit(of.trim())?)),
+        _ => Ok((cell, 1.0)),
     }
+}
+
+/// Whether `deltaq solve` adds such a column to a motion: errors, multipliers, derivatives.
+fn is_added(name: &str) -> bool {
+    let begins = |with: &&str| name.starts_with(with);
+    ["error ", "lambda_", "mu_", "p_", "P_"].iter().any(begins) || name.starts_with('d') && name.contains("/d")
 }
 
 pub(crate) fn column(scene: &Scene, name: &str, deviations: &Deviations) -> Result<Column, FitError> {
@@ -139,11 +159,15 @@ pub(crate) fn column(scene: &Scene, name: &str, deviations: &Deviations) -> Resu
     Ok(Column { name: name.into(), sigma: deviations.of(name, written)? })
 }
 
+/// What has this name in `[film]` or among what is watched.
+fn named(scene: &Scene, name: &str) -> Option<Expr> {
+    let filmed = scene.film.iter().map(|filmed| (&filmed.name, filmed.expression));
+    let watched = scene.system.watched.iter().map(|watched| (&watched.name, watched.expression));
+    filmed.chain(watched).find(|(own, _)| *own == name).map(|(_, expression)| expression)
+}
+
 /// What a column shows, in the graph of this reading of the scene.
 pub(crate) fn expression(scene: &Scene, name: &str) -> Result<Expr, FitError> {
-    if let Some(filmed) = scene.film.iter().find(|filmed| filmed.name == name) {
-        return Ok(filmed.expression);
-    }
     let refused = |error: symbolic::ParseError| FitError::Column { column: name.into(), reason: error.to_string() };
-    scene.system.expression(name).map_err(refused)
+    named(scene, name).map_or_else(|| scene.system.expression(name).map_err(refused), Ok)
 }

@@ -83,6 +83,7 @@ impl Film {
         let samples = (times.rate * times.seconds).round() as usize;
         let t: Vec<f64> = (1..=samples).map(|k| scene.start.t + k as f64 / times.rate).collect();
         let rows = vec![vec![Some(0.0); columns.len()]; samples];
-        Ok(Film { name: "film".into(), t, columns, rows, lines: (2..).take(samples).collect(), known: Vec::new() })
+        let lines = (2..).take(samples).collect();
+        Ok(Film { name: "film".into(), t, columns, rows, lines, ..Film::default() })
     }
 }

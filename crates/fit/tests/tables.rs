@@ -12,10 +12,10 @@ fn read(table: &str, sigma: f64) -> Result<Film, FitError> {
 
 #[test]
 fn columns_are_expressions_with_units_and_gaps() {
-    let film = read("\u{feff}\"t\" ,x [mm],k*phi\n0.1,5,\n\n0.2,,nan\n0.4,6,0.2\n", 1e-3).unwrap();
+    let film = read("\u{feff}\"t\" ,x [mm],k*phi\n0.1,5,\n\n0.2,,nan\n0.4,\"6\",0.2\n", 1e-3).unwrap();
     assert_eq!(film.t, [0.1, 0.4]);
     assert_eq!(film.rows, [vec![Some(5e-3), None], vec![Some(6e-3), Some(0.2)]]);
-    assert_eq!((film.lines, film.columns.len()), (vec![2, 5], 2));
+    assert_eq!((film.gaps(), film.lines, film.columns.len()), (1, vec![2, 5], 2));
 }
 
 /// `[film]` says what a column is, a name on the command line counts more, all others less.
@@ -42,23 +42,23 @@ fn a_scene_says_what_columns_show() {
 #[test]
 fn what_is_no_film_is_refused_with_its_place() {
     for (table, sigma, said) in [
-        ("", 1.0, "there is no column `t`"),
-        ("t\n0\n", 1.0, "there is no column but `t`"),
-        ("t,z\n0,1\n", 1.0, "no expression belongs to the column `z`"),
-        ("t,x [inch]\n0,1\n", 1.0, "`inch` is no number with a unit"),
-        ("t,x\n0,1\n1\n", 1.0, "line 3 has 1 cells, and the header has 2"),
-        ("t,x\n0,one\n", 1.0, "line 2, column `x`: `one` is no finite number"),
-        ("t,x\n,1\n", 1.0, "line 2, column `t`: `` is no finite number"),
-        ("t,x\n1,1\n\n0.5,2\n", 1.0, "line 4: t = 0.5 is not later than t = 1"),
-        ("t,x\n-1,1\n", 1.0, "line 2: t = -1 is before the start of the scene, t = 0"),
-        ("t,x\n0,1\n", 0.0, "the standard deviation of `x` is 0"),
-        ("t,x\n0,1\n", f64::NAN, "the standard deviation of `x` is NaN"),
+        ("", 1.0, "film:1:1: there is no column `t`"),
+        ("t\n0\n", 1.0, "film:1:1: there is no column but `t`"),
+        ("t,z\n0,1\n", 1.0, "film:1:3: no expression belongs to the column `z`"),
+        ("t,x [inch]\n0,1\n", 1.0, "film:1:3: `inch` is no number with a unit"),
+        ("t,x\n0,1\n1\n", 1.0, "film:3:1: 1 cells, and the header has 2"),
+        ("t,x\n0,one\n", 1.0, "film:2:3: column `x`: `one` is no finite number"),
+        ("t,x\n,1\n", 1.0, "film:2:1: column `t`: the cell is empty, and a number is needed"),
+        ("t,x\n1,1\n\n0.5,2\n", 1.0, "film:4:1: t = 0.5 is not later than t = 1"),
+        ("t,x\n-1,1\n", 1.0, "film:2:1: t = -1 is before the start of the scene, t = 0"),
+        ("t,x\n0,1\n", 0.0, "film:1:3: the standard deviation of `x` is 0"),
+        ("t,x\n0,1\n", f64::NAN, "film:1:3: the standard deviation of `x` is NaN"),
     ] {
         let error = read(table, sigma).unwrap_err().to_string();
         assert!(error.contains(said), "{error}");
     }
     let none = Film::read(&built_in("sledge"), "film", "t,x\n0,1\n", &Deviations::default()).unwrap_err();
-    assert_eq!(none, FitError::NoDeviation("x".into()));
+    assert_eq!(none, FitError::At { place: "film:1:3".into(), error: FitError::NoDeviation("x".into()).into() });
 }
 
 #[test]

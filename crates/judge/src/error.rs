@@ -11,11 +11,17 @@ pub enum JudgeError {
     #[error(transparent)]
     Table(#[from] TableError),
     /// Rates are given of some coordinates only.
-    #[error("there are rates of {given} of {of} coordinates: column `{missing}` is missing")]
-    SomeRates { given: usize, of: usize, missing: String },
+    #[error("{place}: there are rates of {given} of {of} coordinates: column `{missing}` is missing")]
+    SomeRates { place: String, given: usize, of: usize, missing: String },
     /// There are too few samples for differences.
     #[error("there are {found} samples, and {needed} are needed")]
     TooFew { found: usize, needed: usize },
+    /// There are more samples than memory is taken for.
+    #[error(
+        "there are {found} samples, and of this scene at most {limit} are judged at once: leave out samples, or judge \
+         a part of the motion"
+    )]
+    TooMany { found: usize, limit: usize },
     /// The scene has no constraint.
     #[error("the scene has no constraint: there is one law only")]
     Unconstrained,

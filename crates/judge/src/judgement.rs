@@ -116,6 +116,11 @@ const NOISES: f64 = 3.0;
 /// [`JudgeError`]: too few samples, a motion in which nothing happens, dependent constraints, a mass matrix
 /// that is not positive definite.
 pub fn judge(scene: &Scene, samples: &Samples, tolerance: f64) -> Result<Judgement, JudgeError> {
+    let (found, n, h) = (samples.t.len(), scene.system.dimension(), scene.system.constraints.len());
+    let limit = MEMORY / 2 / (8 * (6 * n + 2 * n * h + 4 * h) + 600);
+    if found > limit {
+        return Err(JudgeError::TooMany { found, limit });
+    }
     let reach = if samples.v.is_some() { 3 } else { 4 };
     let mut balance = Balance::new(&scene.system)?;
     let fine = balance.along(samples, reach, reach)?;
@@ -134,7 +139,6 @@ pub fn judge(scene: &Scene, samples: &Samples, tolerance: f64) -> Result<Judgeme
     let limit = NOISES * least.max(noise);
     let fits = |l: &&Left| l.residual <= limit && least <= tolerance * scale;
     let fitting = laws.iter().filter(fits).map(|l| l.law).collect();
-    let h = scene.system.constraints.len();
     let constraint = |c: usize| {
         let values = || fine.iter().map(move |i| i.constraint[c]);
         (values().fold(0.0, |m: f64, f| m.max(f.abs())), rms(values()), rms(fine.iter().map(|i| i.parts[c])))
@@ -158,6 +162,9 @@ pub fn judge(scene: &Scene, samples: &Samples, tolerance: f64) -> Result<Judgeme
         None => Ok(judgement),
     }
 }
+
+/// Bytes that all samples may take, each with finer and with coarser differences.
+const MEMORY: usize = 600 << 20;
 
 /// The estimate with the better differences; what worse ones change is part of its error.
 fn both(fine: Option<Number>, coarse: Option<Number>) -> Option<Number> {

@@ -18,12 +18,12 @@ pub struct Samples {
 
 impl Samples {
     /// Reads a table with the columns `t`, one of each coordinate, and of each rate, `x'`, or of none. Other
-    /// columns are not looked at.
+    /// columns are not looked at. `file` stands for the table in errors.
     ///
     /// # Errors
     /// [`JudgeError`] where a column is missing or a cell is no number, with its place.
-    pub fn read(system: &System, text: &str) -> Result<Samples, JudgeError> {
-        let table = Table::read(text)?;
+    pub fn read(system: &System, file: &str, text: &str) -> Result<Samples, JudgeError> {
+        let table = Table::read(file, text)?;
         let time = table.column("t")?;
         let names = || system.coordinates.iter().map(|c| &c.name);
         let places = names().map(|name| table.column(name)).collect::<Result<Vec<_>, _>>()?;
@@ -31,12 +31,13 @@ impl Samples {
         let given = rates.iter().flatten().count();
         if let (1.., Some(i)) = (given, rates.iter().position(Option::is_none)) {
             let missing = format!("{}'", system.coordinates[i].name);
-            return Err(JudgeError::SomeRates { given, of: rates.len(), missing });
+            let place = table.place(0, places[i]);
+            return Err(JudgeError::SomeRates { place, given, of: rates.len(), missing });
         }
         let rates: Option<Vec<usize>> = rates.into_iter().collect();
         let rows = |places: &[usize]| -> Result<Vec<Vec<f64>>, TableError> {
             let row = |row| places.iter().map(|&place| table.number(row, place)).collect();
-            (0..table.lines.len()).map(row).collect()
+            table.rows().map(row).collect()
         };
         let v = rates.map(|rates| rows(&rates)).transpose()?;
         Ok(Samples { t: table.times(time)?, q: rows(&places)?, v })

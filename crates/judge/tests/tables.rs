@@ -7,7 +7,7 @@ fn read(table: &str) -> Result<Samples, JudgeError> {
     let text = "title = \"two\"\n[coordinates]\nx = { start = 0 }\ny = { start = 0 }\n[system]\n\
                 lagrangian = \"(x'^2 + y'^2)/2\"\nconstraints = [\"y'\"]\n[start.velocities]\n\"x'\" = 1\n[run]\n\
                 duration = 1\n";
-    Samples::read(&Scene::parse("two", text).expect("a scene").system, table)
+    Samples::read(&Scene::parse("two", text).expect("a scene").system, "m", table)
 }
 
 #[test]
@@ -24,13 +24,13 @@ fn columns_are_found_by_name() {
 fn what_is_no_table_is_refused_with_its_place() {
     let refused = |table: &str| read(table).unwrap_err().to_string();
     for (table, said) in [
-        ("", "there is no column `t`"),
-        ("t,x\n0,1\n", "there is no column `y`"),
-        ("t,x,y,x'\n0,1,2,3\n", "there are rates of 1 of 2 coordinates: column `y'` is missing"),
-        ("t,x,y\n0,1,2\n1,1\n", "line 3 has 2 cells, and the header has 3"),
-        ("t,x,y\n0,1,2\n1,one,2\n", "line 3, column `x`: `one` is no finite number"),
-        ("t,x,y\n0,1,inf\n", "line 2, column `y`: `inf` is no finite number"),
-        ("t,x,y\n0,1,2\n0,1,2\n", "line 3: t = 0 is not later than t = 0 of the row before"),
+        ("", "m:1:1: there is no column `t`"),
+        ("t,x\n0,1\n", "m:1:1: there is no column `y`"),
+        ("t,x,y,x'\n0,1,2,3\n", "m:1:5: there are rates of 1 of 2 coordinates: column `y'` is missing"),
+        ("t,x,y\n0,1,2\n1,1\n", "m:3:3: 2 cells, and the header has 3"),
+        ("t,x,y\n0,1,2\n1,one,2\n", "m:3:3: column `x`: `one` is no finite number"),
+        ("t,x,y\n0,1,inf\n", "m:2:5: column `y`: `inf` is no finite number"),
+        ("t,x,y\n0,1,2\n0,1,2\n", "m:3:1: t = 0 is not later than t = 0 of the row before"),
     ] {
         assert_eq!(refused(table), said);
     }

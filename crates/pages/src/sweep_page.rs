@@ -2,11 +2,12 @@
 
 use std::fmt::Write;
 
-use anyhow::{Context, Result};
+use anyhow::Result;
 use picture::{Axis, Curve, HeatMap, Picture, Style};
 
 use crate::markdown::inert;
 use program::File;
+use scene::{Table, TableError};
 
 /// What varies: name, first value, last value, number of values.
 pub type Swept = (String, f64, f64, usize);
@@ -44,16 +45,15 @@ pub fn sweep_files(
     let count = ranges.len();
     let title = &format!("{title}: {first} and {second}");
     let mark = &format!("constants make the {second} motion the {first} one");
-    let point = |line: &str| -> Option<Point> {
-        let cells: Vec<&str> = line.split(',').collect();
-        let at = cells.get(..count)?.iter().map(|x| x.parse().ok()).collect::<Option<Vec<f64>>>()?;
-        let cell = |i: usize| cells.get(count + i).copied();
-        let number = |i: usize| cell(i).and_then(|x| x.parse().ok());
-        let (apart, mismatch) = (number(1), number(7));
-        Some(Point { at, verdict: cell(0)?.into(), apart, answer: cell(4)?.into(), mismatch })
+    let table = Table::read(name, table)?;
+    let point = |row: usize| -> Result<Point, TableError> {
+        let text = |name: &str| table.column(name).map(|column| table.text(row, column).into_owned());
+        let number = |name: &str| table.number_or_gap(row, table.column(name)?);
+        let at = (0..count).map(|column| table.number(row, column)).collect::<Result<_, _>>()?;
+        let (apart, mismatch) = (number("apart")?, number("mismatch")?);
+        Ok(Point { at, verdict: text("verdict")?, apart, answer: text("answer")?, mismatch })
     };
-    let points = table.lines().skip(1).map(|line| point(line).with_context(|| format!("no row of a sweep: {line}")));
-    let points: Vec<Point> = points.collect::<Result<_>>()?;
+    let points: Vec<Point> = table.rows().map(point).collect::<Result<_, _>>()?;
     let mut text = page(title, mark, ranges, &points);
     let mut files = Vec::new();
     let measures: [(&str, &str, Measure); 2] = [

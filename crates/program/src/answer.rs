@@ -7,9 +7,6 @@ use std::io::{ErrorKind, Write, stderr, stdout};
 use anyhow::{Context, Result};
 use serde_json::Value;
 
-use crate::files::{File, write_all};
-use crate::options::{Output, TextOrJson};
-
 /// How a command ended: the text to print, and whether it can be trusted.
 pub struct Answer {
     /// For standard output.
@@ -75,25 +72,6 @@ impl Display for Unwritten {
     }
 }
 
-impl Output {
-    /// Writes the files to the folder asked for, if any; then prints JSON of this kind, or text.
-    pub fn answer(
-        &self,
-        kind: &str,
-        files: impl FnOnce() -> Result<Vec<File>>,
-        text: impl FnOnce() -> String,
-        json: impl FnOnce() -> Value,
-    ) -> Result<String> {
-        if let Some(folder) = &self.out {
-            write_all(folder, &files()?)?;
-        }
-        Ok(match self.format {
-            TextOrJson::Text => text(),
-            TextOrJson::Json => pretty(kind, &json()),
-        })
-    }
-}
-
 /// An object as JSON for readers, with an end of line; first its file of `docs/schemas`, and the version.
 /// Coordinates are in the order of the scene, verdicts and proofs by name.
 pub fn pretty(kind: &str, object: &Value) -> String {
@@ -111,6 +89,10 @@ pub fn sorted(mut object: Value) -> Value {
 
 fn printed(kind: &str, object: &Value) -> String {
     let version = if matches!(kind, "solve" | "linearize" | "certificate" | "compare") { 2 } else { 1 };
-    let text = format!("{object:#}\n");
-    text.replacen('{', &format!("{{\n  \"schema\": \"deltaq/{kind}/{version}\","), 1)
+    let mut text = format!("{object:#}\n");
+    let head = format!("{{\n  \"schema\": \"deltaq/{kind}/{version}\",");
+    // in place: an answer may take half of the memory
+    text.reserve_exact(head.len());
+    text.replace_range(..1, &head);
+    text
 }

@@ -3,11 +3,11 @@
 use std::borrow::Cow;
 use std::collections::BTreeSet;
 use std::fs;
-use std::io::Write;
 use std::path::{Path, PathBuf};
 
-use anyhow::{Context, Result, ensure};
-use tempfile::NamedTempFile;
+use anyhow::Result;
+
+use crate::sink::{LIST, Sink, may_replace};
 
 /// A file of a report.
 #[derive(Clone, Debug)]
@@ -18,51 +18,10 @@ pub struct File {
     pub text: String,
 }
 
-/// Names of the files that deltaq wrote to a folder that is not its own, one in a line.
-const LIST: &str = ".deltaq";
-
-/// How files of deltaq begin: answers for machines, tables of members.
-const BEGINNINGS: [&str; 2] = ["{\n  \"schema\": \"deltaq/", "member,"];
-
-/// What else only they hold: a table of points, the page that explores.
-const MARKS: [&str; 2] = [",verdict,apart,largest,limit,", "<script type=\"application/json\" id=\"chosen\">"];
-
-/// Whether a file at this place may be written: nothing is there, a device, or what deltaq wrote.
-///
-/// # Errors
-/// A link, and what is not of deltaq.
-pub fn may_replace(path: &Path) -> Result<()> {
-    let told = path.display();
-    let Ok(there) = fs::symlink_metadata(path) else { return Ok(()) };
-    if fs::metadata(path).is_ok_and(|behind| !behind.is_file()) {
-        return Ok(());
-    }
-    ensure!(!there.is_symlink(), "{told} is a link, which is not replaced: remove it, or write to another place");
-    let text = fs::read(path).with_context(|| format!("cannot read {told}"))?;
-    let text = String::from_utf8_lossy(&text);
-    let ours = BEGINNINGS.iter().any(|head| text.starts_with(head)) || MARKS.iter().any(|mark| text.contains(mark));
-    ensure!(
-        ours || text.is_empty(),
-        "{told} is not of deltaq, as far as it and the list `{LIST}` tell, and not replaced: remove it, or write to \
-         another place"
-    );
-    Ok(())
-}
-
 /// Whether all of a folder is deltaq's: it has the verdicts of the main job.
 pub fn is_own(folder: &Path) -> bool {
     let verdicts = fs::read_to_string(folder.join("verdicts.json"));
     verdicts.is_ok_and(|text| text.starts_with("{\n  \"schema\": \"deltaq/verdicts/"))
-}
-
-/// Writes one file, beside its place first.
-///
-/// # Errors
-/// [`may_replace`]; whatever the file system says, with the path.
-pub fn write_one(path: &Path, text: &str) -> Result<()> {
-    may_replace(path)?;
-    let parent = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    beside(path, parent, text)?.map_or(Ok(()), |temporary| moved(temporary, path))
 }
 
 /// Writes every file beside its place first; only when all are written are they moved into place. Of what is
@@ -101,14 +60,13 @@ pub fn write_own(folder: &Path, files: &[File]) -> Result<()> {
         if fs::symlink_metadata(&path).is_ok_and(|there| there.is_symlink()) {
             may_replace(&path)?;
         }
-        let parent = path.parent().unwrap_or(folder);
-        fs::create_dir_all(parent).with_context(|| format!("cannot create {}", parent.display()))?;
         let is_page = path.extension().is_some_and(|extension| extension == "md");
         let text = if is_page { typeset(&file.text) } else { Cow::from(&file.text) };
-        let temporary = beside(&path, parent, &text)?;
-        waiting.extend(temporary.map(|temporary| (temporary, path)));
+        let mut sink = Sink::over(&path)?;
+        sink.write(&text)?;
+        waiting.push(sink);
     }
-    waiting.into_iter().try_for_each(|(temporary, path)| moved(temporary, &path))
+    waiting.into_iter().try_for_each(|sink| sink.close().map(drop))
 }
 
 /// A page in whose tables the minus of an exponent is U+2212: browsers end lines behind a hyphen.
@@ -126,33 +84,4 @@ fn typeset(page: &str) -> Cow<'_, str> {
         text += &line[written..];
     }
     text.into()
-}
-
-/// The text in a file beside its place; a device is written to, and nothing waits.
-fn beside(path: &Path, parent: &Path, text: &str) -> Result<Option<NamedTempFile>> {
-    let cannot = || format!("cannot write {}", path.display());
-    if fs::metadata(path).is_ok_and(|there| !there.is_file()) {
-        return fs::write(path, text).with_context(cannot).map(|()| None);
-    }
-    let temporary = NamedTempFile::new_in(parent);
-    let mut temporary = temporary.with_context(cannot)?;
-    temporary.write_all(text.as_bytes()).with_context(cannot)?;
-    Ok(Some(temporary))
-}
-
-fn moved(temporary: NamedTempFile, path: &Path) -> Result<()> {
-    make_readable(temporary.as_file())?;
-    temporary.persist(path).with_context(|| format!("cannot replace {}", path.display())).map(drop)
-}
-
-/// Temporary files are private; reports are for everybody.
-#[cfg(unix)]
-fn make_readable(file: &fs::File) -> Result<()> {
-    use std::os::unix::fs::PermissionsExt;
-    Ok(file.set_permissions(fs::Permissions::from_mode(0o644))?)
-}
-
-#[cfg(not(unix))]
-fn make_readable(_: &fs::File) -> Result<()> {
-    Ok(())
 }

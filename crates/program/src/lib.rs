@@ -11,10 +11,12 @@ mod files;
 mod lines;
 mod options;
 pub mod parallel;
+mod sink;
 pub mod turns;
 
 pub use answer::{Answer, Unwritten, complain, plain, pretty, print, sorted};
 pub use ending::{exit_code, finish, parse};
-pub use files::{File, is_own, may_replace, write_all, write_one, write_own};
+pub use files::{File, is_own, write_all, write_own};
 pub use lines::Lines;
-pub use options::{Common, Output, TextOrJson, by_name};
+pub use options::{Common, Output, TextOrJson, by_name, folder};
+pub use sink::{Sink, file, keep, may_replace};

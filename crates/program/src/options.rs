@@ -2,9 +2,13 @@
 
 use std::path::PathBuf;
 
-use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
+use anyhow::Result;
+use clap::builder::{PathBufValueParser, PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Args, ValueEnum};
+use serde_json::Value;
 
+use crate::answer::pretty;
+use crate::files::{File, write_all};
 use crate::parallel;
 
 /// Options of every command.
@@ -31,11 +35,38 @@ impl Common {
 #[derive(Args, Debug)]
 pub struct Output {
     /// Folder for the page and its pictures, or for scene files.
-    #[arg(long, value_name = "DIR")]
+    #[arg(long, value_name = "DIR", value_parser = folder())]
     pub out: Option<PathBuf>,
     /// Output format.
     #[arg(long, value_enum, default_value_t = TextOrJson::Text)]
     pub format: TextOrJson,
+}
+
+impl Output {
+    /// Writes the files to the folder asked for, if any; then prints JSON of this kind, or text.
+    pub fn answer(
+        &self,
+        kind: &str,
+        files: impl FnOnce() -> Result<Vec<File>>,
+        text: impl FnOnce() -> String,
+        json: impl FnOnce() -> Value,
+    ) -> Result<String> {
+        if let Some(folder) = &self.out {
+            write_all(folder, &files()?)?;
+        }
+        Ok(match self.format {
+            TextOrJson::Text => text(),
+            TextOrJson::Json => pretty(kind, &json()),
+        })
+    }
+}
+
+/// A folder for files; not `-`, which is standard output.
+pub fn folder() -> impl TypedValueParser<Value = PathBuf> {
+    PathBufValueParser::new().try_map(|path| match path.as_os_str() == "-" {
+        true => Err("this is standard output, and a folder is needed (./- is one)"),
+        false => Ok(path),
+    })
 }
 
 /// Output formats of commands with tables.

@@ -1,6 +1,14 @@
 //! Which files are replaced, and how tables are written.
 
-use program::{File, is_own, may_replace, write_all, write_one};
+use std::path::Path;
+
+use program::{File, Sink, is_own, keep, may_replace, write_all};
+
+fn write_one(path: &Path, text: &str) -> anyhow::Result<()> {
+    let told = keep(Some(path), text.into(), |file| format!("in {file}"))?;
+    assert_eq!(told, format!("in {}", path.display()));
+    Ok(())
+}
 
 #[test]
 fn exponents_in_tables_do_not_break() {
@@ -41,6 +49,29 @@ fn only_files_of_deltaq_are_replaced() {
     write_one(&at("ours.json"), "{\n  \"schema\": \"deltaq/certificate/2\",").unwrap();
     write_one(&at("ours.json"), "member,x").unwrap();
     write_one(&at("ours.json"), "").unwrap();
+    // its folder is made, and a line stands for standard output
+    write_one(&at("new/folder/page"), "1").unwrap();
+    assert_eq!(keep(Some(Path::new("-")), "1".into(), |_| String::new()).unwrap(), "1");
+    assert_eq!(keep(None, "1".into(), |_| String::new()).unwrap(), "1");
+    let said = write_one(&at("mine.json/page"), "1").unwrap_err();
+    assert!(format!("{said:#}").contains("mine.json"), "{said:#}");
+    assert!(write_one(Path::new(".."), "1").unwrap_err().to_string().contains("names no file"));
+}
+
+/// A file is whole or not there.
+#[test]
+fn what_is_not_closed_leaves_nothing() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("page");
+    for closed in [false, true] {
+        let mut sink = Sink::whole(&path).unwrap();
+        assert!(sink.write("1").unwrap() && sink.write("2").unwrap() && !path.exists());
+        if closed {
+            assert_eq!(sink.close().unwrap().as_deref(), Some(&*path));
+        }
+    }
+    let left: Vec<_> = std::fs::read_dir(folder.path()).unwrap().map(|file| file.unwrap().path()).collect();
+    assert_eq!((left, std::fs::read_to_string(&path).unwrap()), (vec![path], "12".to_string()));
 }
 
 #[cfg(unix)]

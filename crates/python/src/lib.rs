@@ -62,6 +62,7 @@ mod _native {
         module.add("SCENES", names(catalogue::built_in().map(|(name, _)| *name).collect())?)?;
         module.add("METHODS", names(Method::ALL.map(Method::name).to_vec())?)?;
         module.add("UnknownNameError", crate::errors::unknown_name(module.py())?)?;
+        module.add("_TABLE_SIZE", scene::TABLE_SIZE)?;
         module.add("__version__", env!("CARGO_PKG_VERSION"))
     }
 }

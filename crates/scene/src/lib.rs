@@ -73,5 +73,5 @@ pub use number::Number;
 pub use reasons::{NameFault, Unavailable};
 pub use scene::{Filmed, Scene};
 pub use starts::{Start, Starts};
-pub use table::{Table, TableError};
+pub use table::{TABLE_SIZE, Table, TableError, TableFault, table_cell, table_text};
 pub use write::quoted;

@@ -8,3 +8,4 @@ mod names;
 mod snapshots;
 mod start;
 mod start_equations;
+mod tables;

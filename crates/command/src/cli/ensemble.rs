@@ -64,7 +64,8 @@ pub struct Limits {
     /// left out, the tolerance alone decides.
     #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
     pub max_step: Option<f64>,
-    /// Maximum seconds of the clock per run; of an ensemble, per run of 4096 members.
+    /// Maximum seconds of the clock per run; of an ensemble, per run of 4096 members, or of fewer with very
+    /// many times.
     #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
     pub time_limit: Option<f64>,
 }
@@ -82,7 +83,7 @@ pub struct EnsembleArguments {
     /// FROM..TO:COUNT means the same.
     #[arg(long, value_name = "NAME=FROM:TO:COUNT", value_parser = range)]
     pub vary: Vec<Range>,
-    /// File to write; to the terminal if left out.
+    /// File to write; to standard output if left out or `-`. What deltaq did not write is not replaced.
     #[arg(long, value_name = "FILE")]
     pub out: Option<PathBuf>,
 }

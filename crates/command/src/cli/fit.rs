@@ -50,7 +50,7 @@ pub struct FitArguments {
     #[arg(long, default_value_t = 2_000)]
     pub max_steps: usize,
     /// Folder for pictures, SVG: the films with the fitted motions, residuals, profiles of the law's numbers.
-    #[arg(long, value_name = "FOLDER")]
+    #[arg(long, value_name = "FOLDER", value_parser = program::folder())]
     pub pictures: Option<PathBuf>,
     /// Output format.
     #[arg(long, value_enum, default_value_t = TextOrJson::Text)]

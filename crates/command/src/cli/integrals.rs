@@ -28,12 +28,12 @@ pub struct IntegralsArguments {
           conflicts_with_all = ["certificates", "format", "names", "formulation"])]
     pub sweep: Vec<Range>,
     /// Folder for certificates of what is proved or written down, a file for each, which others can check.
-    #[arg(long, value_name = "FOLDER")]
+    #[arg(long, value_name = "FOLDER", value_parser = program::folder())]
     pub certificates: Option<PathBuf>,
     /// Output format.
     #[arg(long, value_enum, default_value_t = TextOrJson::Text)]
     pub format: TextOrJson,
-    /// File for the answer; to the terminal if left out.
+    /// File for the answer; to standard output if left out or `-`. What deltaq did not write is not replaced.
     #[arg(long, value_name = "FILE")]
     pub out: Option<PathBuf>,
 }

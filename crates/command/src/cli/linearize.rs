@@ -34,7 +34,7 @@ pub struct LinearizeArguments {
     #[arg(long)]
     pub find: bool,
     /// Folder for a page and a picture of the eigenvalues over what varies.
-    #[arg(long, value_name = "DIR", requires = "sweep")]
+    #[arg(long, value_name = "DIR", requires = "sweep", value_parser = program::folder())]
     pub out: Option<PathBuf>,
     /// Output format.
     #[arg(long, value_enum, default_value_t = TableFormat::Table)]

@@ -42,7 +42,8 @@ impl Overrides {
 /// `deltaq new`.
 #[derive(Args, Debug)]
 pub struct NewArguments {
-    /// File to write, which must not exist; to the terminal if left out.
+    /// File to write; to standard output if left out or `-`. What deltaq did not write is not replaced, nor
+    /// is a scene.
     pub file: Option<PathBuf>,
     /// Built-in scene to begin with, in the place of the template.
     #[arg(long, value_name = "SCENE")]

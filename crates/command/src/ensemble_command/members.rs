@@ -2,9 +2,9 @@
 
 use std::path::Path;
 
-use anyhow::{Context, Result, bail, ensure};
+use anyhow::{Result, bail, ensure};
 use deltaq::{Choice, costate_names};
-use scene::Scene;
+use scene::{Scene, Table, table_text};
 
 use crate::cli::{EnsembleArguments, MOST_MEMBERS, Range};
 
@@ -50,8 +50,7 @@ impl Members {
     }
 
     fn read(path: &Path) -> Result<Members> {
-        let text = std::fs::read_to_string(path).with_context(|| format!("cannot read {}", path.display()))?;
-        parse(&path.display().to_string(), &text)
+        parse(&path.display().to_string(), &table_text(path)?)
     }
 
     fn combine(&mut self, range: &Range) -> Result<()> {
@@ -97,53 +96,16 @@ fn known(scene: &Scene, choice: &Choice) -> Vec<String> {
     parameters.chain(coordinates).chain(velocities).chain(multipliers).chain(costates).collect()
 }
 
-/// The cells of a line with their columns, in characters from 1, without blanks and quotation marks.
-fn cells(line: &str) -> impl Iterator<Item = (usize, &str)> {
-    let mut column = 1;
-    line.split(',').map(move |cell| {
-        let blanks = cell.chars().take_while(|c| c.is_whitespace()).count();
-        let place = column + blanks;
-        column += cell.chars().count() + 1;
-        let inner = cell.trim();
-        (place, inner.strip_prefix('"').and_then(|x| x.strip_suffix('"')).unwrap_or(inner).trim())
-    })
-}
-
 fn parse(file: &str, text: &str) -> Result<Members> {
-    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
-    let numbered = text.lines().zip(1..).map(|(line, number)| (number, line));
-    let mut lines = numbered.filter(|(_, line)| !line.trim().is_empty() && !line.trim_start().starts_with('#'));
-    let Some((number, header)) = lines.next() else { bail!("{file}: no line that names what varies") };
-    let (mut names, mut places) = (Vec::new(), Vec::<String>::new());
-    for (column, name) in cells(header) {
-        let place = format!("{file}:{number}:{column}");
-        ensure!(!name.is_empty(), "{place}: a name is missing between the commas");
-        if let Some(i) = names.iter().position(|known| known == name) {
-            bail!("{place}: `{name}` stands at {} already", places[i]);
-        }
-        names.push(name.to_string());
-        places.push(place);
+    let table = Table::read(file, text)?;
+    let places: Vec<String> = (0..table.columns.len()).map(|i| table.place(0, i)).collect();
+    ensure!(!places.is_empty(), "{file}: no line that names what varies");
+    if let Some((_, place)) = table.columns.iter().zip(&places).find(|(name, _)| name.is_empty()) {
+        bail!("{place}: a name is missing between the commas");
     }
-    let (mut listed, mut count) = (Vec::new(), 0);
-    for (number, line) in lines {
-        let first = listed.len();
-        for (column, cell) in cells(line) {
-            let place = format!("{file}:{number}:{column}");
-            let Some(name) = names.get(listed.len() - first) else {
-                bail!("{place}: more numbers than the {} that the first line names", names.len());
-            };
-            match cell.parse::<f64>() {
-                Ok(value) if value.is_finite() => listed.push(value),
-                Ok(value) => bail!("{place}: `{name}` is {value}; it must be finite"),
-                Err(_) => bail!("{place}: `{cell}` is not a number, for `{name}`"),
-            }
-        }
-        let column = line.chars().count() + 1;
-        let (found, expected) = (listed.len() - first, names.len());
-        ensure!(found == expected, "{file}:{number}:{column}: {found} numbers; the first line names {expected}");
-        count += 1;
-        ensure!(count <= MOST_MEMBERS, "{file}:{number}:1: more than {MOST_MEMBERS} members");
-    }
-    ensure!(count > 0, "{file}:{}:1: no members below the names", number + 1);
-    Ok(Members { names, places, listed, ranges: Vec::new(), count })
+    let count = table.rows().len();
+    ensure!(count > 0, "{}: no members below the names", places[0]);
+    let cells = table.rows().flat_map(|row| (0..places.len()).map(move |column| (row, column)));
+    let listed = cells.map(|(row, column)| table.number(row, column)).collect::<Result<_, _>>()?;
+    Ok(Members { names: table.columns, places, listed, ranges: Vec::new(), count })
 }

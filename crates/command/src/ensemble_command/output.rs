@@ -1,5 +1,6 @@
 //! What became of the members, for machines.
 
+use anyhow::Result;
 use deltaq::{Choice, MemberMotion};
 use equations::{Equations, Outputs};
 use scene::Scene;
@@ -97,7 +98,7 @@ impl<'a> Answers<'a> {
     }
 
     /// What stands before the members.
-    pub(super) fn head(&self) -> String {
+    pub(super) fn head(&self) -> Result<String> {
         if self.format == Format::Csv {
             return header(&self.names());
         }
@@ -106,7 +107,7 @@ impl<'a> Answers<'a> {
             "formulation": self.choice.formulation.name,
             "removal": self.choice.removal.as_ref().map(|r| &r.name),
         });
-        pretty("ensemble", &value).trim_end_matches("\n}\n").to_string() + ",\n  \"members\": ["
+        Ok(pretty("ensemble", &value).trim_end_matches("\n}\n").to_string() + ",\n  \"members\": [")
     }
 
     /// The next member.

@@ -12,7 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _parts
-from ._native import DeltaqError, System, UnknownNameError, __version__, _Fitted
+from ._native import _TABLE_SIZE, DeltaqError, System, UnknownNameError, __version__, _Fitted
 from ._needs import needed
 from ._sweep import _Grid, _written
 
@@ -168,12 +168,14 @@ def _table(table: Any) -> str:
     if len({len(values) for values in columns.values()}) > 1:
         raise ValueError(f"columns have different lengths: {', '.join(f'{name} {len(x)}' for name, x in columns.items())}")
     rows = zip(*columns.values())
-    return "\n".join([",".join(columns), *(",".join(repr(float(x)) for x in row) for row in rows)]) + "\n"
+    names = ",".join('"' + name.replace('"', '""') + '"' for name in columns)
+    return "\n".join([names, *(",".join(repr(float(x)) for x in row) for row in rows)]) + "\n"
 
 
 def _read(film: Any, place: int) -> tuple[str, str]:
     if isinstance(film, (str, os.PathLike)):
-        return str(film), Path(film).read_text("utf-8")
+        with Path(film).open(encoding="utf-8") as file:
+            return str(film), file.read(_TABLE_SIZE + 1)
     return f"film {place}", _table(film)
 
 

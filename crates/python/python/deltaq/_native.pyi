@@ -52,6 +52,8 @@ class FaultError(DeltaqError):
 class CallError(SolveError):
     """The time integrator was called wrongly."""
 
+_TABLE_SIZE: Final[int]
+
 def load(path: str | PathLike[str], overrides: Mapping[str, float] | None = None) -> System:
     """A system from a scene file of at most 1 MiB.
 

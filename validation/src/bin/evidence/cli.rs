@@ -27,11 +27,11 @@ pub struct Cli {
 #[derive(Args, Debug)]
 pub struct JobArguments {
     /// Folder that the reports are written to; `reports` of the project's sources if left out.
-    #[arg(long, value_name = "DIR")]
+    #[arg(long, value_name = "DIR", value_parser = program::folder())]
     pub out: Option<PathBuf>,
     /// Folder that pages of times are written to, which differ from machine to machine; `reports/measured` is
     /// the committed one, `target/measured` that of the sources if left out.
-    #[arg(long, value_name = "DIR")]
+    #[arg(long, value_name = "DIR", value_parser = program::folder())]
     pub measured: Option<PathBuf>,
     /// Sections to run, all if left out. The overview is written only when all of them run.
     #[arg(long, value_enum, value_name = "NAME,…", value_delimiter = ',')]
@@ -158,7 +158,7 @@ pub struct BenchmarkArguments {
     #[arg(long, default_value_t = STARTS as u16, requires = "out", value_parser = clap::value_parser!(u16).range(1..=1000))]
     pub starts: u16,
     /// Folder for the tables; `validation/benchmark` of the project's sources if left out.
-    #[arg(long, value_name = "DIR")]
+    #[arg(long, value_name = "DIR", value_parser = program::folder())]
     pub out: Option<PathBuf>,
 }
 
@@ -169,7 +169,7 @@ pub struct FilmsArguments {
     #[arg(long, value_name = "NAME,…", value_delimiter = ',')]
     pub scenes: Vec<String>,
     /// Folder for the page.
-    #[arg(long, value_name = "DIR")]
+    #[arg(long, value_name = "DIR", value_parser = program::folder())]
     pub out: PathBuf,
 }
 
@@ -183,7 +183,7 @@ pub struct IntegralsArguments {
     #[arg(long, value_name = "PART,…", value_delimiter = ',', value_parser = ["scenes", "literature", "maps"])]
     pub parts: Vec<String>,
     /// Folder for the page and its pictures.
-    #[arg(long, value_name = "DIR")]
+    #[arg(long, value_name = "DIR", value_parser = program::folder())]
     pub out: PathBuf,
 }
 
