@@ -19,6 +19,8 @@ use crate::program::{Evaluator, Program};
 pub struct Family {
     pub(crate) formulation: &'static str,
     pub(crate) shape: Shape,
+    /// Whether costates stand in the matrix of the equations of an instant.
+    by_costates: bool,
     /// Whether time stands in no equation.
     pub(crate) timeless: bool,
     names: Vec<String>,
@@ -130,6 +132,7 @@ impl Family {
         let accelerated: Vec<Symbol> = accelerations.iter().map(|&z| unknowns[z]).collect();
         let second: Vec<Expr> = equations.velocities.iter().map(|&v| g.total_derivative(v, &flow)).collect();
         let mut outputs = g.jacobian(&residuals, &unknowns).entries().to_vec();
+        let by_costates = outputs.iter().any(|&e| costates.iter().any(|&s| g.depends_on(e, s)));
         let (k, rows) = (costates.len(), residuals.len());
         outputs.extend(&slopes.entries()[..rows * k]);
         outputs.extend(&residuals);
@@ -150,6 +153,7 @@ impl Family {
         let start = start_program(g, &starts, &constants, &inputs).map_err(unsuited)??;
         Ok(Family {
             formulation: equations.formulation,
+            by_costates,
             shape: Shape {
                 coordinates: system.dimension(),
                 constraints: system.constraints.len(),
@@ -168,6 +172,12 @@ impl Family {
             start,
             lift,
         })
+    }
+
+    /// Whether the equations may be singular for some constants, which give no motion then: where `f` is not
+    /// linear in the velocities, `∂²(L + μ·f)/∂v²` depends on them.
+    pub fn may_be_singular(&self) -> bool {
+        self.by_costates
     }
 
     /// Names of the free constants.

@@ -130,7 +130,7 @@ impl Comparison {
         let of = |own| self.runs[self.run(own)?].outcome.as_ref().ok().filter(|motion| motion.doubt.is_none());
         let motions = [of(VAKONOMIC)?, of(VAKONOMIC_COSTATE)?];
         let changes = |motion: &Motion, name: &str| motion.breaches.iter().any(|breach| breach.name == name);
-        let clear = |breach: &&Breach| breach.change > SEEN * CERTAINTY * breach.estimate;
+        let clear = |breach: &&Breach| breach.largest > SEEN * CERTAINTY * breach.estimate;
         let one_sided = |[one, other]: [&Motion; 2]| {
             let found = one.breaches.iter().filter(clear).find(|breach| !changes(other, &breach.name));
             found.map(|breach| format!("{breach}"))

@@ -99,6 +99,8 @@ pub struct GapPoint {
 pub struct Gap {
     /// The word.
     pub verdict: Verdict,
+    /// Time of the start.
+    pub start: f64,
     /// Time up to which both motions exist.
     pub end: f64,
     /// First time at which the gap or the difference of a coordinate passes its certainty limit.
@@ -187,7 +189,8 @@ pub fn compare_motions_by(
         let round_off_sizes = metric.round_off_sizes(&inertia, &sizes, largest_length);
         let size = |i: usize| round_off_sizes[i];
         imprecise = (0..n)
-            .map(|i| (own[i] / size(i), i))
+            // what neither moves nor has an error is known as it is
+            .map(|i| (if own[i] == 0.0 { 0.0 } else { own[i] / size(i) }, i))
             .filter(|(part, _)| part.is_nan() || *part >= SAME_ESTIMATE)
             .max_by(by_part);
         let of_coordinate = |i: usize| Difference { by: difference[i].abs(), limit: limit(own[i], size(i), added[i]) };
@@ -252,10 +255,14 @@ pub fn compare_motions_by(
     } else if relative < SAME_ESTIMATE {
         Verdict::Same
     } else if scale <= CERTAINTY * estimate {
-        // nothing that an error could be relative to
-        let because = format!(
-            "at rest, as far as can be told: no way is over {CERTAINTY} times the error estimate {estimate:.1e}"
-        );
+        let because = if scale > SAME_ESTIMATE * largest_length {
+            format!("the error estimate {estimate:.1e} has grown to the size of the motion, {scale:.1e}")
+        } else {
+            // nothing that an error could be relative to
+            format!(
+                "at rest, as far as can be told: no way is over {CERTAINTY} times the error estimate {estimate:.1e}"
+            )
+        };
         Verdict::Undecided { because }
     } else {
         let because =
@@ -264,6 +271,7 @@ pub fn compare_motions_by(
     };
     Ok(Gap {
         verdict,
+        start: t0,
         end: read,
         certain_from,
         certain_by_coordinate,
@@ -315,6 +323,11 @@ impl Gap {
     /// The motions are proved to differ, whatever the gap shows.
     pub(crate) fn prove(&mut self) {
         (self.proved, self.verdict) = (true, Verdict::Different);
+    }
+
+    /// The time from the start to `t`.
+    pub fn after(&self, t: f64) -> f64 {
+        t - self.start
     }
 
     /// Whether the gap itself passes its limit: of motions that differ in coordinates of hardly any inertia,

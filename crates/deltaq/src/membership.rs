@@ -26,6 +26,8 @@ pub struct Membership {
     /// The least mismatch that the proved one implies, in the same unit as ρ; looked for only where the
     /// numbers show none.
     pub implied: Option<f64>,
+    /// Whether the set is that of the constants with regular equations ([`Family::may_be_singular`]).
+    pub where_regular: bool,
 }
 
 /// The answer on the set of constants.
@@ -169,7 +171,7 @@ impl<'a> Pairing<'a> {
         let unseen = refuted && decision.verdict == Verdict::Contained;
         let least = |until| question.least_by_series(system, start, until - start.t);
         let implied = unseen.then(|| least(decision.until.unwrap_or(end))).flatten();
-        Ok(Membership { decision, proof, section, implied })
+        Ok(Membership { decision, proof, section, implied, where_regular: self.family.may_be_singular() })
     }
 
     /// The certificate that no constants do from the scene's start, or from one drawn at random and so from

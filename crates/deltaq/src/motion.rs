@@ -18,7 +18,7 @@ use crate::metric::{larger, subtract};
 use crate::trajectory::Trajectory;
 use crate::trial::{FARTHER, NotSuited, TRIAL};
 use crate::wanted::kept_before;
-use crate::watch::{Breach, Watch, watched};
+use crate::watch::{Breach, Watch};
 use crate::{Choice, ChosenForm, Doubt, Ending, Prepared, Setting, Settings, SolveError, setting};
 
 /// Wall-clock seconds spent.
@@ -194,6 +194,9 @@ impl Motion {
     }
 }
 
+/// Stretches of a motion at whose ends the scene's own constraints are looked at.
+const WATCHED: usize = 32;
+
 /// Integrates `equations` from `setting.start` to `setting.end`, twice, and keeps the tighter run.
 ///
 /// # Errors
@@ -219,8 +222,12 @@ pub fn solve(
     let by = motion.method.as_ref().map(|chosen| chosen.method);
     motion.doubt = Doubt::of([&steps[0], &steps[1]], motion.end, motion.is_complete(), by);
     if motion.doubt.is_none() && !settings.plain {
-        let watch = Watch::new(setting.system, &motion.equations, &[])?;
-        (motion.doubt, motion.breaches) = watched(&mut motion, watch);
+        let mut watch = Watch::new(setting.system, &motion.equations, &[])?;
+        let times = motion.grid(WATCHED);
+        let kept: Vec<Outputs> = times.iter().map_while(|&t| motion.at(t).ok()).collect();
+        let Motion { kept: run, looser, compiled, equations, .. } = &mut motion;
+        motion.doubt = watch.doubt((&times, &kept), [run, looser], compiled, &equations.invariants);
+        motion.breaches = watch.breaches;
         if motion.doubt.is_none() {
             motion.count_round_off(setting, &Settings { method: by, ..settings.clone() })?;
         }

@@ -3,14 +3,15 @@
 
 use std::fmt::{self, Display, Formatter};
 
-use equations::{Equations, Named, Outputs};
+use equations::{Compiled, Equations, Named, Outputs};
 use mechanics::{Constancy, System};
 use symbolic::{Bounded, CompileError, Evaluator, Scalar, Symbol};
 
+use crate::Doubt;
 use crate::last_digits::terms_of_invariants;
 use crate::metric::{larger, subtract};
 use crate::settings::CERTAINTY;
-use crate::{Doubt, Motion};
+use crate::trajectory::Trajectory;
 
 /// A drift under this part of the terms of an invariant is round-off.
 const ROUND_OFF: f64 = 1e-11;
@@ -28,15 +29,17 @@ pub struct Breach {
     pub name: String,
     /// First time at which this is certain.
     pub t: f64,
-    /// Change since the start.
+    /// Change since the start, at that time; its error estimate; the largest change of the motion.
     pub change: f64,
-    /// Error estimate of the change.
+    /// See [`Breach::change`].
     pub estimate: f64,
+    /// See [`Breach::change`].
+    pub largest: f64,
 }
 
 impl Display for Breach {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
-        let Breach { name, t, change, estimate } = self;
+        let Breach { name, t, change, estimate, .. } = self;
         write!(
             f,
             "{name} is not constant: it has changed by {change:.1e} at t = {t:.6}, with an error estimate of {estimate:.1e}"
@@ -97,6 +100,36 @@ impl Watch {
         self.put(t, kept);
         let hold = self.constraints.evaluate(&self.inputs).iter().all(|f| f.may_be_zero() || !f.is_finite());
         hold && self.are_constant(kept, terms)
+    }
+
+    /// The doubt that begins where the scene's own constraints, or what has to be constant, are off by more
+    /// than the error estimate, in a motion with these outputs at these times. What cannot be read off is
+    /// another matter. [`Watch::breaches`] are noted.
+    pub(crate) fn doubt(
+        &mut self,
+        (times, kept): (&[f64], &[Outputs]),
+        [run, looser]: [&mut Trajectory; 2],
+        compiled: &mut Compiled,
+        invariants: &[Named],
+    ) -> Option<Doubt> {
+        self.begin(times[0], kept.first()?, &[]);
+        let mut terms = |compiled: &mut Compiled, t: f64| {
+            let state = run.state(compiled, t).ok()?;
+            terms_of_invariants(compiled, t, &state, run.sizes())
+        };
+        let mut clear = true;
+        for (&t, kept) in times.iter().zip(kept) {
+            clear &= self.is_clear(t, kept, &mut || terms(compiled, t));
+        }
+        let mut from = times[0];
+        for (&t, kept) in times.iter().zip(kept).filter(|_| !clear) {
+            let looser = looser.outputs(compiled, t).ok()?;
+            if let Some(because) = self.complaint(t, [kept, &looser], invariants, &mut || terms(compiled, t)) {
+                return Some(Doubt { from, because });
+            }
+            from = t;
+        }
+        None
     }
 
     fn are_constant(&mut self, kept: &Outputs, terms: Terms) -> bool {
@@ -173,7 +206,7 @@ impl Watch {
     fn note_breaches(&mut self, t: f64, kept: &Outputs, invariants: &[Named]) {
         for breach in self.changes(t, kept, invariants).into_iter().filter(|b| self.expected.contains(&b.name)) {
             match self.breaches.iter_mut().find(|known| known.name == breach.name) {
-                Some(known) => known.change = known.change.max(breach.change),
+                Some(known) => known.largest = known.largest.max(breach.largest),
                 None => self.breaches.push(breach),
             }
         }
@@ -184,7 +217,7 @@ impl Watch {
         let certain = changes.filter_map(|(i, change)| {
             let estimate = self.differences.1[i] + ROUND_OFF * self.sizes[i];
             let name = invariants[i].name.clone();
-            (change > CERTAINTY * estimate).then_some(Breach { name, t, change, estimate })
+            (change > CERTAINTY * estimate).then_some(Breach { name, t, change, estimate, largest: change })
         });
         certain.collect()
     }
@@ -193,44 +226,4 @@ impl Watch {
         let values = std::iter::once(&t).chain(&at.coordinates).chain(&at.velocities);
         self.inputs.iter_mut().zip(values).for_each(|(x, &value)| *x = Bounded::from_f64(value));
     }
-}
-
-/// Stretches of a motion at whose ends the scene's own constraints are looked at.
-const WATCHED: usize = 32;
-
-/// The doubt that begins where the scene's own constraints, or what has to be constant, are off by more than
-/// the error estimate; and what the user expects to be constant and the motion changes.
-pub(crate) fn watched(motion: &mut Motion, mut watch: Watch) -> (Option<Doubt>, Vec<Breach>) {
-    let doubt = doubted(motion, &mut watch);
-    (doubt, watch.breaches)
-}
-
-/// What cannot be read off is another matter.
-fn doubted(motion: &mut Motion, watch: &mut Watch) -> Option<Doubt> {
-    let times = motion.grid(WATCHED);
-    watch.begin(times[0], &motion.at(times[0]).ok()?, &[]);
-    let kept: Vec<Outputs> = times.iter().map_while(|&t| motion.at(t).ok()).collect();
-    let invariants = motion.equations.invariants.clone();
-    let (mut before, mut clear) = (times[0], true);
-    for pass in [true, false] {
-        for (&t, kept) in times.iter().zip(&kept) {
-            let looser = if pass { None } else { Some(motion.looser.outputs(&mut motion.compiled, t).ok()?) };
-            let mut terms = || {
-                let state = motion.kept.state(&mut motion.compiled, t).ok()?;
-                terms_of_invariants(&mut motion.compiled, t, &state, motion.kept.sizes())
-            };
-            let Some(looser) = looser else {
-                clear &= watch.is_clear(t, kept, &mut terms);
-                continue;
-            };
-            if let Some(because) = watch.complaint(t, [kept, &looser], &invariants, &mut terms) {
-                return Some(Doubt { from: before, because });
-            }
-            before = t;
-        }
-        if clear {
-            break;
-        }
-    }
-    None
 }

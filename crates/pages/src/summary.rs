@@ -39,7 +39,7 @@ fn motions(comparison: &mut Comparison) -> Result<String> {
         let method = method.map_or("equal steps", |chosen| chosen.method.name());
         let estimate = estimate.map_or_else(|| Ok(error_estimate(motion, setting(scene))?.absolute), anyhow::Ok)?;
         let end = match &motion.ending {
-            Ending::Completed => format!("{} s", short(motion.end())),
+            Ending::Completed => format!("{} s", short(motion.end() - motion.start())),
             Ending::Stopped { t, .. } => format!("stops at {} s", short(*t)),
         };
         let steps = motion.work.steps.to_string();
@@ -63,7 +63,7 @@ fn short_label(comparison: &Comparison, run: usize) -> String {
 /// One line per pair with Chetaev's or the vakonomic motion, with the letter of its curve; of the others
 /// those that differ are named, those that agree are counted.
 fn pairs(comparison: &Comparison) -> String {
-    let mut table = vec![["", "pair", "verdict", "1e-6 at", "1e-3 at", "largest gap"].map(String::from).to_vec()];
+    let mut table = vec![["", "pair", "verdict", "1e-6 after", "1e-3 after", "largest gap"].map(String::from).to_vec()];
     let (label, plotted) = (|i: usize| short_label(comparison, i), plotted(comparison));
     let principal = |p: &&Pair| [CHETAEV, VAKONOMIC].contains(&comparison.runs[p.first].choice.formulation);
     let (shown, others): (Vec<&Pair>, Vec<&Pair>) = rows(comparison).partition(principal);
@@ -71,7 +71,7 @@ fn pairs(comparison: &Comparison) -> String {
         let letter = plotted.iter().position(|p| (p.first, p.second) == (pair.first, pair.second));
         let letter = letter.and_then(|i| ('a'..='z').nth(i)).map_or(String::new(), String::from);
         let names = format!("{} – {}", label(pair.first), label(pair.second));
-        let [first, second, _] = pair.gap.passes.map(or_dash);
+        let [first, second, _] = pair.gap.passes.map(|t| or_dash(t.map(|t| pair.gap.after(t))));
         let seen = pair.gap.verdict != Verdict::Different || pair.gap.certain_from.is_some();
         let verdict = if seen { pair.gap.verdict.word() } else { "different (proved)" };
         let largest = if seen { short(pair.gap.largest) } else { format!("< {}", short(pair.gap.bound())) };

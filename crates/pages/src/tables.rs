@@ -17,7 +17,7 @@ pub fn verdict_words(gap: &deltaq::Gap) -> String {
     match &gap.verdict {
         Verdict::Same => "same".into(),
         Verdict::Different => match gap.passes[0] {
-            Some(t) => format!("**different**, 1e-6 at {} s", short(t)),
+            Some(t) => format!("**different**, 1e-6 after {} s", short(gap.after(t))),
             None if gap.certain_from.is_none() => format!("**different**: proved; {}", unseen(gap)),
             None => format!("**different**, by at most {}", short(gap.largest)),
         },
@@ -49,7 +49,7 @@ pub(crate) fn runs(comparison: &Comparison) -> Table {
                     _ => String::new(),
                 };
                 let ended = match &motion.ending {
-                    Ending::Completed => format!("{} s", short(motion.end())),
+                    Ending::Completed => format!("{} s", short(motion.end() - motion.start())),
                     Ending::Stopped { t, cause } => format!("stopped at {} s: {cause}", precise(*t)),
                 };
                 let chart = |c: &ChartChange| format!("; by {} from {} s on", c.by, precise(c.t));
@@ -79,7 +79,7 @@ pub(crate) fn pairs(comparison: &Comparison) -> Table {
             .zip(&pair.gap.largest_by_coordinate)
             .map(|(c, d)| format!("{} {}", c.name, short(*d)))
             .collect();
-        let [a, b, c] = pair.gap.passes.map(or_dash);
+        let [a, b, c] = pair.gap.passes.map(|t| or_dash(t.map(|t| pair.gap.after(t))));
         let verdict = match &pair.gap.verdict {
             Verdict::Same => "same".to_string(),
             Verdict::Different if pair.gap.certain_from.is_none() => {

@@ -8,7 +8,7 @@ use std::hash::{Hash, Hasher};
 /// Integers up to here are exact in `f64`, so a quotient of two of them is rounded once.
 const EXACT_IN_F64: i64 = 1 << 53;
 
-/// Decimals with up to this number of digits are exact.
+/// Floats are exact whose shortest decimal has up to this number of digits.
 const DIGITS: usize = 15;
 
 /// The π of `f64` as a quotient of two primes, off by 4e-18: so it differs from every number that is written
@@ -138,8 +138,17 @@ impl Rational {
         self.root(exponent.denominator())?.powi(exponent.numerator())
     }
 
+    /// Rounded once.
     pub(crate) fn to_f64(self) -> f64 {
-        self.numerator() as f64 / self.denominator() as f64
+        let (n, d) = (self.numerator(), self.denominator());
+        if n.abs().max(d) <= EXACT_IN_F64 {
+            return n as f64 / d as f64;
+        }
+        // a quotient of at least 64 digits, in whose last one all that is left counts
+        let shift = 127 - u32::min(127, 128 - u128::from(n.unsigned_abs()).leading_zeros());
+        let (above, below) = (u128::from(n.unsigned_abs()) << shift, d as u128);
+        let quotient = above / below | u128::from(above % below != 0);
+        quotient as f64 * f64::from(-(shift as i32)).exp2() * n.signum() as f64
     }
 }
 
@@ -216,7 +225,7 @@ impl Number {
         exact_decimal(&format!("{x:e}")).filter(|n| n.to_f64() == x).unwrap_or(Number::Float(x))
     }
 
-    /// A decimal literal such as `9.81` or `1e-3`; `None` where it is beyond the range of `f64`.
+    /// A decimal literal such as `9.81` or `1e-3`, exact where it fits; `None` beyond the range of `f64`.
     ///
     /// The digits before `e-0` are those of a float that was rounded, as it is printed.
     pub(crate) fn from_decimal(literal: &str) -> Option<Self> {
@@ -224,7 +233,8 @@ impl Number {
         let x: f64 = literal.parse().ok()?;
         let mantissa = literal.split(['e', 'E']).next().unwrap_or(literal);
         let lost = x == 0.0 && mantissa.bytes().any(|c| matches!(c, b'1'..=b'9'));
-        (x.is_finite() && !lost).then(|| exact_decimal(literal).filter(|_| !rounded).unwrap_or(Self::rounded(x)))
+        let exact = || Fraction::decimal(literal).and_then(Self::of).filter(|_| !rounded);
+        (x.is_finite() && !lost).then(|| exact().unwrap_or(Self::rounded(x)))
     }
 
     pub(crate) fn to_f64(self) -> f64 {

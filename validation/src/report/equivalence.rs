@@ -119,6 +119,7 @@ impl Found {
         // round-off is not printed
         let point = set.point.iter().map(|&c| short(if c.abs() < 1e-6 { 0.0 } else { c })).collect();
         let what = of_rank(rank, set.point.len());
+        let how = how + regular(&what, membership);
         let point = if what == "one" { format!(", $\\mu_0 = {}$", vector(point)) } else { String::new() };
         Found { what, how: how + &point }
     }
@@ -136,7 +137,8 @@ impl Found {
                     format!("{how}, `{}`", vector(section.expressions.clone()))
                 };
                 let how = section.as_ref().map_or(SETTLED.into(), identity);
-                Found { what: of_rank(*rank, membership.decision.constants.len()), how }
+                let what = of_rank(*rank, membership.decision.constants.len());
+                Found { how: how + regular(&what, membership), what }
             }
             (Finding::NotApplicable(reason), ..) => Found::new("open", reason.clone()),
             (Finding::ThroughOrder { .. }, ..) => Found::new("open", "ranks did not settle"),
@@ -177,6 +179,11 @@ fn of_rank(rank: usize, constants: usize) -> String {
         d if d == constants => "every one".into(),
         d => format!("dimension {d}"),
     }
+}
+
+/// What has to be said of *every one*.
+fn regular(what: &str, membership: &Membership) -> &'static str {
+    if membership.where_regular && what == "every one" { ", with regular equations" } else { "" }
 }
 
 #[derive(Deserialize)]

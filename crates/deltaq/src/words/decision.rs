@@ -60,6 +60,7 @@ fn constants(membership: &Membership, c: &str) -> String {
             format!("{c} of a set of dimension {ranked} by ranks, {d} in numbers, through ({})", point.join(", "))
         }
         (0, _) => format!("{c} = ({})", point.join(", ")),
+        (d, _) if d == all && membership.where_regular => format!("every {c} with regular equations"),
         (d, _) if d == all => format!("every {c}"),
         (d, _) => format!("every {c} of a set of dimension {d} through ({})", point.join(", ")),
     }
@@ -71,8 +72,11 @@ fn reason(membership: &Membership) -> String {
         return format!("two results contradict each other: {contradiction}");
     }
     let decision = &membership.decision;
-    let part = short(decision.least / decision.acceleration);
-    let mismatch = format!("the least mismatch of accelerations is {part} times the motion's own");
+    let mismatch = match decision.least / decision.acceleration {
+        part if part.is_finite() => format!("{} times the motion's own", short(part)),
+        _ => short(decision.least),
+    };
+    let mismatch = format!("the least mismatch of accelerations is {mismatch}");
     match membership.answer() {
         Answer::NoneProved { order } => format!("proved (order {order}); {mismatch}"),
         Answer::None { unproved } => {

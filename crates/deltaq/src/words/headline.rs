@@ -137,7 +137,7 @@ fn how_different(comparison: &Comparison, gap: &Gap) -> String {
     }
     let largest = short(gap.largest);
     if let Some(t) = gap.passes[1] {
-        return format!("1e-3 apart after {} s, largest gap {largest}", short(t));
+        return format!("1e-3 apart after {} s, largest gap {largest}", short(gap.after(t)));
     }
     if gap.shows() {
         return format!("apart by less than 1e-3, largest gap {largest}");
@@ -151,14 +151,16 @@ fn how_different(comparison: &Comparison, gap: &Gap) -> String {
 /// The measured bound for two motions that are proved to differ, but differ by no more than their errors.
 pub fn unseen(gap: &Gap) -> String {
     match gap.bound() {
-        bound if bound.is_finite() => format!("by less than {} up to {} s: measured", short(bound), short(gap.end)),
+        bound if bound.is_finite() => {
+            format!("by less than {} up to {} s: measured", short(bound), short(gap.after(gap.end)))
+        }
         _ => "no difference was measured".into(),
     }
 }
 
 /// Up to when pairs without a difference were compared: the earliest end.
 fn until(comparison: &Comparison) -> String {
-    let same = rows(comparison).filter(|p| p.gap.verdict == Verdict::Same).map(|p| p.gap.end);
+    let same = rows(comparison).filter(|p| p.gap.verdict == Verdict::Same).map(|p| p.gap.after(p.gap.end));
     same.min_by(f64::total_cmp).map_or(String::new(), |t| format!(" up to {} s", short(t)))
 }
 
@@ -179,7 +181,7 @@ fn alone(comparison: &Comparison, run: usize) -> String {
     let label = label(comparison, run);
     let Ok(motion) = &comparison.runs[run].outcome else { return String::new() };
     let what = if comparison.runs.len() > 1 { "Only this formulation has a motion" } else { "One motion" };
-    format!("{what}: {label}, to {} s.", precise(motion.end()))
+    format!("{what}: {label}, to {} s.", precise(motion.end() - motion.start()))
 }
 
 /// Which formulations have no motion, and why.
@@ -232,7 +234,7 @@ fn breaches(comparison: &Comparison) -> Vec<String> {
         let (mut changed, mut kept) = (Vec::new(), Vec::new());
         for (label, motion) in motions().filter(|(_, m)| m.equations.invariants.iter().any(|i| i.name == name)) {
             match motion.breaches.iter().find(|breach| breach.name == name) {
-                Some(breach) => changed.push(format!("{label} (by {})", short(breach.change))),
+                Some(breach) => changed.push(format!("{label} (by {})", short(breach.largest))),
                 None => kept.push(label.to_owned()),
             }
         }
