@@ -140,7 +140,9 @@ pub(crate) fn number_text(n: Number) -> (String, Option<String>) {
             }
         }
         // never read back as an exact number
-        Number::Float(x) if x.is_finite() && Number::from_f64(x) != n => (format!("{x}e-0"), None),
+        Number::Float(x) if x.is_finite() && Number::from_decimal(&float_text(x)) != Some(n) => {
+            (format!("{x}e-0"), None)
+        }
         Number::Float(x) => (float_text(x), None),
     }
 }

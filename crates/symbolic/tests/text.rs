@@ -246,4 +246,12 @@ fn decimals_are_numbers_as_written_and_rounded_ones_stay_rounded() {
     assert!(!g.are_exact(&[number]), "{}", g.plain(number));
     assert_eq!(parse(&g, &g.plain(number)).unwrap(), number);
     assert_ne!(rounded, number);
+    // as many digits as are written, and no two that are written alike are one
+    for (text, exact) in
+        [("1/3-0.3333333333333333", "1/30000000000000000"), ("0.1234567890123456789-0.123456789012345678", "9e-19")]
+    {
+        let e = parse(&g, text).unwrap();
+        assert!(g.are_exact(&[e]) && g.plain(e) == exact, "{text}: {}", g.plain(e));
+    }
+    assert_eq!(g.as_number(parse(&g, "0.57735026918962576451").unwrap()), "0.57735026918962576451".parse().ok());
 }

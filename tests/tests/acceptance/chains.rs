@@ -4,7 +4,7 @@ use catalogue::trailer::{self, Coordinates};
 use deltaq::{
     CHETAEV, REDUCED_CHETAEV, REDUCED_VAKONOMIC, Settings, choices, derive_at, error_estimate, setting, solve_choice,
 };
-use equations::Compiled;
+use equations::{Compiled, Plan};
 use mechanics::ConstantsRule;
 use reference::{Question, Wide, reference};
 use scene::Scene;
@@ -36,6 +36,30 @@ pub fn hanging(links: usize) -> Scene {
     text += &format!("[system]\nlagrangian = \"{}\"\nconstraints = [\"{blade}\"]\n", energies.join(" + "));
     text += &format!("[start.velocities]\n\"x'\" = 0.4\n{}[run]\nduration = 1.0\n", start.concat());
     Scene::parse("hanging", &text).unwrap_or_else(|e| panic!("{e}"))
+}
+
+/// A full block is factorized in every instant, a sparse one eliminated beforehand; either way the rates are
+/// the same.
+#[test]
+fn full_blocks_are_factorized_and_sparse_ones_eliminated() {
+    let sparse = [hanging(2), train(9, Coordinates::Minimal), super::support::scene("bicycle", &[])];
+    for (scene, is_full) in [(hanging(8), true)].into_iter().chain(sparse.map(|scene| (scene, false))) {
+        let motion = &mut chetaev(&scene);
+        let equations = motion.equations.clone();
+        let plans =
+            [Plan::choose(&equations, None), Plan::eliminated(&equations, None)].map(|plan| plan.expect("a plan"));
+        assert_eq!((plans[0].left.is_empty(), plans[1].left.is_empty()), (!is_full, true), "{}", scene.name);
+        let (t, point) = (motion.end(), motion.states_at(motion.end()).expect("readable"));
+        let [one, other] = plans.map(|plan| {
+            let mut rates = vec![0.0; point.len()];
+            let mut compiled = Compiled::with_plan(&equations, &plan).expect("compiles");
+            compiled.rates(t, &point, &mut rates).expect("regular");
+            rates
+        });
+        let size = one.iter().fold(1.0, |size: f64, x| size.max(x.abs()));
+        let off = one.iter().zip(&other).fold(0.0, |off: f64, (a, b)| off.max((a - b).abs()));
+        must(&format!("{}: rates", scene.name), off / size, 1e-11);
+    }
 }
 
 #[test]

@@ -39,8 +39,8 @@ fn compare(motion: &mut Motion) -> Option<Found> {
     }
     let inputs = |t: f64, y: &[f64]| [&[t], y, &constants].concat();
     let start = motion.start();
-    let form =
-        Plan::choose(&equations, Some(&inputs(start, &motion.states_at(start).expect("readable")))).expect("compiles");
+    let form = Plan::eliminated(&equations, Some(&inputs(start, &motion.states_at(start).expect("readable"))))
+        .expect("compiles");
     let mut chosen = Compiled::with_plan(&equations, &form).expect("compiles");
     plain.set_constants(&constants);
     chosen.set_constants(&constants);
