@@ -17,13 +17,6 @@ const STRETCHES: usize = 4;
 const STRETCH: usize = 500;
 const MOST: f64 = 0.8;
 
-/// And where `TIMES_HARD` times in a row `HARD` steps, each of which took more than `TRIES` attempts, went at
-/// that pace, and each time less far: the rates are known less well than steps of the length that the terms
-/// allow would need, and towards a singularity this gets ever worse.
-const HARD: usize = 20;
-const TRIES: usize = 3;
-const TIMES_HARD: usize = 5;
-
 /// Also stalled: at the pace of the last `LONG` attempts the rest needs as many, and that pace is below
 /// `SLOWER` of the average pace.
 const LONG: usize = 8_000;
@@ -44,12 +37,6 @@ pub struct Pace {
     many: Mark,
     stretch: Mark,
     long: Mark,
-    /// Start of the latest steps that were hard, and their number; how often there were enough, and how far
-    /// the last ones went; steps and attempts at the last look.
-    hard: Mark,
-    hard_steps: usize,
-    times_hard: (usize, f64),
-    seen: (usize, usize),
     /// Start and number of the latest consecutive windows that are too slow; the time that the first of them
     /// and the last window moved.
     slow: Mark,
@@ -63,25 +50,8 @@ pub struct Pace {
 impl Pace {
     pub fn new(start: f64, end: f64) -> Self {
         let mark = Mark { t: start, count: 0 };
-        let (stretches, first, last, ahead) = (0, 0.0, 0.0, 0.0);
-        let (many, stretch, long, hard, slow) = (mark, mark, mark, mark, mark);
-        let (hard_steps, times_hard, seen) = (0, (0, f64::INFINITY), (0, 0));
-        Pace {
-            start,
-            end,
-            many,
-            stretch,
-            long,
-            hard,
-            hard_steps,
-            times_hard,
-            seen,
-            slow,
-            stretches,
-            first,
-            last,
-            ahead,
-        }
+        let (stretches, first, last) = (0, 0.0, 0.0);
+        Pace { start, end, many: mark, stretch: mark, long: mark, slow: mark, stretches, first, last, ahead: 0.0 }
     }
 
     /// Of a run that goes on to `end`.
@@ -109,19 +79,6 @@ impl Pace {
         let endless = |count: usize, moved: f64| {
             (self.end - t).abs() / moved * count as f64 >= TO_GO.max(TIMES_ALLOWED * limit as f64)
         };
-        if steps > self.seen.0 {
-            let is_hard = attempts - self.seen.1 > TRIES;
-            (self.seen, self.hard_steps) = ((steps, attempts), if is_hard { self.hard_steps + 1 } else { 0 });
-            if self.hard_steps % HARD == 0 {
-                let (hard, moved) = since(self.hard, attempts);
-                let again = is_hard && endless(hard, moved) && moved < self.times_hard.1;
-                self.times_hard = if again { (self.times_hard.0 + 1, moved) } else { (0, f64::INFINITY) };
-                if self.times_hard.0 == TIMES_HARD {
-                    return Some((hard, moved));
-                }
-                self.hard = Mark { t, count: attempts };
-            }
-        }
         let (long, moved) = since(self.long, attempts);
         if long >= LONG {
             let pace = (t - self.start).abs() / attempts as f64;

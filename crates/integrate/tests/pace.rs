@@ -28,30 +28,6 @@ fn steps_that_shrink_without_end_creep() {
     }
 }
 
-/// Number of attempts after which a run is found to stall whose step n takes `tries` attempts.
-fn creeps_hard(end: f64, tries: impl Fn(usize) -> usize, step: impl Fn(f64, f64) -> f64) -> Option<usize> {
-    let (mut pace, mut t, mut attempts) = (Pace::new(0.0, end), 0.0, 0);
-    (1..10_000).find_map(|n| {
-        t += step(n as f64, t);
-        attempts += tries(n);
-        (t < end && pace.look(t, n, attempts, 1_000_000).is_some()).then_some(attempts)
-    })
-}
-
-#[test]
-fn steps_that_are_all_hard_creep_and_a_few_hard_ones_do_not() {
-    // the falling bicycle: from step 300 on five are rejected for each that is taken
-    let falls = |n: f64, _: f64| if n < 300.0 { 1e-2 } else { 2.4e-5 / (n - 299.0) };
-    let found = creeps_hard(20.0, |n| if n < 300 { 1 } else { 6 }, falls);
-    assert!(found.is_some_and(|attempts| attempts > 800 && attempts < 1100), "{found:?}");
-    // a narrow place: hard for 15 steps, then easy again; and hard all the time, but on its way
-    assert_eq!(creeps_hard(20.0, |n| if (100..115).contains(&n) { 30 } else { 1 }, |_, _| 2e-8), None);
-    assert_eq!(creeps_hard(20.0, |_| 8, |_, _| 1e-2), None);
-    // a narrower one, slower and slower for 80 steps: the bicycle whose front wheel is flat passes it
-    let passes = |n: f64, _: f64| if n < 80.0 { 1e-6 / (n + 1.0) } else { 1e-8 * 1.1_f64.powf(n - 80.0) };
-    assert_eq!(creeps_hard(20.0, |n| if n < 130 { 6 } else { 1 }, passes), None);
-}
-
 #[test]
 fn short_steps_and_steps_that_shrink_on_the_way_do_not() {
     // equal steps, even too many; ever faster turns, as g t/k; a layer of 1e-9 that is passed
