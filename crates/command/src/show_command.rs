@@ -127,8 +127,8 @@ pub(crate) fn run(arguments: &ShowArguments) -> Result<String> {
     Ok(text)
 }
 
-/// Whether the constraints are integrable. Ranks take far longer than brackets, and who asks for the equations
-/// of some formulations does not wait for them.
+/// Whether the constraints are integrable. Ranks take far longer than brackets, and users who ask for the
+/// equations of some formulations do not wait for them.
 fn about_integrability(scene: &Scene, by_ranks: bool) -> Result<String> {
     if by_ranks {
         return Ok(integrability(scene)?.to_string());

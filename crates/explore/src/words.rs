@@ -29,7 +29,8 @@ pub(crate) fn equations(subject: &Subject) -> Result<Value, Refused> {
     }))
 }
 
-/// The verdict, why, how sure that is, which motion a real system has; pair by pair; and which families have which motions.
+/// The verdict, why, how sure that is, which motion a real system has; pair by pair; and which families have
+/// which motions.
 pub(crate) fn decision(subject: Subject, question: &Question) -> Result<Value, Refused> {
     let Subject { scene, choices } = subject;
     let settings = settings(question);

@@ -1,8 +1,9 @@
 //! Expressions and symbols know their graph.
 //!
 //! A place in a table alone would mean something else in another graph, without a word. So the last bits of
-//! an [`Expr`] and a [`Symbol`] are a mark of the graph that made it. A clone gets a mark of its own: what was
-//! there before belongs to both, what is made later to one. Marks come round: of 63 mistakes one is missed.
+//! an [`Expr`] and a [`Symbol`] are a mark of the graph that made it. A clone gets a mark of its own: what
+//! was there before belongs to both, what is made later to one. Marks come round: of 63 mistakes one is
+//! missed.
 
 use std::hash::{Hash, Hasher};
 use std::sync::atomic::{AtomicU32, Ordering};
