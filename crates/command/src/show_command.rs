@@ -51,7 +51,7 @@ pub(crate) fn run(arguments: &ShowArguments) -> Result<String> {
         let known: Vec<&str> = known.iter().map(|own| own.name).collect();
         bail!("--formulation {}: this scene has {}", other.name, known.join(", "));
     }
-    let wanted = |own: &Formulation| asked.is_empty() || asked.iter().any(|one| *one == own);
+    let wanted = |own: &Formulation| asked.is_empty() || asked.iter().any(|one| one.name == own.name);
     let forms = forms(&scene).into_iter().filter(|choice| wanted(choice.formulation));
     let all: Vec<Choice> = choices_among(&scene, wanted).into_iter().chain(forms).collect();
     if let Some(language) = arguments.code {

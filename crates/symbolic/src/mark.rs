@@ -92,7 +92,7 @@ impl Marks {
 
     fn id(&self, place: usize) -> u32 {
         assert!(place < 1 << (32 - BITS), "fewer than 2^26 expressions");
-        (place as u32) << BITS | self.maker(place as u32)
+        ((place as u32) << BITS) | self.maker(place as u32)
     }
 
     fn maker(&self, place: u32) -> u32 {

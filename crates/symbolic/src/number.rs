@@ -147,7 +147,7 @@ impl Rational {
         // a quotient of at least 64 digits, in whose last one all that is left counts
         let shift = 127 - u32::min(127, 128 - u128::from(n.unsigned_abs()).leading_zeros());
         let (above, below) = (u128::from(n.unsigned_abs()) << shift, d as u128);
-        let quotient = above / below | u128::from(above % below != 0);
+        let quotient = (above / below) | u128::from(above % below != 0);
         quotient as f64 * f64::from(-(shift as i32)).exp2() * n.signum() as f64
     }
 }
