@@ -5,7 +5,7 @@ use decision::{
     Verdict, decide_flow,
 };
 use equations::{Derivation, Equations, Formulation};
-use mechanics::{ConstantsRule, Removal, System};
+use mechanics::{ConstantsRule, Integrability, Removal, System};
 use nalgebra::{DMatrix, DVector};
 use scene::Scene;
 use symbolic::Expr;
@@ -26,6 +26,8 @@ pub struct Membership {
     /// The least mismatch that the proved one implies, in the same unit as ρ; looked for only where the
     /// numbers show none.
     pub implied: Option<f64>,
+    /// Why every `μ₀` gives Chetaev's motion, where a theorem says so.
+    pub theorem: Option<&'static str>,
     /// Whether the set is that of the constants with regular equations ([`Family::may_be_singular`]).
     pub where_regular: bool,
 }
@@ -59,7 +61,7 @@ pub enum Answer {
 impl Membership {
     /// Whether there is a section, and that is proved.
     pub(crate) fn is_identity(&self) -> bool {
-        self.section.as_ref().is_some_and(|section| section.proved)
+        self.theorem.is_some() || self.section.as_ref().is_some_and(|section| section.proved)
     }
 
     /// The dimension of the set by ranks modulo two primes, where these grow no more.
@@ -168,10 +170,22 @@ impl<'a> Pairing<'a> {
             Finding::NotApplicable(_) if all => question.every_constant(system),
             _ => question.section(system, &exact, start)?,
         };
+        let theorem = if all && section.is_none() { self.theorem(end) } else { None };
         let unseen = refuted && decision.verdict == Verdict::Contained;
         let least = |until| question.least_by_series(system, start, until - start.t);
         let implied = unseen.then(|| least(decision.until.unwrap_or(end))).flatten();
-        Ok(Membership { decision, proof, section, implied, where_regular: self.family.may_be_singular() })
+        Ok(Membership { decision, proof, section, implied, theorem, where_regular: self.family.may_be_singular() })
+    }
+
+    /// Vakonomic motions are Chetaev's for every `μ₀` where the constraints are integrable, `f = g dh/dt` with an
+    /// invertible `g`: for `dh/dt` the equations contain `μ` in `μ̇` alone, which is −λ.
+    fn theorem(&self, end: f64) -> Option<&'static str> {
+        if self.curve.formulation != CHETAEV.name || self.family.formulation() != VAKONOMIC.name {
+            return None;
+        }
+        let integrability = mechanics::integrability(&self.scene.system.clone(), &self.scene.start, end).ok()?;
+        let is_exact = integrability == Integrability::Integrable { exact: true };
+        is_exact.then_some("the constraints are integrable")
     }
 
     /// The certificate that no constants do from the scene's start, or from one drawn at random and so from

@@ -230,3 +230,30 @@ fn a_point_of_a_sweep_has_the_answer_of_its_scene() {
     }
     assert!(reached.contains("none") && reached.contains("none proved") && late > 0, "{reached:?}, {late}");
 }
+
+/// Where the constraints are integrable a theorem says that every μ₀ gives Chetaev's motion; without this it is
+/// not named.
+#[test]
+fn theorems_prove_what_ranks_only_show() {
+    let text = |potential: &str, constraints: &str| {
+        format!(
+            "title = \"theorem\"\n[coordinates]\nx = {{ start = 0.3 }}\ny = {{ start = 0.2 }}\nz = {{ start = 0.1 }}\n\
+             [system]\nlagrangian = \"(x'^2 + 2*y'^2 + z'^2)/2 - {potential}\"\nconstraints = [{constraints}]\n\
+             [start.velocities]\n\"x'\" = 0.8\n[run]\nduration = 1\n"
+        )
+    };
+    let of = |potential: &str, constraints: &str| {
+        let scene = Scene::parse("theorem", &text(potential, constraints)).unwrap_or_else(|e| panic!("{e}"));
+        deltaq::membership(&scene, 1.0).expect("constraints").expect("decided")
+    };
+    for (constraints, theorem) in [
+        ("\"z' - y*x' - x*y'\", \"y' - x'\"", Some("the constraints are integrable")),
+        ("\"z' - y*x'\", \"y' - sin(x)*x'\"", Some("the constraints are integrable")),
+        ("\"z' - y*x'\", \"y' - z*x'\"", Some("the constraints are integrable")),
+        ("\"z' - y*x' - t\", \"y' - z*x'\"", None),
+    ] {
+        let found = of("sin(x)*y + z^2", constraints);
+        assert_eq!(found.theorem, theorem, "{constraints}");
+        assert_eq!(found.answer() == Answer::SomeProved, theorem.is_some(), "{constraints}: {:?}", found.answer());
+    }
+}

@@ -110,7 +110,7 @@ impl Found {
             (_, Answer::None { unproved }) => return Found::new("none", format!("in floating point: {unproved}")),
             (_, Answer::Undecided) => return Found::new("undecided", "round-off"),
             (Finding::Contained { rank, .. } | Finding::ThroughOrder { rank, .. }, Answer::SomeProved) => {
-                (*rank, "identity".into())
+                (*rank, membership.theorem.unwrap_or("identity").into())
             }
             (Finding::Contained { rank, .. }, _) => (*rank, SETTLED.into()),
             (Finding::ThroughOrder { rank, order }, _) => (*rank, format!("through order {order}")),
@@ -136,7 +136,7 @@ impl Found {
                     let how = if section.proved { "identity" } else { "at random starts modulo two primes" };
                     format!("{how}, `{}`", vector(section.expressions.clone()))
                 };
-                let how = section.as_ref().map_or(SETTLED.into(), identity);
+                let how = section.as_ref().map_or_else(|| membership.theorem.unwrap_or(SETTLED).into(), identity);
                 let what = of_rank(*rank, membership.decision.constants.len());
                 Found { how: how + regular(&what, membership), what }
             }

@@ -90,6 +90,9 @@ fn reason(membership: &Membership) -> String {
 
 /// What is proved where there is an identity.
 fn identity(membership: &Membership) -> String {
+    if let Some(theorem) = membership.theorem {
+        return format!("{theorem}: proved");
+    }
     let Some(section) = &membership.section else { return String::new() };
     let which = if section.every { String::new() } else { format!(", ({}),", section.expressions.join(", ")) };
     let dimension = match membership.decision.set.dimension() {
