@@ -177,8 +177,8 @@ impl<'a> Pairing<'a> {
         Ok(Membership { decision, proof, section, implied, theorem, where_regular: self.family.may_be_singular() })
     }
 
-    /// Vakonomic motions are Chetaev's for every `μ₀` where the constraints are integrable, `f = g dh/dt` with an
-    /// invertible `g`: for `dh/dt` the equations contain `μ` in `μ̇` alone, which is −λ.
+    /// Vakonomic motions are Chetaev's for every `μ₀` where the constraints are integrable, `f = g dh/dt` with
+    /// an invertible `g`: for `dh/dt` the equations contain `μ` in `μ̇` alone, which is −λ.
     fn theorem(&self, end: f64) -> Option<&'static str> {
         if self.curve.formulation != CHETAEV.name || self.family.formulation() != VAKONOMIC.name {
             return None;

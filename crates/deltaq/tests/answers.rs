@@ -231,8 +231,8 @@ fn a_point_of_a_sweep_has_the_answer_of_its_scene() {
     assert!(reached.contains("none") && reached.contains("none proved") && late > 0, "{reached:?}, {late}");
 }
 
-/// Where the constraints are integrable a theorem says that every μ₀ gives Chetaev's motion; without this it is
-/// not named.
+/// Where the constraints are integrable a theorem says that every μ₀ gives Chetaev's motion; without this it
+/// is not named.
 #[test]
 fn theorems_prove_what_ranks_only_show() {
     let text = |potential: &str, constraints: &str| {
