@@ -25,10 +25,10 @@
 //! `Q` is work on `δq` and not on `δf`: it stands beside `∂𝓛/∂q`, and `μ` is not in it.
 //!
 //! Written out, `d/dt L_v − L_q = Q + C μ − Aᵀ μ̇`, `C = f_qᵀ − Ȧᵀ`: instead of Chetaev's `Aᵀ λ`, the
-//! Euler–Lagrange derivative `C μ` of `μ·f` with `μ` held fixed, and `−μ̇` corresponds to `λ`. `C` vanishes if
-//! `f` is a total time derivative; its part on `ker A` is the curvature of the constraint, and vanishes for
-//! all integrable ones, for which the two formulations agree. `μᵢ` has the unit of action over that of
-//! `∫ fᵢ dt`.
+//! Euler–Lagrange derivative `C μ` of `μ·f` with `μ` held fixed, and `−μ̇` corresponds to `λ`. `C` vanishes
+//! if `f` is a total time derivative; its part on `ker A` is the curvature of the constraint, and vanishes
+//! for all integrable ones, for which the two formulations agree. `μᵢ` has the unit of action over that of `∫
+//! fᵢ dt`.
 //!
 //! **One instant, multiplier form** ([`derive()`]). In the state `(q, v, μ)`, linear in `(a, μ̇)`:
 //!
@@ -45,8 +45,8 @@
 //!
 //! Without `Q` these are Hamilton's equations of `H(q, p, t)` = stationary value of `p·v − L` over `v` with
 //! `f = 0`. The constraint holds at every instant, not only by its derivative. For `L` a kinetic energy that
-//! is definite on `ker A`, and `f` linear and autonomous, the motions are the normal sub-Riemannian geodesics.
-//! The two forms are derived differently and have to agree.
+//! is definite on `ker A`, and `f` linear and autonomous, the motions are the normal sub-Riemannian
+//! geodesics. The two forms are derived differently and have to agree.
 //!
 //! **What the motion depends on.** `(q₀, v₀)` *and* `μ₀ ∈ Rʰ`: one start, an `h`-parameter family of motions.
 //!

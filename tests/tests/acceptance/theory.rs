@@ -39,7 +39,8 @@ fn x_at_2(motion: &mut Motion) -> f64 {
     at(motion, 2.0).coordinates[0]
 }
 
-/// Theorem 4(d) and Proposition 2: `P(t₀) = 0` and `P(t₁) = 0` see `dF/dt`, and nothing sees `φ·f` but Chetaev.
+/// Theorem 4(d) and Proposition 2: `P(t₀) = 0` and `P(t₁) = 0` see `dF/dt`, and nothing sees `φ·f` but
+/// Chetaev.
 #[test]
 fn removal_sees_the_gauge_of_l() {
     let (plain, gauge) = (sledge_with(""), sledge_with("+ 0.7*x'"));
@@ -120,7 +121,8 @@ fn derivative_of_constraint(scene: &Scene, motion: &mut Motion, t: f64) -> [Vect
     [Vector3::from_iterator(by_place.iter().copied()) - rate, row(motion, t)]
 }
 
-/// Theorem 3(i): an integrable constraint that is no total derivative has `C ≠ 0`, no curvature, and one motion.
+/// Theorem 3(i): an integrable constraint that is no total derivative has `C ≠ 0`, no curvature, and one
+/// motion.
 #[test]
 fn a_factor_gives_c_but_no_curvature() {
     let lagrangian = "(x'^2 + y'^2 + z'^2)/2 - x*y + z/3";
@@ -172,7 +174,8 @@ fn the_gap_begins_with_the_projector_at_the_multiplier() {
     must_exceed("measured: off the other", (measured - at_zero).abs(), 2e-3);
 }
 
-/// Theorem 10: `(κ)` and `(ε)` are `O(ε²)` apart for `μ₀ = 0`, `O(ε)` for a fixed `μ₀`, unless the start is kicked.
+/// Theorem 10: `(κ)` and `(ε)` are `O(ε²)` apart for `μ₀ = 0`, `O(ε)` for a fixed `μ₀`, unless the start is
+/// kicked.
 #[test]
 fn a_multiplier_at_the_start_kicks() {
     let apart = |kappa: f64, mu0: f64, kicked: bool| {
