@@ -23,7 +23,7 @@ html_show_copyright = False
 
 
 # letters that MathML has as characters of their own
-SCRIPT = {"L": "ℒ", "H": "ℋ"}
+SCRIPT = {"E": "ℰ", "H": "ℋ", "L": "ℒ", "S": "𝒮"}
 
 
 def mathml(text, display):

@@ -7,10 +7,11 @@
 //! x = (v_free, c) ∈ Rᵏ ,   q_i(t₁; x) = q₁_i   for k coordinates i.
 //! ```
 //!
-//! That is how vakonomic motions are meant, for which k = n: the action is stationary among the curves
-//! between two points that keep the constraints. From each of several starts goes a search by Levenberg and
-//! Marquardt with exact Jacobians `∂q(t₁)/∂x`, integrated with the motion. There may be several motions, of
-//! different action; what was found is all that is known.
+//! That is how vakonomic motions are meant, for which k = n: their action is stationary among the curves
+//! between two points that keep the constraints. Curves with an abnormal lift may be so without multipliers,
+//! and are not found (Proposition 12 of `docs/theory.md`). From each of several starts goes a search by
+//! Levenberg and Marquardt with exact Jacobians `∂q(t₁)/∂x`, integrated with the motion. There may be several
+//! motions, of different action; what was found is all that is known.
 //!
 //! A time t is conjugate to t₀ if `det ∂q(t)/∂x = 0`: neighbouring motions from q(t₀) meet there to first
 //! order. A vakonomic motion without one before t₁ or at it is a local minimum of the action for L convex in

@@ -2,11 +2,14 @@
 //!
 //! Given: coordinates `q ∈ Rⁿ`, a Lagrangian `L(q, v, t)`, constraints `f(q, v, t) = 0 ∈ Rʰ`, forces `Q`, and
 //! two small numbers: `ε`, the parameter `epsilon`, a time of either sign, and `1/N`, the parameter `slip`.
-//! One that is not given is zero. `A = ∂f/∂v` (h×n), and the curvature of the constraint is
+//! One that is not given is zero. `A = ∂f/∂v` (h×n), and
 //!
 //! ```text
 //! C = (∂f/∂q)ᵀ − Ȧᵀ          n×h ,    Ȧ along the motion.
 //! ```
+//!
+//! `C λ` is the Euler–Lagrange derivative of `λ·f` with `λ` held fixed; its part on `ker A` is the curvature
+//! of the constraint.
 //!
 //! **The equations.** With the multipliers `λ ∈ Rʰ` of Chetaev's reaction
 //!
@@ -16,10 +19,12 @@
 //!
 //! `ε = 0` and `1/N = 0` is Chetaev.
 //!
-//! **Where ε comes from.** With `λ := −(κ μ + μ̇)` the equations of the family `kappa` are
-//! `d/dt ∂L/∂v − ∂L/∂q = Q + Aᵀ λ + C μ`. After the time 1/κ, `μ = −λ/κ + O(1/κ²)`; only `ε = 1/κ` remains.
-//! So `−ε C λ` is the first-order vakonomic term in Chetaev's equations. It needs no start `μ₀`, and Chetaev,
-//! a limit of the family, is the inner point ε = 0 here, so that ε can be estimated.
+//! **Where ε comes from.** With `λ := −(κ μ + μ̇)` the equations of the family `kappa` are `d/dt ∂L/∂v −
+//! ∂L/∂q = Q + Aᵀ λ + C μ`. After the time 1/κ, `μ = −λ/κ + O(1/κ²)`; only `ε = 1/κ` remains. So `−ε C λ` is
+//! the first-order vakonomic term in Chetaev's equations. Chetaev, a limit of the family, is the inner point
+//! ε = 0 here, so that ε can be estimated. For `f` affine in `v` the law differs from the family by `O(ε²)`
+//! if `μ₀ = O(ε)`, and then needs no `μ₀`. A fixed `μ₀ ≠ 0` kicks the start within the time 1/κ: the law has
+//! to begin at `v₀ + ε Π C μ₀`, else it is `O(ε)` off (Theorem 10 of `docs/theory.md`).
 //!
 //! **Where slip comes from.** A contact of viscosity `N` keeps the constraint by the force `−N Aᵀ f`: that is
 //! `Aᵀ λ` where `f = −λ/N`. The constraint holds only up to slip (creep).
@@ -57,7 +62,8 @@ pub const FORMULATION: Formulation = Formulation {
     derive,
 };
 
-/// The curvature `C = (∂f/∂q)ᵀ − Ȧᵀ`, applied to `multipliers`: n components, in `(q, v, a, t)`.
+/// The Euler–Lagrange derivative `C μ` of `μ·f`, `C = (∂f/∂q)ᵀ − Ȧᵀ`, with `multipliers` `μ` held fixed: n
+/// components, in `(q, v, a, t)`.
 pub fn curvature(system: &System, multipliers: &[Expr]) -> Vec<Expr> {
     let g = &system.graph;
     let flow = system.flow();

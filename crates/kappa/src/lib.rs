@@ -9,8 +9,11 @@
 //! d/dt ∂𝓛/∂v − ∂𝓛/∂q = Q − κ Aᵀ μ ,        f(q, v, t) = 0 .
 //! ```
 //!
-//! `κ = 0` is vakonomic. As `κ → ∞` the motion tends to Chetaev's, with the error 1/κ: `μ` goes to `−λ/κ`
-//! within the time 1/κ, and what is left of the right-hand side is `Aᵀ λ`.
+//! `κ = 0` is vakonomic. As `κ → ∞` the motion tends to Chetaev's, with the error 1/κ, if the start is
+//! regular at `s μ₀` for all `0 ≤ s ≤ 1` (the matrix below is invertible with `s μ₀` instead of `μ`): `μ`
+//! runs along `s μ₀` to `−λ/κ` within the time 1/κ, and what is left of the right-hand side is `Aᵀ λ`. For
+//! `f` affine in `v` the matrix does not depend on `μ`. The Appell–Hamel system with `μ₀ > m/(2a²)` ends at
+//! `t ≈ ln(2a²μ₀/m)/κ` instead, however large `κ` is. Proof: Theorem 9 of `docs/theory.md`.
 //!
 //! **What it is for.** A constraint kept by large added mass `½ N f·f` *and* large viscous friction `−κ N Aᵀ
 //! f` leads, as `N → ∞`, to neither of the two but to this: `μ = lim N f`. Friction over mass is `κ`.

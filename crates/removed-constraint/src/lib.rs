@@ -32,7 +32,9 @@
 //! `−P(t₁)·δw(t₁)`, `δu` the first. A force on a position that contains `u̇` does work on `δu̇`: it goes with
 //! the momentum.) The paper's (34) and (35) are contained: their integration constants `Cᵢ` are `Pᵢ(t₀)`.
 //! A motion has to choose one of three: *given*, *zero at the start* `P(t₀) = 0`, or *natural at a horizon*
-//! `P(t₁) = 0`, which is what the principle itself asks for: the motion at `t` then depends on `t₁`.
+//! `P(t₁) = 0`, which is what the principle itself asks for: the motion at `t` then depends on `t₁`. The last
+//! two depend on more than the equations of motion without constraint: `L + dF(q, t)/dt` takes `P` to
+//! `P − F_w`, so other motions have `P = 0` (`docs/removal.md`).
 //!
 //! **One instant, L of first order.** State `(u, u̇, w, P)`, linear in the unknown `ü`:
 //!
@@ -46,7 +48,9 @@
 //! [`DerivationError::SingularHighestHessian`]: also where `ü` is in `Q_u`, `Q_u̇`, `Q_w` alone.
 //!
 //! **What the motion depends on.** On `(q₀, v₀)`, on the constants `P(t₀)` or the horizon, *and on the choice
-//! of `u`*: other parametrizations of the same constraint may give another family of motions.
+//! of `u`*: coordinates give the vakonomic family. Quasi-velocities `u̇ = θ(q, v, t)` give the union over `c
+//! = G_u̇` of the vakonomic families of `L − c·θ`. Every removal contains the vakonomic family (Theorem 4 of
+//! `docs/theory.md`, for `Q = 0` and `B` without `ü`).
 //!
 //! **What stays constant.** `u̇·G_u̇ − G` (with `ü`: `u̇·p + ü·G_ü − G`) when nothing depends on time and no
 //! force acts: its rate is `Q·q̇`. `G_u̇ + Q_u̇` (or `p`) of a parameter with `G_u + Q_u = 0`.

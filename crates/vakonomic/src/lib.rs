@@ -1,15 +1,18 @@
-//! # The vakonomic formulation (stationary action among the curves that satisfy the constraint)
+//! # The vakonomic formulation (stationary action under the linearized constraint)
 //!
 //! Given are coordinates `q ∈ Rⁿ`, a Lagrangian `L(q, v, t)` with `v = q̇` and constraints
 //! `f(q, v, t) = 0 ∈ Rʰ`. Write `A = ∂f/∂v` (h×n).
 //!
-//! **The principle.** Among all curves with fixed ends that satisfy the constraint, the motion makes the
-//! action stationary; generalized forces `Q(q, v, t)`, where there are any, act by virtual work. Varied
-//! curves satisfy the constraint too, so to first order
+//! **The principle.** The motion makes the action stationary for variations that keep the constraint to first
+//! order; generalized forces `Q(q, v, t)`, where there are any, act by virtual work:
 //!
 //! ```text
 //! ∫ (δL + Q·δq) dt = 0     for all δq with   f_v δq̇ + f_q δq = 0 ,   δq = 0 at both ends.
 //! ```
+//!
+//! Such a motion is stationary among the curves with these ends that satisfy the constraint exactly. The
+//! converse is false in general: it holds for curves without an abnormal lift (Proposition 12 of
+//! `docs/theory.md`, where a strict minimum has no multiplier).
 //!
 //! **The equations.** Multipliers `μ(t) ∈ Rʰ` take the constraint into the Lagrangian, `𝓛 = L + μ·f`. On
 //! admissible `δq` the term `μ·δf` adds nothing, so `∫ (δ𝓛 + Q·δq) dt = 0`; by parts, with `μ` such that the
@@ -21,10 +24,11 @@
 //!
 //! `Q` is work on `δq` and not on `δf`: it stands beside `∂𝓛/∂q`, and `μ` is not in it.
 //!
-//! Written out, `d/dt L_v − L_q = Q + (f_qᵀ − Ȧᵀ) μ − Aᵀ μ̇`: where Chetaev's `Aᵀ λ` stood, the *curvature*
-//! `f_qᵀ − Ȧᵀ` of the constraint enters too, and `−μ̇` corresponds to `λ`. The curvature vanishes where `f`
-//! is a total time derivative; for all integrable constraints the two formulations agree. `μᵢ` has the unit
-//! of action over that of `∫ fᵢ dt`.
+//! Written out, `d/dt L_v − L_q = Q + C μ − Aᵀ μ̇`, `C = f_qᵀ − Ȧᵀ`: instead of Chetaev's `Aᵀ λ`, the
+//! Euler–Lagrange derivative `C μ` of `μ·f` with `μ` held fixed, and `−μ̇` corresponds to `λ`. `C` vanishes
+//! if `f` is a total time derivative; its part on `ker A` is the curvature of the constraint, and vanishes
+//! for all integrable ones, for which the two formulations agree. `μᵢ` has the unit of action over that of `∫
+//! fᵢ dt`.
 //!
 //! **One instant, multiplier form** ([`derive()`]). In the state `(q, v, μ)`, linear in `(a, μ̇)`:
 //!
@@ -40,9 +44,9 @@
 //! ```
 //!
 //! Without `Q` these are Hamilton's equations of `H(q, p, t)` = stationary value of `p·v − L` over `v` with
-//! `f = 0`. The constraint holds at every instant, not only by its derivative. For `L` kinetic energy the
-//! motions are the normal sub-Riemannian geodesics. The two forms are derived differently and have to
-//! agree.
+//! `f = 0`. The constraint holds at every instant, not only by its derivative. For `L` a kinetic energy that
+//! is definite on `ker A`, and `f` linear and autonomous, the motions are the normal sub-Riemannian
+//! geodesics. The two forms are derived differently and have to agree.
 //!
 //! **What the motion depends on.** `(q₀, v₀)` *and* `μ₀ ∈ Rʰ`: one start, an `h`-parameter family of motions.
 //!

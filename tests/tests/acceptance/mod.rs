@@ -22,4 +22,5 @@ mod second_rates;
 mod sensitivities;
 mod support;
 mod taylor;
+mod theory;
 mod vectors;
