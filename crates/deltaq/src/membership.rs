@@ -178,7 +178,7 @@ impl<'a> Pairing<'a> {
     }
 
     /// Vakonomic motions are Chetaev's for every `μ₀` where the constraints are integrable, `f = g dh/dt` with
-    /// an invertible `g`: for `dh/dt` the equations contain `μ` in `μ̇` alone, which is −λ.
+    /// an invertible `g` (theorem 3). For `dh/dt` the equations contain `μ` as a rate only, which is −λ.
     fn theorem(&self, end: f64) -> Option<&'static str> {
         if self.curve.formulation != CHETAEV.name || self.family.formulation() != VAKONOMIC.name {
             return None;
