@@ -28,8 +28,8 @@ pub struct Growth {
 /// Leading term of the difference of two motions with one start: `coefficient · (t − t₀)^exponent` (T5).
 ///
 /// `y_k / ((k+1)(k+2))` where the difference of their accelerations along one starts with `y_k (t − t₀)^k`.
-/// Chetaev to vakonomic: `½ Π C μ₀ t²`, `Π` at `μ₀` if `f` is not affine in `v`, and `−⅙ Π C λ₀ t³` for `μ₀ =
-/// 0`.
+/// Chetaev to vakonomic: `½ Π C μ₀ t²`, `Π` at `μ₀` if `f` is not affine in `v`, and
+/// `−⅙ Π C λ₀ t³` for `μ₀ = 0`.
 #[derive(Clone, Debug)]
 pub struct LeadingTerm {
     /// `k + 2`.

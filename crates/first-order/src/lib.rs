@@ -19,12 +19,12 @@
 //!
 //! `ε = 0` and `1/N = 0` is Chetaev.
 //!
-//! **Where ε comes from.** With `λ := −(κ μ + μ̇)` the equations of the family `kappa` are `d/dt ∂L/∂v −
-//! ∂L/∂q = Q + Aᵀ λ + C μ`. After the time 1/κ, `μ = −λ/κ + O(1/κ²)`; only `ε = 1/κ` remains. So `−ε C λ` is
-//! the first-order vakonomic term in Chetaev's equations. Chetaev, a limit of the family, is the inner point
-//! ε = 0 here, so that ε can be estimated. For `f` affine in `v` the law differs from the family by `O(ε²)`
-//! if `μ₀ = O(ε)`, and then needs no `μ₀`. A fixed `μ₀ ≠ 0` kicks the start within the time 1/κ: the law has
-//! to begin at `v₀ + ε Π C μ₀`, else it is `O(ε)` off (Theorem 10 of `docs/theory.md`).
+//! **Where ε comes from.** With `λ := −(κ μ + μ̇)` the equations of the family `kappa` are
+//! `d/dt ∂L/∂v − ∂L/∂q = Q + Aᵀ λ + C μ`. After the time 1/κ, `μ = −λ/κ + O(1/κ²)`; only `ε = 1/κ` remains.
+//! So `−ε C λ` is the first-order vakonomic term in Chetaev's equations. Chetaev, a limit of the family, is
+//! the inner point ε = 0 here, so that ε can be estimated. For `f` affine in `v` the law differs from the
+//! family by `O(ε²)` if `μ₀ = O(ε)`, and then needs no `μ₀`. A fixed `μ₀ ≠ 0` kicks the start within the time
+//! 1/κ: the law has to begin at `v₀ + ε Π C μ₀`, else it is `O(ε)` off (Theorem 10 of `docs/theory.md`).
 //!
 //! **Where slip comes from.** A contact of viscosity `N` keeps the constraint by the force `−N Aᵀ f`: that is
 //! `Aᵀ λ` where `f = −λ/N`. The constraint holds only up to slip (creep).

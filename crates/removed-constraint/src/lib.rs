@@ -48,9 +48,9 @@
 //! [`DerivationError::SingularHighestHessian`]: also where `ü` is in `Q_u`, `Q_u̇`, `Q_w` alone.
 //!
 //! **What the motion depends on.** On `(q₀, v₀)`, on the constants `P(t₀)` or the horizon, *and on the choice
-//! of `u`*: coordinates give the vakonomic family. Quasi-velocities `u̇ = θ(q, v, t)` give the union over `c
-//! = G_u̇` of the vakonomic families of `L − c·θ`. Every removal contains the vakonomic family (Theorem 4 of
-//! `docs/theory.md`, for `Q = 0` and `B` without `ü`).
+//! of `u`*: coordinates give the vakonomic family. Quasi-velocities `u̇ = θ(q, v, t)` give the union over
+//! `c = G_u̇` of the vakonomic families of `L − c·θ`. Every removal contains the vakonomic family (Theorem 4
+//! of `docs/theory.md`, for `Q = 0` and `B` without `ü`).
 //!
 //! **What stays constant.** `u̇·G_u̇ − G` (with `ü`: `u̇·p + ü·G_ü − G`) when nothing depends on time and no
 //! force acts: its rate is `Q·q̇`. `G_u̇ + Q_u̇` (or `p`) of a parameter with `G_u + Q_u = 0`.

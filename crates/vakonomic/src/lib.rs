@@ -27,8 +27,8 @@
 //! Written out, `d/dt L_v − L_q = Q + C μ − Aᵀ μ̇`, `C = f_qᵀ − Ȧᵀ`: instead of Chetaev's `Aᵀ λ`, the
 //! Euler–Lagrange derivative `C μ` of `μ·f` with `μ` held fixed, and `−μ̇` corresponds to `λ`. `C` vanishes
 //! if `f` is a total time derivative; its part on `ker A` is the curvature of the constraint, and vanishes
-//! for all integrable ones, for which the two formulations agree. `μᵢ` has the unit of action over that of `∫
-//! fᵢ dt`.
+//! for all integrable ones, for which the two formulations agree. `μᵢ` has the unit of action over that of
+//! `∫ fᵢ dt`.
 //!
 //! **One instant, multiplier form** ([`derive()`]). In the state `(q, v, μ)`, linear in `(a, μ̇)`:
 //!

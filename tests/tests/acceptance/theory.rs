@@ -146,11 +146,11 @@ fn a_factor_gives_c_but_no_curvature() {
 fn the_gap_begins_with_the_projector_at_the_multiplier() {
     let own = particle(0.2, "(x'^2 + y'^2 + z'^2)/2 - x*y", "z' - x'^2/2 - y*x'");
     let (x, y, vx, vy, mu0) = (0.2, 0.3, 0.8, 0.5, 0.7);
-    let a = Vector3::new(-vx - y, 0.0, 1.0);
-    let force = Vector3::new(-y, -x, 0.0);
+    let a: Vector3<f64> = Vector3::new(-vx - y, 0.0, 1.0);
+    let force: Vector3<f64> = Vector3::new(-y, -x, 0.0);
     // A a = x'y' with a = force + Aᵀλ
-    let lambda = (vx * vy - a.dot(&force)) / a.norm_squared();
-    let acceleration = force + a * lambda;
+    let lambda: f64 = (vx * vy - a.dot(&force)) / a.norm_squared();
+    let acceleration: Vector3<f64> = force + a * lambda;
     let c = Vector3::new(acceleration.x + vy, -vx, 0.0);
     let predicted = |hessian: Matrix3<f64>| {
         let n = DMatrix::from_column_slice(3, 2, &[1.0, 0.0, vx + y, 0.0, 1.0, 0.0]);
