@@ -177,8 +177,8 @@ impl<'a> Pairing<'a> {
         Ok(Membership { decision, proof, section, implied, theorem, where_regular: self.family.may_be_singular() })
     }
 
-    /// Vakonomic motions are Chetaev's for every `μ₀` where the constraints are integrable, `f = g dh/dt` with
-    /// an invertible `g` (theorem 3). For `dh/dt` the equations contain `μ` as a rate only, which is −λ.
+    /// Vakonomic motions are Chetaev's for every `μ₀` where the constraints are integrable (theorem 3):
+    /// `f = g dh/dt` with an invertible `g`, and for `dh/dt` the equations contain `μ` as a rate only, `−λ`.
     fn theorem(&self, end: f64) -> Option<&'static str> {
         if self.curve.formulation != CHETAEV.name || self.family.formulation() != VAKONOMIC.name {
             return None;
