@@ -141,6 +141,38 @@ fn a_factor_gives_c_but_no_curvature() {
     must_exceed("Chetaev and vakonomic, μ₀ = 0.9", gap(&mut plain, &mut vakonomic(&curved, &[0.9])).0, 1e-3);
 }
 
+/// Theorem 3(iii): of one integrable and one nonintegrable constraint, the multiplier of the first does
+/// nothing.
+#[test]
+fn a_multiplier_of_an_integrable_part_does_nothing() {
+    let text = "title = \"partly integrable\"\n[coordinates]\nx = { start = 0.5 }\ny = { start = 0.3 }\n\
+                z = { start = 0 }\nw = { start = 0 }\n[system]\n\
+                lagrangian = \"(x'^2 + y'^2 + z'^2 + w'^2)/2 + x - w*z\"\n\
+                constraints = [\"z' - x*y' - y*x'\", \"w' - y*x'\"]\n\
+                [start.velocities]\n\"x'\" = 0.4\n\"y'\" = 0.2\n[run]\nduration = 1.5\n";
+    let own = Scene::parse("partly", text).unwrap_or_else(|e| panic!("{e}"));
+    let mut zero = vakonomic(&own, &[0.0, 0.0]);
+    must("μ₀ = (0.9, 0) and 0", gap(&mut zero, &mut vakonomic(&own, &[0.9, 0.0])).0, 1e-9);
+    must_exceed("μ₀ = (0, 0.9) and 0", gap(&mut zero, &mut vakonomic(&own, &[0.0, 0.9])).0, 1e-3);
+}
+
+/// Theorem 3(iv): with one velocity left free, linear autonomous constraints admit one motion.
+#[test]
+fn one_free_velocity_leaves_one_motion() {
+    let of = |second: &str| {
+        let text = format!(
+            "title = \"one free velocity\"\n[coordinates]\nx = {{ start = 0.5 }}\ny = {{ start = 0.3 }}\n\
+             z = {{ start = 0.4 }}\n[system]\nlagrangian = \"(x'^2 + y'^2 + z'^2)/2 + x - y*z\"\n\
+             constraints = [\"z' - y*x'\", \"{second}\"]\n[start.velocities]\n\"x'\" = 0.4\n\
+             [run]\nduration = 1\n"
+        );
+        Scene::parse("one-free", &text).unwrap_or_else(|e| panic!("{e}"))
+    };
+    let apart = |scene: Scene| gap(&mut chetaev(&scene), &mut vakonomic(&scene, &[0.9, -0.4])).0;
+    must("linear, autonomous", apart(of("y' - z*x'")), 1e-9);
+    must_exceed("affine", apart(of("y' - z*x' - x")), 1e-3);
+}
+
 /// Theorem 5: for `f` nonlinear in `v` the coefficient needs `Π` at `μ₀`.
 #[test]
 fn the_gap_begins_with_the_projector_at_the_multiplier() {
