@@ -22,7 +22,7 @@ use crate::cli::{Format, FreeArguments, Limits, MotionArguments, SolveArguments}
 use crate::columns::{Columns, MOST_NUMBERS, derivative_row, error_row, header, named_columns, row};
 use deltaq::Stepping;
 use program::parallel;
-use program::{Answer, pretty};
+use program::{Answer, complain, pretty};
 
 /// Times at which invariants are sampled, less one: those of error estimates.
 const SAMPLES: usize = 200;
@@ -82,7 +82,7 @@ pub(crate) fn run(arguments: &SolveArguments, quiet: bool) -> Result<Answer> {
     }
     complaint = complaint.or_else(|| derived.as_ref()?.complaint());
     // findings about the formulation, not about its motion
-    motion.breaches.iter().filter(|_| !quiet).for_each(|breach| eprintln!("deltaq: note: {breach}"));
+    motion.breaches.iter().filter(|_| !quiet).for_each(|breach| complain(&format!("deltaq: note: {breach}")));
     let rows = reached.iter().map(|&t| motion.at(t)).collect::<Result<Vec<_>, _>>()?;
     let columns = Columns::of(&scene, &motion.equations);
     let mut program = Observables::of(&scene.system)?;

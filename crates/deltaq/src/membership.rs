@@ -59,7 +59,7 @@ pub enum Answer {
 }
 
 impl Membership {
-    /// Whether there is a section, and that is proved.
+    /// Whether a theorem, or a section that is proved, gives the constants.
     pub(crate) fn is_identity(&self) -> bool {
         self.theorem.is_some() || self.section.as_ref().is_some_and(|section| section.proved)
     }

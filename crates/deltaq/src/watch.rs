@@ -166,8 +166,10 @@ impl Watch {
         if self.are_constant(kept, terms) {
             return None;
         }
-        self.note_breaches(t, kept, invariants);
-        self.drifting(t, kept, invariants)
+        let changes = self.changes(t, kept, invariants).into_iter();
+        let (expected, certain): (Vec<_>, Vec<_>) = changes.partition(|change| self.expected.contains(&change.name));
+        self.note(expected);
+        certain.first().map(ToString::to_string)
     }
 
     fn broken(&mut self, t: f64) -> Option<String> {
@@ -197,14 +199,9 @@ impl Watch {
         residuals.iter().enumerate().find_map(over)
     }
 
-    fn drifting(&self, t: f64, kept: &Outputs, invariants: &[Named]) -> Option<String> {
-        let drifts = self.changes(t, kept, invariants);
-        drifts.into_iter().find(|drift| !self.expected.contains(&drift.name)).map(|drift| drift.to_string())
-    }
-
-    /// Notes the changes that are certain at `t` of what the user expects to be constant.
-    fn note_breaches(&mut self, t: f64, kept: &Outputs, invariants: &[Named]) {
-        for breach in self.changes(t, kept, invariants).into_iter().filter(|b| self.expected.contains(&b.name)) {
+    /// Keeps what the user expects to be constant and has changed, once.
+    fn note(&mut self, changes: Vec<Breach>) {
+        for breach in changes {
             match self.breaches.iter_mut().find(|known| known.name == breach.name) {
                 Some(known) => known.largest = known.largest.max(breach.largest),
                 None => self.breaches.push(breach),
@@ -212,6 +209,7 @@ impl Watch {
         }
     }
 
+    /// The changes that are certain at `t`.
     fn changes(&self, t: f64, kept: &Outputs, invariants: &[Named]) -> Vec<Breach> {
         let changes = subtract(&kept.invariants, &self.start.1).into_iter().map(f64::abs).enumerate();
         let certain = changes.filter_map(|(i, change)| {
