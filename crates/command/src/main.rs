@@ -27,6 +27,7 @@ mod sweep_command;
 mod watch;
 
 use std::process::ExitCode;
+use std::time::Duration;
 
 use anyhow::{Context, Result};
 use clap::CommandFactory;
@@ -40,6 +41,7 @@ fn main() -> ExitCode {
 
 fn run(cli: Cli) -> Result<Answer> {
     cli.common.use_threads();
+    symbolic::be_patient((cli.patience > 0).then(|| Duration::from_secs(cli.patience.into())));
     let quiet = cli.common.quiet;
     let text = match cli.command {
         Command::List(arguments) => show_command::list(arguments.format)?,

@@ -19,6 +19,7 @@ mod linearize_command;
 mod members;
 mod memory;
 mod output;
+mod patience;
 mod prove_command;
 mod read_back;
 mod shell;

@@ -20,6 +20,9 @@ pub enum DecisionError {
     /// The limit on steps was reached.
     #[error("the curve cannot be followed: more than {limit} steps")]
     Steps { limit: usize },
+    /// It takes longer than a question may.
+    #[error(transparent)]
+    Stopped(#[from] symbolic::Stopped),
     /// A tape could not be made.
     #[error(transparent)]
     Compile(#[from] CompileError),

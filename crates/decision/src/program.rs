@@ -1,7 +1,7 @@
 //! Evaluation of expressions in any number type. Parameters are inputs, so that exact numbers give exact
 //! values.
 
-use symbolic::{CompileError, Expr, Graph, Scalar, Symbol, Tape, Workspace};
+use symbolic::{CompileError, Expr, Graph, Scalar, Symbol, Tape, Workspace, go_on};
 
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -44,6 +44,7 @@ impl Program {
 impl<T: Scalar> Evaluator<T> {
     /// The outputs at `inputs`.
     pub fn run(&mut self, inputs: &[T]) -> &mut [T] {
+        go_on();
         self.tape.evaluate(inputs, &mut self.registers, &mut self.values);
         &mut self.values
     }

@@ -2,6 +2,7 @@
 
 use equations::Equations;
 use mechanics::{State, System};
+use symbolic::question;
 
 use crate::DecisionError;
 use crate::curve::{Dynamics, Flow};
@@ -243,6 +244,8 @@ fn is_generic(ranks: &Ranks, generic: &Finding) -> bool {
 
 /// Ranks that two fields agree on; a minor that is not zero needs one field only.
 fn agreed(ranks: impl FnMut(u64) -> Result<Ranks, String>) -> Result<Ranks, String> {
-    exact::agreed(SEEDS, ranks, |ranks| ranks.refuted().is_some_and(|none| none.full_rank))
+    let found = question(|| exact::agreed(SEEDS, ranks, |ranks| ranks.refuted().is_some_and(|none| none.full_rank)));
+    found
+        .map_err(|stopped| stopped.to_string())?
         .map_err(|fault| fault.unwrap_or_else(|| "no two fields agree on the ranks".into()))
 }

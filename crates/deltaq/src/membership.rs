@@ -154,6 +154,10 @@ impl<'a> Pairing<'a> {
     /// # Errors
     /// [`SolveError::Decision`] where the motion cannot be followed.
     pub fn decide(&self, end: f64) -> Result<Membership, SolveError> {
+        symbolic::question(|| self.decided(end)).map_err(DecisionError::from)?
+    }
+
+    fn decided(&self, end: f64) -> Result<Membership, SolveError> {
         let (system, start) = (&self.scene.system, &self.scene.start);
         let question = Question::new(system, &self.curve, &self.constants, &self.family)?;
         let exact = self.exact_start()?;

@@ -1,6 +1,7 @@
 // node build.mjs PROGRAM.wasm DELTAQ OUT.html DIGEST: one page of everything.
 
 import { execFileSync } from "node:child_process";
+import { createHash } from "node:crypto";
 import { readFileSync, writeFileSync } from "node:fs";
 import { dirname, join } from "node:path";
 import { fileURLToPath } from "node:url";
@@ -43,6 +44,9 @@ const pieces = {
   words: zipped(await bundled("words.js", { format: "esm" })),
   script: script(await bundled("main.js")),
 };
+// Of scripts only this one and what it makes run; nothing is fetched but what stands in the page.
+pieces.policy = ["default-src 'none'", `script-src 'sha256-${createHash("sha256").update(pieces.script).digest("base64")}' 'wasm-unsafe-eval' blob:`,
+  "worker-src blob:", "connect-src data:", "style-src 'unsafe-inline'", "img-src data: blob:", "font-src data:", "base-uri 'none'", "form-action 'none'"].join("; ");
 const page = read("index.html").replace(/\{\{(\w+)\}\}/g, (_, name) => pieces[name]);
 writeFileSync(out, page);
 console.log(`${(page.length / 1e6).toFixed(2)} MB, of which ${(pieces.program.length / 1e6).toFixed(2)} MB program`);

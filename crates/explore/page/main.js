@@ -10,9 +10,10 @@ import { Engine, compile, textOf } from "./engine.js";
 import { Grips } from "./grips.js";
 import { Legend, choosing, shownOf } from "./legend.js";
 import { listen, undoing } from "./listen.js";
+import { byName } from "./names.js";
 import { Own } from "./own.js";
 import * as panels from "./panels.js";
-import { entitled, groups, nothing, say, something } from "./report.js";
+import { entitled, groups, nothing, notice, say, something } from "./report.js";
 import { Samples } from "./samples.js";
 import { Stage } from "./stage.js";
 import { arrived, decode, forget, push, remember, settle, shownOnly, state, turn } from "./state.js";
@@ -144,6 +145,8 @@ async function readScene(anew) {
   }
   editor.mark([]);
   scene = answer;
+  for (const name of answer.unknown) delete state.set[name];
+  if (answer.unknown.length) notice(`Nothing in the text is called ${answer.unknown.join(", ")} any more.`);
   entitled(scene);
   controls.build(scene.controls, state.set);
   legend();
@@ -250,8 +253,8 @@ function choose(choice) {
   const name = kept === null ? choice : OWN;
   const text = kept ?? (choice === OWN ? ownTexts.draft : null);
   if (state.tab === "tour") openTab("numbers");
-  turn(() => Object.assign(state, { scene: name, text, set: {}, on: [], off: [], time: 0 }));
-  element("notice").hidden = true;
+  turn(() => Object.assign(state, { scene: name, text, set: byName(), on: [], off: [], time: 0 }));
+  notice("");
   arrive();
 }
 
@@ -263,7 +266,7 @@ function run() {
 // Goes to a step of the tour.
 function enter(step) {
   turn(() => Object.assign(state, stateOf(step)));
-  element("notice").hidden = true;
+  notice("");
   arrive();
 }
 
@@ -345,8 +348,7 @@ async function restore() {
   state.step = Math.min(STEPS.length, Math.max(state.tab === "tour" ? 1 : 0, Math.round(state.step)));
   document.documentElement.classList.toggle("only-stage", shownOnly() === "stage");
   // it stays there, and the address as it is, until something is chosen
-  element("notice").hidden = fault === null;
-  element("notice").textContent = `The link cannot be read: ${fault}.`;
+  notice(fault === null ? "" : `The link cannot be read: ${fault}.`);
   await arrive(scene && name === state.scene && before === sceneText());
 }
 

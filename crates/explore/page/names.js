@@ -1,5 +1,8 @@
 // Names and numbers as they are read.
 
+// What is known by names that a text gives, which may be those of what every object has: "constructor" is as any other.
+export const byName = (pairs = []) => Object.assign(Object.create(null), Object.fromEntries(pairs));
+
 // A number in six digits.
 export const short = (x) => String(Number(x.toPrecision(6)));
 
@@ -10,8 +13,8 @@ export const figure = (x) => {
   return x.toExponential(1).replace("e+", "e");
 };
 
-export const GREEK = { alpha: "α", beta: "β", gamma: "γ", delta: "δ", theta: "θ", kappa: "κ", lambda: "λ", mu: "μ", nu: "ν",
-  rho: "ρ", phi: "φ", chi: "χ", psi: "ψ", omega: "ω", Omega: "Ω", Gamma: "Γ", eta: "η", sigma: "σ", tau: "τ", xi: "ξ", epsilon: "ε" };
+export const GREEK = byName(Object.entries({ alpha: "α", beta: "β", gamma: "γ", delta: "δ", theta: "θ", kappa: "κ", lambda: "λ", mu: "μ", nu: "ν",
+  rho: "ρ", phi: "φ", chi: "χ", psi: "ψ", omega: "ω", Omega: "Ω", Gamma: "Γ", eta: "η", sigma: "σ", tau: "τ", xi: "ξ", epsilon: "ε" }));
 
 // A name as it is read: Greek letters, primes, an index below.
 export function readable(name) {

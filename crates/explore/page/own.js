@@ -1,5 +1,6 @@
 // Texts of one's own: the one that is being written, and those that this browser keeps under their titles.
 
+import { byName } from "./names.js";
 import * as store from "./store.js";
 
 const PREFIX = "kept:";
@@ -24,7 +25,7 @@ export class Own {
 
   texts() {
     const texts = store.kept(NAME, {});
-    return typeof texts === "object" && !Array.isArray(texts) ? texts : {};
+    return byName(typeof texts === "object" && !Array.isArray(texts) ? Object.entries(texts) : []);
   }
 
   // The text behind a choice, null where it is none of these.

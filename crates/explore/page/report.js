@@ -8,6 +8,12 @@ export function say(message, bad = false) {
   element("said").classList.toggle("bad", bad);
 }
 
+// What is said above the page until something is chosen; nothing with an empty text.
+export function notice(text) {
+  element("notice").hidden = text === "";
+  element("notice").textContent = text;
+}
+
 export function busy(id, is) {
   element(id).setAttribute("aria-busy", String(is));
 }

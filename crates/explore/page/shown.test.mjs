@@ -178,6 +178,36 @@ export async function badLinks({ open, leave, link, must, choose, url }) {
   }
 }
 
+// Names of a text may be those of what every object has; a number that is set goes with its name; of scripts only that of
+// the page runs, and nothing is fetched.
+export async function names({ open, link, must, slide, type, after, OWN }) {
+  const named = OWN.replace("[coordinates]", "[parameters]\nconstructor = 1\n__proto__ = 0.5\ntoString = 0.6\n[coordinates]")
+    .replace("0.3*x", "constructor*toString*__proto__*x");
+  const page = await open(link({ scene: "own", text: named }));
+  const labels = await page.$$eval("#numbers label", (all) => all.map(({ textContent }) => textContent));
+  must(["constructor", "toString"].every((name) => labels.includes(name)), `parameters are called ${labels}`);
+  for (const name of ["__proto__", "constructor"]) {
+    const before = await page.evaluate(() => window.explored.samples.motions[0].numbers.at(-1));
+    await after(page, () => slide(page, name, 900));
+    must((await page.evaluate(() => window.explored.samples.motions[0].numbers.at(-1))) !== before, `the slider of ${name} changes nothing`);
+  }
+  await page.waitForFunction(() => location.hash.includes("__") || location.hash.length > 100);
+  await after(page, () => type(page, named.replaceAll("constructor", "push")));
+  must(await page.$eval("#faults", (faults) => faults.hidden), "a text without a name that was set is refused");
+  must((await page.$eval("#notice", ({ textContent }) => textContent)).includes("constructor"), "it is not said which name is gone");
+  // the browser says what it does not run
+  page.removeAllListeners("console");
+  const ran = await page.evaluate(async () => {
+    const script = document.createElement("script");
+    script.textContent = "window.foreign = true";
+    document.body.append(script);
+    const fetched = await fetch("https://example.com/").then(() => true, () => false);
+    return [window.foreign ?? false, fetched, document.querySelector("[http-equiv=Content-Security-Policy]").content.includes("sha256-")];
+  });
+  must(JSON.stringify(ran) === "[false,false,true]", `foreign scripts and addresses: ${ran}`);
+  await page.close();
+}
+
 // The table has every pair with the verdict that was decided, from when and by how much, in units; and one sentence of why.
 export async function table({ open, leave, link, must, pictures }) {
   for (const [state, verdicts] of [[{ scene: "sledge" }, ["different", "different", "different"]], [{ scene: "velocity-pendulum" }, ["same", "same", "same"]]]) {

@@ -1,5 +1,7 @@
 // What a link carries: everything that was chosen, in the fragment of the address; and the way back through it.
 
+import { byName } from "./names.js";
+
 const EMPTY = { scene: "sledge", text: null, set: {}, off: [], on: [], time: 0, tab: "numbers", curve: "gap",
   step: 0, guess: -1, forces: false, follow: "", by: 1, grips: false };
 // Behind the state, what alone is to be seen: &only=stage, for slides.
@@ -43,7 +45,7 @@ export function decode(address, otherwise = {}) {
   }
   const numbers = Object.entries(state.set).filter(([, x]) => Number.isFinite(x));
   if (numbers.length < Object.keys(state.set).length) fault = "a number in it is none";
-  state.set = Object.fromEntries(numbers);
+  state.set = byName(numbers);
   return fault;
 }
 

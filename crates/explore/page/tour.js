@@ -1,7 +1,7 @@
 // The guided path: six steps, each a state of the page, with a question, a number to move, and what came out. What a
 // step says of the motions is put together from what was computed of them, so it is true wherever the slider stands.
 
-import { figure, readable } from "./names.js";
+import { byName, figure, readable } from "./names.js";
 
 const BLUE = "Chetaev";
 const ORANGE = "vakonomic";
@@ -152,7 +152,7 @@ export const STEPS = [
 // The state of the page at the beginning of a step.
 export function stateOf(step) {
   const { scene, text = null, set = {}, off = [] } = STEPS[step - 1].state;
-  return { scene, text, set: { ...set }, on: [], off: [...off], time: 0, tab: "tour", step, guess: -1, follow: "", by: 1, grips: false };
+  return { scene, text, set: byName(Object.entries(set)), on: [], off: [...off], time: 0, tab: "tour", step, guess: -1, follow: "", by: 1, grips: false };
 }
 
 export class Tour {

@@ -44,7 +44,7 @@ fn answered(question: &str, kept: &mut Kept, numbers: &mut Vec<f64>) -> Result<V
 
 /// What a page has to know of a scene before there are motions.
 fn scene(subject: &Subject) -> Value {
-    let Subject { scene, choices } = subject;
+    let Subject { scene, choices, unknown } = subject;
     let coordinate = |c: &mechanics::Coordinate| json!({ "name": c.name, "unit": c.unit });
     let motion = |c: &deltaq::Choice| json!({ "label": c.label, "formulation": c.formulation.name });
     json!({
@@ -53,6 +53,7 @@ fn scene(subject: &Subject) -> Value {
         "coordinates": scene.system.coordinates.iter().map(coordinate).collect::<Vec<_>>(),
         "controls": controls::of(subject),
         "motions": choices.iter().map(motion).collect::<Vec<_>>(),
+        "unknown": unknown,
     })
 }
 

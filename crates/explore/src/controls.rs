@@ -17,7 +17,7 @@ const MOST_KAPPA: f64 = 20.0;
 /// All numbers that can be set, each an object: parameters, start, multipliers, costates of each removal, κ,
 /// duration.
 pub(crate) fn of(subject: &Subject) -> Vec<Value> {
-    let Subject { scene, choices } = subject;
+    let Subject { scene, choices, .. } = subject;
     let (system, start, g) = (&scene.system, &scene.start, &scene.system.graph);
     let mut controls = Vec::new();
     let mut kappa = 0.0;

@@ -11,7 +11,7 @@ use crate::subject::Subject;
 
 /// The answers of `deltaq integrals` about the first motion, up to the degree that is asked for.
 pub(crate) fn integrals(subject: &Subject, question: &Question) -> Result<Value, Refused> {
-    let Subject { scene, choices } = subject;
+    let Subject { scene, choices, .. } = subject;
     let Some(choice) = choices.first() else {
         return Ok(json!({ "refused": "no motion is shown" }));
     };

@@ -27,7 +27,7 @@ pub(crate) fn sampled(
     kept: &mut Kept,
     numbers: &mut Vec<f64>,
 ) -> Result<Value, Refused> {
-    let Subject { scene, choices } = subject;
+    let Subject { scene, choices, .. } = subject;
     kept.turn_to(question, scene);
     let settings = settings(question);
     let steps = question.steps.max(1);

@@ -14,7 +14,7 @@ use crate::subject::Subject;
 
 /// The system and the equations of every motion, in Markdown with LaTeX.
 pub(crate) fn equations(subject: &Subject) -> Result<Value, Refused> {
-    let Subject { scene, choices } = subject;
+    let Subject { scene, choices, .. } = subject;
     let motion = |choice: &deltaq::Choice| match derive_at(&scene.system, &scene.start, choice) {
         Ok(equations) => {
             json!({ "label": choice.label, "equations": equations_text(&equations, EquationStyle::Latex) })
@@ -32,7 +32,7 @@ pub(crate) fn equations(subject: &Subject) -> Result<Value, Refused> {
 /// The verdict, why, how sure that is, which motion a real system has; pair by pair; and which families have
 /// which motions.
 pub(crate) fn decision(subject: Subject, question: &Question) -> Result<Value, Refused> {
-    let Subject { scene, choices } = subject;
+    let Subject { scene, choices, .. } = subject;
     let settings = settings(question);
     let mut comparison = Comparison::new(scene, Extent::Everything, &settings)?;
     for choice in choices {

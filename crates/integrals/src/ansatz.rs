@@ -77,7 +77,7 @@ pub fn ansatz(
     let system = &System { graph: equations.graph.clone(), ..system.clone() };
     let places = chosen(system, names)?;
     let multipliers: Vec<Symbol> = multipliers(equations).into_iter().map(|(mu, _)| mu).collect();
-    let (spatial, functions) = functions(system, &multipliers, &places, !names.is_empty(), degree);
+    let (spatial, functions) = functions(system, &multipliers, &places, !names.is_empty(), degree)?;
     let expressions: Vec<Expr> = functions.iter().map(|f| f.expression).collect();
     let mut sample = Sample::new(system, equations, start, &expressions)?;
     let points = functions.len() + MORE;

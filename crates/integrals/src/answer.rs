@@ -61,13 +61,13 @@ impl Integrals {
         let start = ExactStart::new(system, &scene.start, &scene.completion, choice.removal.as_ref())?;
         let reversed = (choice.formulation.name == CHETAEV.name).then(|| reversible(system, &start, degree));
         let equations = derive(system, choice)?;
-        let ansatz = ansatz(system, &equations, &start, degree, names);
+        let ansatz = Open::unless(|| ansatz(system, &equations, &start, degree, names));
         if let Err(fault @ Open::Name { .. }) = ansatz {
             return Err(NoAnswer::Open(fault));
         }
         let own: Vec<&Watched> = system.watched.iter().filter(|watched| watched.is_constant()).collect();
         let expressions: Vec<_> = own.iter().map(|watched| watched.expression).collect();
-        let held = constants(system, &equations, &start, &expressions);
+        let held = Open::unless(|| constants(system, &equations, &start, &expressions));
         let invariants = held.map(|held| zip(own.iter().map(|watched| watched.name.clone()), held).collect());
         let printed = ansatz.as_ref().map_or(&[][..], |found| &found.printed);
         let drifts = drifts(scene, choice, printed);

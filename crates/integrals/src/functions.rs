@@ -10,6 +10,8 @@ use crate::killing::velocity_monomials;
 /// the coordinates are chosen.
 const UNASKED: (usize, usize) = (420, 4);
 const CHOSEN: (usize, usize) = (1000, 6);
+/// More monomials in the velocities are not taken: the memory grows as their square.
+const LARGEST: usize = 2000;
 
 /// A function of the ansatz.
 #[derive(Clone, Debug)]
@@ -44,7 +46,7 @@ pub(crate) fn functions(
     places: &[usize],
     are_chosen: bool,
     degree: usize,
-) -> (usize, Vec<Function>) {
+) -> Result<(usize, Vec<Function>), Open> {
     let g = &system.graph;
     let fast: Vec<Symbol> = system.velocities().into_iter().chain(multipliers.iter().copied()).collect();
     let v = g.variables(&fast);
@@ -61,6 +63,9 @@ pub(crate) fn functions(
     let fast = velocity_monomials(v.len(), degree);
     let mut fast: Vec<Vec<usize>> =
         fast.into_iter().chain(degree.checked_sub(1).map_or(Vec::new(), |d| velocity_monomials(v.len(), d))).collect();
+    if fast.len() > LARGEST {
+        return Err(Open::Functions { found: fast.len(), most: LARGEST });
+    }
     fast.sort_by_key(Vec::len);
     let mut spatial = 0;
     let mut slow = vec![(0, g.one())];
@@ -95,7 +100,7 @@ pub(crate) fn functions(
             }
         }
     }
-    (spatial, all)
+    Ok((spatial, all))
 }
 
 /// The energy of `L`, without its terms that cancel where `L` is quadratic in the velocities: `L − 2 L(v =

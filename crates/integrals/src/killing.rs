@@ -92,6 +92,7 @@ impl Killing {
         count(&weights, order, MOST).ok_or(Open::Size { order, most: MOST })?;
         let ring = Ring::new(&weights, (0..n).collect(), order);
         let chart = chart(&ring, flag, step);
+        Open::room(flag.fields.len().pow(3).saturating_mul(ring.len()))?;
         let rays = Rays::new(&ring, &mut draws(seed)).ok_or(Open::Accident)?;
         let local = system.at(point, &ring, &rays, &chart)?;
         let jacobian: Vec<Vec<Series>> =
@@ -127,7 +128,11 @@ impl Killing {
     pub(crate) fn kernel(&self, degree: usize, until_settled: bool) -> Result<Kernel, Open> {
         let m = self.fields.len();
         let ring = &self.ring;
+        // C(m + d, d + 1) equations for about as many unknowns over m, each with terms for all of these
+        let count = (0..=degree).fold(1, |count, d| count * (m + d) / (d + 1));
+        Open::room(count.saturating_mul(count / m.max(1)))?;
         let monomials = velocity_monomials(m, degree);
+        Open::room(monomials.len().pow(2).saturating_mul(ring.len()))?;
         let equations = velocity_monomials(m, degree + 1);
         let place = |monomial: &[usize]| equations.iter().position(|e| e == monomial).unwrap_or(0);
         let couplings: Vec<Vec<(usize, Series)>> =

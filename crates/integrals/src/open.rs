@@ -1,6 +1,10 @@
 //! Why a question stays open.
 
 use decision::exact::Flaw;
+use symbolic::{Stopped, question};
+
+/// Most coefficients at once: 400 MB.
+const ROOM: usize = 50_000_000;
 
 /// What keeps an answer from being given.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -33,6 +37,16 @@ pub enum Open {
     /// Series would have too many coefficients.
     #[error("series to order {order} have more than {most} coefficients")]
     Size { order: usize, most: usize },
+    /// The ansatz would be too large.
+    #[error(
+        "an ansatz would have {found} monomials in the velocities, and at most {most} are taken: a lower --degree has fewer"
+    )]
+    Functions { found: usize, most: usize },
+    /// The memory would not do.
+    #[error(
+        "{found} numbers would be needed at once, and at most {most} are taken: fewer coordinates, or a lower --degree, need less"
+    )]
+    Room { found: usize, most: usize },
     /// There are many ways to solve the constraints.
     #[error("the constraints can be solved for {found} sets of velocities; at most {most} are tried")]
     Choices {
@@ -55,6 +69,9 @@ pub enum Open {
     /// Coefficients are free at the last weight: what is left bounds nothing.
     #[error("{free} coefficients are free still at order {order}, the highest that was looked at: there is no bound")]
     Free { order: usize, free: usize },
+    /// It takes longer than a question may.
+    #[error("{0}; fewer coordinates in L and f, or a lower --degree, need less")]
+    Stopped(#[from] Stopped),
     /// Two methods do not agree: a fault of the program.
     #[error("a contradiction, please report it: {0}")]
     Contradiction(String),
@@ -67,5 +84,15 @@ impl Open {
     /// Why two fields agree on nothing.
     pub(crate) fn or_accident(fault: Option<Open>) -> Open {
         fault.unwrap_or(Open::Accident)
+    }
+
+    /// There is room for so many coefficients at once.
+    pub(crate) fn room(found: usize) -> Result<(), Open> {
+        if found > ROOM { Err(Open::Room { found, most: ROOM }) } else { Ok(()) }
+    }
+
+    /// The answer of `work`, if there is time for it.
+    pub(crate) fn unless<T>(work: impl FnOnce() -> Result<T, Open>) -> Result<T, Open> {
+        question(work)?
     }
 }

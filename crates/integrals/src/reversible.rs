@@ -162,17 +162,18 @@ pub fn reversible_scene(scene: &Scene, degree: usize) -> Result<Reversed, Decisi
 
 /// Decides measure and integrals up to a degree.
 pub fn reversible(system: &System, start: &ExactStart, degree: usize) -> Reversed {
-    let reversible = match Reversible::new(system) {
+    let reversible = match Open::unless(|| Reversible::new(system)) {
         Ok(reversible) => reversible,
         Err(open) => {
             let (measure, reductions) = (Measure::Open(open.clone()), Err(open.clone()));
             return Reversed { integrals: vec![Err(open); degree], measure, reductions };
         }
     };
-    let measure = decide_measure(&reversible, start).unwrap_or_else(Measure::Open);
+    let measure = Open::unless(|| decide_measure(&reversible, start)).unwrap_or_else(Measure::Open);
+    let is_given = matches!(&measure, Measure::Local { density: Some(_), .. });
     Reversed {
-        reductions: reductions(&reversible, start, matches!(&measure, Measure::Local { density: Some(_), .. })),
+        reductions: Open::unless(|| reductions(&reversible, start, is_given)),
         measure,
-        integrals: (1..=degree).map(|d| decide_integrals(&reversible, start, d)).collect(),
+        integrals: (1..=degree).map(|d| Open::unless(|| decide_integrals(&reversible, start, d))).collect(),
     }
 }

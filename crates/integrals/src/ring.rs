@@ -3,6 +3,7 @@
 use std::collections::HashMap;
 
 use decision::exact::{Modular, inverse};
+use symbolic::go_on;
 
 /// Most coefficients of a series.
 pub(crate) const MOST: usize = 1200;
@@ -108,6 +109,7 @@ impl Ring {
     }
 
     fn add_product(&self, sum: &mut Series, a: &Series, b: &Series) {
+        go_on();
         // many series are polynomials in few variables
         let sparse: Vec<(usize, Modular)> = b.iter().copied().enumerate().filter(|(_, y)| !y.is_zero()).collect();
         for (&x, places) in a.iter().zip(&self.products).filter(|(x, _)| !x.is_zero()) {

@@ -93,6 +93,7 @@ impl Discs {
 
     /// Block by block: elimination in all of the matrix would let round-off couple what is not coupled.
     fn resolvent(&self, z: Complex<f64>) -> Option<DMatrix<Complex<f64>>> {
+        symbolic::go_on();
         let n = self.matrix.nrows();
         let mut found = DMatrix::<Complex<f64>>::zeros(n, n);
         for places in &self.blocks {

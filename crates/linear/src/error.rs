@@ -50,6 +50,9 @@ pub enum LinearError {
     /// The QR algorithm does not converge.
     #[error("the eigenvalues of a matrix of {size} rows were not found: the QR algorithm does not converge")]
     NoEigenvalues { size: usize },
+    /// The eigenvalues and their errors take longer than a question may.
+    #[error("the eigenvalues are left: {0}")]
+    Stopped(#[from] symbolic::Stopped),
     /// No steady motion was found near the start.
     #[error(
         "no steady motion found near the start: after {iterations} iterations {state}' = {rate:.6e}, where at most {limit:.1e} counts as none"

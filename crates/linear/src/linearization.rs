@@ -5,6 +5,7 @@ use std::fmt;
 use deltaq::{Choice, Ending, Form, Setting, Settings, SolveError, solve_from};
 use equations::{Compiled, Role};
 use nalgebra::DMatrix;
+use symbolic::question;
 
 use crate::point::{COORDINATES, Point, VELOCITIES, in_quasi_velocities};
 use crate::spectrum::sort;
@@ -74,7 +75,7 @@ pub fn linearize_at(
         return Err(LinearError::BeforeStart { t, start });
     }
     if t == start {
-        return Ok(Linearization::at(&mut Point::start(setting, choice)?, false)?.0);
+        return Linearization::at(&mut Point::start(setting, choice)?, false);
     }
     let settings = Settings { form: Form::Named, ..settings.clone() };
     let mut motion = solve_from(Setting { end: t, ..setting }, &in_quasi_velocities(setting, choice), &settings)?;
@@ -90,7 +91,7 @@ pub fn linearize_at(
     let mut compiled = compile().map_err(SolveError::from)?;
     compiled.set_constants(&motion.constants);
     let mut point = Point { equations: motion.equations.clone(), compiled, t, y };
-    Ok(Linearization::at(&mut point, false)?.0)
+    Linearization::at(&mut point, false)
 }
 
 fn depends_on_time(point: &Point) -> bool {
@@ -107,44 +108,44 @@ impl Linearization {
         if depends_on_time(point) {
             return Err(LinearError::TimeDependent { formulation: form.into() });
         }
-        let (found, kept) = Linearization::at(point, true)?;
-        let Some(Moving { place, rate, limit }) = moving(point, &kept, &found.matrix)?.1 else {
-            return Ok(found);
-        };
-        let carried: Vec<&str> = found.carried.iter().map(|c| &c.name[..]).collect();
-        let carried = if carried.is_empty() { "nothing here".into() } else { carried.join(", ") };
-        let state = found.states[place].clone();
-        Err(LinearError::NotSteady { formulation: form.into(), state, rate, limit, carried })
+        Linearization::at(point, true)
     }
 
-    /// About a point, with the places of its states.
-    fn at(point: &mut Point, is_steady: bool) -> Result<(Linearization, Vec<usize>), LinearError> {
+    /// About a point, which has to be one of a steady motion where `is_steady` says so.
+    fn at(point: &mut Point, is_steady: bool) -> Result<Linearization, LinearError> {
         let y = point.y.clone();
         let jacobian = point.jacobian(&y)?;
         let noise = point.noise(&y, &jacobian)?;
         let carried = point.carried()?;
         let rates = point.rates(&y)?;
         let kept: Vec<usize> = (0..y.len()).filter(|i| !carried.contains(i)).collect();
-        let name = |i: usize| point.equations.graph.name(point.equations.states[i].symbol);
+        let name = |point: &Point, i: usize| point.equations.graph.name(point.equations.states[i].symbol);
         let part = |m: &DMatrix<f64>| DMatrix::from_fn(kept.len(), kept.len(), |i, j| m[(kept[i], kept[j])]);
+        let (matrix, form) = (part(&jacobian), point.equations.formulation);
+        // before its eigenvalues are asked for, which takes longest
+        if is_steady && let Some(Moving { place, rate, limit }) = moving(point, &kept, &matrix)?.1 {
+            let carried = carried.iter().map(|&i| name(point, i)).collect::<Vec<_>>().join(", ");
+            let carried = if carried.is_empty() { "nothing here".into() } else { carried };
+            let state = name(point, kept[place]);
+            return Err(LinearError::NotSteady { formulation: form.into(), state, rate, limit, carried });
+        }
+        let spectrum = question(|| Spectrum::of(&matrix, &part(&noise)))?;
         let places = |roles: &[Role]| {
             let all = point.places(roles);
             (0..kept.len()).filter(|&k| all.contains(&kept[k])).collect::<Vec<usize>>()
         };
-        let matrix = part(&jacobian);
-        let found = Linearization {
-            form: point.equations.formulation,
+        Ok(Linearization {
+            form,
             t: point.t,
             is_steady,
-            states: kept.iter().map(|&i| name(i)).collect(),
+            states: kept.iter().map(|&i| name(point, i)).collect(),
             values: kept.iter().map(|&i| y[i]).collect(),
-            carried: carried.iter().map(|&i| Carried { name: name(i), rate: rates[i] }).collect(),
-            spectrum: Spectrum::of(&matrix, &part(&noise)).ok_or(LinearError::NoEigenvalues { size: kept.len() })?,
+            carried: carried.iter().map(|&i| Carried { name: name(point, i), rate: rates[i] }).collect(),
+            spectrum: spectrum.ok_or(LinearError::NoEigenvalues { size: kept.len() })?,
             matrix,
             coordinates: places(&COORDINATES),
             velocities: places(&VELOCITIES),
-        };
-        Ok((found, kept))
+        })
     }
 
     /// The eigenvalues that belong to these coordinates and their velocities, and to what is coupled with

@@ -1,6 +1,6 @@
 //! Is the constraint integrable? Frobenius' test by the Lie flag of the admissible directions.
 
-use symbolic::{Expr, Matrix, Symbol, Vanishing};
+use symbolic::{Expr, Matrix, Stopped, Symbol, Vanishing, question};
 
 use crate::rank::{Surroundings, generic_rank};
 use crate::solved_constraints::SolvedConstraints;
@@ -54,6 +54,8 @@ pub enum Undecided {
     AtPoints,
     /// They have no value at any point that was tried.
     NoPoint,
+    /// They take longer than a question may.
+    Stopped(Stopped),
 }
 
 /// Nodes over which a bracket is too long: each bracket around it makes it several times longer.
@@ -82,16 +84,19 @@ impl std::fmt::Display for Integrability {
             Integrability::Nonintegrable { depth } => {
                 write!(f, "nonintegrable: brackets nested {depth} deep reach every direction")
             }
-            Integrability::Undecided { why, depth, at_most, constraints } => write!(
-                f,
-                "undecided: brackets nested {depth} deep leave at most {at_most} of {constraints} integrable combinations, \
-                 and the next {}",
-                match why {
+            Integrability::Undecided { why, depth, at_most, constraints } => {
+                let next = match why {
                     Undecided::TooLong => "are too long",
                     Undecided::NoPoint => "have no value at the points tried",
                     Undecided::AtPoints => "vanish at the points tried, but not identically",
-                }
-            ),
+                    Undecided::Stopped(stopped) => return write!(f, "undecided: {stopped}"),
+                };
+                write!(
+                    f,
+                    "undecided: brackets nested {depth} deep leave at most {at_most} of {constraints} integrable \
+                     combinations, and the next {next}"
+                )
+            }
             Integrability::NonlinearInVelocity => {
                 write!(f, "not linear in the velocities: Frobenius' test does not apply")
             }
@@ -123,6 +128,13 @@ impl std::fmt::Display for Integrability {
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn integrability(system: &System, state: &State, end: f64) -> Result<Integrability, RemovalError> {
+    question(|| by_brackets(system, state, end)).unwrap_or_else(|stopped| {
+        let constraints = system.constraints.len();
+        Ok(Integrability::Undecided { why: Undecided::Stopped(stopped), depth: 0, at_most: constraints, constraints })
+    })
+}
+
+fn by_brackets(system: &System, state: &State, end: f64) -> Result<Integrability, RemovalError> {
     let h = system.constraints.len();
     if h == 0 {
         return Ok(Integrability::Unconstrained);

@@ -89,7 +89,14 @@ pub fn sorted(mut object: Value) -> Value {
 
 fn printed(kind: &str, object: &Value) -> String {
     let version = if matches!(kind, "solve" | "linearize" | "certificate" | "compare") { 2 } else { 1 };
+    // JSON leaves some of what [`plain`] takes out
+    let is_raw = |c: char| c.is_control() && c != '\n';
     let mut text = format!("{object:#}\n");
+    if text.contains(is_raw) {
+        text = text.chars().fold(String::new(), |text, c| {
+            if is_raw(c) { text + &format!("\\u{:04x}", c as u32) } else { text + c.encode_utf8(&mut [0; 4]) }
+        });
+    }
     let head = format!("{{\n  \"schema\": \"deltaq/{kind}/{version}\",");
     // in place: an answer may take half of the memory
     text.reserve_exact(head.len());

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, Error, Result, ensure};
 use tempfile::NamedTempFile;
 
-use crate::{Lines, print};
+use crate::{Lines, plain, print};
 
 /// Names of the files that deltaq wrote to a folder that is not its own, one in a line.
 pub(crate) const LIST: &str = ".deltaq";
@@ -138,13 +138,14 @@ impl Sink {
         Ok((Sink::Part(file, part, path.into()), true))
     }
 
-    /// Writes a piece; `false` where nobody reads on.
+    /// Writes a piece, as [`plain`] has it; `false` where nobody reads on.
     ///
     /// # Errors
     /// Whatever the file system says, with the path.
     pub fn write(&mut self, text: &str) -> Result<bool> {
+        let text = plain(text);
         let (written, path) = match self {
-            Sink::Terminal => return print(text),
+            Sink::Terminal => return print(&text),
             Sink::Whole(file, path) => (file.write_all(text.as_bytes()), path),
             Sink::Part(file, path, _) => (file.write_all(text.as_bytes()), path),
         };

@@ -2,11 +2,14 @@
 
 use anyhow::Error;
 use deltaq::{Broken, Contradicted};
-use program::{Unwritten, exit_code, plain};
+use program::{Unwritten, exit_code, plain, pretty};
 
 #[test]
 fn a_terminal_is_told_nothing_that_it_would_obey() {
     assert_eq!(plain("a\x1b]0;x\x07\u{9b}31m\rb\x7f"), "a\\u{1b}]0;x\\u{7}\\u{9b}31m\\rb\\u{7f}");
+    let json = pretty("show", &serde_json::json!({ "title": "a\x1b[31m\u{9b}\x7f" }));
+    assert_eq!(plain(&json), json);
+    assert!(json.contains(r"a\u001b[31m\u009b\u007f"), "{json}");
     assert_eq!(plain("x\ty\r\nκ µ\n"), "x\ty\r\nκ µ\n");
 }
 

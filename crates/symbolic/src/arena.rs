@@ -56,6 +56,8 @@ pub(crate) struct Arena {
     pub(crate) domains: BTreeSet<(Expr, Expr)>,
     /// What expressions are called where they are printed.
     pub(crate) given_names: FxHashMap<Expr, Arc<str>>,
+    /// Expressions that were asked for, new or not.
+    asked: u32,
 }
 
 impl Default for Arena {
@@ -74,6 +76,7 @@ impl Default for Arena {
             derivatives: FxHashMap::default(),
             domains: BTreeSet::new(),
             given_names: FxHashMap::default(),
+            asked: 0,
         };
         arena.number(Number::ZERO);
         arena.number(Number::ONE);
@@ -102,11 +105,12 @@ impl Arena {
     }
 
     pub(crate) fn intern(&mut self, node: Node) -> Expr {
+        self.asked = self.asked.wrapping_add(1);
+        if self.asked.is_multiple_of(cancel::EVERY) {
+            cancel::go_on();
+        }
         if let Some(&e) = self.ids.get(&node) {
             return e;
-        }
-        if self.nodes.len().is_multiple_of(cancel::EVERY) {
-            cancel::check();
         }
         let e = self.marks.expression(self.nodes.len());
         let set = self.dependency_set(&node);

@@ -83,7 +83,7 @@ mod value;
 
 pub use bounded::Bounded;
 pub use broken::{Broken, caught, work_on, worked_on};
-pub use cancel::cancellable;
+pub use cancel::{Stopped, be_patient, cancellable, go_on, question};
 pub use code::{Code, Language};
 pub use evaluate::CompileError;
 pub use evaluator::Evaluator;

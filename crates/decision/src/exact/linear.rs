@@ -1,5 +1,7 @@
 //! Small linear systems over any entries, and rows modulo a prime.
 
+use symbolic::go_on;
+
 use super::{Entry, Modular};
 
 /// The inverse of a square matrix, and its determinant; `None` where it is singular.
@@ -15,6 +17,7 @@ pub(crate) fn solve<E: Entry>(matrix: &mut [E], right: &mut [E], size: usize, wi
     let mut determinant = one;
     let mut over_pivots = Vec::with_capacity(size);
     for column in 0..size {
+        go_on();
         let weight = |row: usize| matrix[row * size + column].weight();
         let pivot = (column..size).max_by(|&a, &b| weight(a).total_cmp(&weight(b)).then(b.cmp(&a)))?;
         let value = matrix[pivot * size + column];
@@ -64,6 +67,7 @@ pub struct Echelon(pub Vec<(usize, Vec<Modular>)>);
 impl Echelon {
     /// Takes `row` in where it is independent of the rows so far, and says whether it is.
     pub fn add(&mut self, mut row: Vec<Modular>) -> bool {
+        go_on();
         for (pivot, other) in &self.0 {
             let factor = row[*pivot];
             if !factor.is_zero() {
