@@ -5,7 +5,7 @@ use std::collections::{HashMap, HashSet};
 use equations::{Derivation, Equations, Formulation, Named, Needs};
 use mechanics::{ConstantsRule, Recombination, Removal, RemovalError, State, System, check_reactions};
 use scene::Scene;
-use symbolic::{Expr, Symbol};
+use symbolic::{Expr, Symbol, question};
 
 use crate::silent::silent;
 use crate::{FORMS, FORMULATIONS, SolveError};
@@ -196,7 +196,8 @@ const AUTOMATIC: [(&str, Automatic); 2] =
 /// [`RemovalError`] where no removal was written by hand and none can be found automatically.
 pub fn removals(scene: &Scene) -> Result<Vec<Removal>, RemovalError> {
     let mut removals = scene.removals.clone();
-    match Removal::automatic(&scene.system, &scene.start) {
+    let automatic = question(|| Removal::automatic(&scene.system, &scene.start));
+    match automatic.map_err(RemovalError::from).flatten() {
         Err(error) if removals.is_empty() => return Err(error),
         Err(_) => {}
         Ok(automatic) => {
@@ -229,7 +230,7 @@ pub fn removal(scene: &Scene, name: &str) -> Result<Option<Removal>, RemovalErro
         return Ok(Some(removal.clone()));
     }
     let automatic = AUTOMATIC.iter().find(|(known, _)| *known == name);
-    automatic.map(|(_, automatic)| automatic(&scene.system, &scene.start)).transpose()
+    automatic.map(|(_, automatic)| question(|| automatic(&scene.system, &scene.start))?).transpose()
 }
 
 /// What [`removal`] can be asked for.

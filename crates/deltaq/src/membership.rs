@@ -10,7 +10,7 @@ use nalgebra::{DMatrix, DVector};
 use scene::Scene;
 use symbolic::Expr;
 
-use crate::{CHETAEV, Choice, LeadingTerm, Metric, SolveError, VAKONOMIC, choices};
+use crate::{CHETAEV, Choice, LeadingTerm, Metric, SolveError, VAKONOMIC, choices_among};
 
 /// All constants that give a formulation a given motion: what was computed and what was proved of them.
 ///
@@ -266,7 +266,7 @@ pub fn certificate(scene: &Scene, almost_every_start: bool) -> Result<Result<Cer
 
 /// Chetaev's motion and the vakonomic family; none where nothing is constrained.
 fn principal(scene: &Scene) -> Result<Option<Pairing<'_>>, SolveError> {
-    let choices = choices(scene);
+    let choices = choices_among(scene, |own| own == CHETAEV || own == VAKONOMIC);
     let of = |own: &Formulation| choices.iter().find(|choice| choice.formulation == own);
     match (of(CHETAEV), of(VAKONOMIC)) {
         (Some(curve), Some(family)) if !scene.system.constraints.is_empty() => {

@@ -36,6 +36,9 @@ pub enum RemovalError {
         pivot: f64,
         limit: f64,
     },
+    /// Solving the constraints for velocities takes longer than a question may.
+    #[error("the constraints are not solved for velocities: {0}")]
+    Stopped(#[from] symbolic::Stopped),
     /// A constraint with the parametrization put in has a finite value at too few of the points tried.
     #[error(
         "removal `{removal}`: constraint {constraint} ({text}) is finite at too few of the points tried, so it cannot be checked"
