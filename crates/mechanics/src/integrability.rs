@@ -130,7 +130,7 @@ pub fn integrability(system: &System, state: &State, end: f64) -> Result<Integra
     if !system.constraints_linear_in_velocity() {
         return Ok(Integrability::NonlinearInVelocity);
     }
-    let (constants, surroundings) = (system.parameter_values(), Surroundings::of_start(system, state, end));
+    let surroundings = Surroundings::of_start(system, state, end);
     let (system, state) = &system.without_exact_constraints(state)?;
     let g = &system.graph;
     let exact = h - system.constraints.len();
@@ -179,7 +179,7 @@ pub fn integrability(system: &System, state: &State, end: f64) -> Result<Integra
                 let found = rank_of(&fields);
                 // as long as there are no others, what is not zero adds a direction
                 let alone = rank == admissible.len() && found <= Some(rank);
-                let verdicts: Vec<Vanishing> = z.iter().filter(|_| alone).map(|&e| g.vanishes(e, &constants)).collect();
+                let verdicts: Vec<Vanishing> = z.iter().filter(|_| alone).map(|&e| system.vanishes(e)).collect();
                 if found > Some(rank) || verdicts.iter().any(|v| matches!(v, Vanishing::No { .. })) {
                     rank += 1;
                     added.push(z);
