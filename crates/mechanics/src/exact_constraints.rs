@@ -51,11 +51,11 @@ impl System {
                     j < n
                         && !standing.contains(&places[j])
                         && places.iter().all(|&place| !g.depends_on(c, place))
-                        && matches!(self.vanishes(c), Vanishing::No { .. })
+                        && matches!(rest.vanishes(c), Vanishing::No { .. })
                 };
                 let row = &matrix.rows()[p];
                 let fewest = row.iter().filter(own).map(|(&j, _)| j).min_by_key(|&j| matrix.rows_with(j).len());
-                let Some(i) = fewest.filter(|_| self.is_total_derivative(row, &places)) else { continue };
+                let Some(i) = fewest.filter(|_| rest.is_total_derivative(row, &places)) else { continue };
                 let Some(Pivot { entry, row, column }) = matrix.take(p, i) else { continue };
                 for (r, factor) in column {
                     for (&j, &e) in &row {
