@@ -568,11 +568,9 @@ def hold(table, proof):
     plain, formulas = Formulas(), Formulas(meaning)
     forces, flat = table["system"].get("forces", {}), lambda x: [z for y in x for z in flat(y)] if isinstance(x, list) else [x]
     f = flat([formulas.read(text) for text in table["system"].get("constraints", [])])
-    on_positions = []
     for i, place in enumerate(f):
         below = formulas.below([place])
         if not any(kind == "rate" or kind == "name" and args[0][-1] == "'" for kind, *args in below):
-            on_positions.append(place)
             f[i] = formulas.rate(place)
     file = [formulas.read(table["system"]["lagrangian"]), *f, *(formulas.read(forces.get(x, 0)) for x in names)]
     texts = [scene["lagrangian"], *scene["constraints"], *(scene["forces"].get(x, "0") for x in names)]
@@ -597,12 +595,6 @@ def hold(table, proof):
     values, others = formulas.run(scope, rates), plain.run(scope)
     for place, mine, word in zip(file, own, words):
         demand(values[place].plain().c == others[mine].plain().c, f"{word} is not that of the file")
-    if proof["almost_every_start"] and on_positions and proof.get("kind") not in ("measure", "multiplier", "integral"):
-        # what is excluded near a point of another leaf of the constraints on positions may be there on this one
-        here = {name: Series(x.c[:1], x.first) for name, x in started(point).items()}
-        values = formulas.run({x + "'": Series.of(0) for x in names} | here, [(here[x], Series.of(0)) for x in names])
-        on_leaf = proof.get("kind") != "no multiplier" and not any(values[place].c[0] for place in on_positions)
-        readable(on_leaf, "a point that is not on the constraints on positions: it says nothing of this leaf of them")
     return branch + (f", which leaves {' '.join(extra)} to the constraints" if extra else "")
 
 def by_removal(removal, here, rates, names, meaning):
