@@ -161,7 +161,8 @@ pub fn integrability(system: &System, state: &State, end: f64) -> Result<Integra
     let mut fields = admissible.clone();
     let mut newest = admissible.clone();
     let mut rank = fields.len();
-    let mut open = None;
+    // rounded numbers may cancel, and differ in digits that they have not got
+    let mut open = (!g.are_exact(&system.constraints)).then_some(Undecided::AtPoints);
     while rank < space.len() {
         let mut added = Vec::new();
         for (i, x) in admissible.iter().enumerate() {

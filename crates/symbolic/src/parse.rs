@@ -187,12 +187,30 @@ impl<'a> Parser<'a> {
             match (self.graph.add_values(&terms[0], &term), &term) {
                 (None, _) => return Err(self.mismatch("added", &terms[0], &term, operator)),
                 (Some(_), Value::Scalar(_)) => terms.push(term),
-                (Some(sum), _) => terms[0] = sum,
+                (Some(sum), _) => {
+                    for ((&a, &b), &sum) in terms[0].entries().iter().zip(term.entries()).zip(sum.entries()) {
+                        self.rounded(&[a, b], sum, start)?;
+                    }
+                    terms[0] = sum;
+                }
             }
         }
         match terms.iter().map(Value::scalar).collect::<Option<Vec<Expr>>>() {
-            Some(numbers) if numbers.len() > 1 => self.finite(Value::Scalar(self.graph.sum(&numbers)), start),
+            Some(numbers) if numbers.len() > 1 => {
+                let sum = self.graph.sum(&numbers);
+                self.rounded(&numbers, sum, start)?;
+                self.finite(Value::Scalar(sum), start)
+            }
             _ => self.finite(terms.swap_remove(0), start),
+        }
+    }
+
+    /// A fault where rounded numbers have cancelled: they may differ in digits that they have not got, and
+    /// the sum would be taken for exact.
+    fn rounded(&self, terms: &[Expr], sum: Expr, start: usize) -> Result<(), Fault> {
+        match self.graph.are_exact(terms) || !self.graph.are_exact(&[sum]) {
+            true => Ok(()),
+            false => Err(Fault { kind: ParseErrorKind::NotExact, start, end: self.last }),
         }
     }
 
