@@ -39,13 +39,36 @@ const ONE: [&str; 18] = [
 /// Formulas that are 1 in floats, and are not 1.
 const NOT_ONE: [&str; 4] = ["1 + 1e-17", "1 + 1e-17*sqrt(2)", "cos(1e-9)", "3*0.333333333333333333"];
 
+/// Formulas that are 0, and what is as small.
+const ZERO: [&str; 12] = [
+    "2*cos(pi/3) - 1",
+    "tan(pi/4) - 1",
+    "sin(pi)",
+    "cos(2*pi/3) + 1/2",
+    "sqrt(2)*sqrt(3) - sqrt(6)",
+    "sqrt(12) - 2*sqrt(3)",
+    "4*cos(pi/5)*cos(2*pi/5) - 1",
+    "sin(1)^2 + cos(1)^2 - 1",
+    "exp(1)*exp(-1) - 1",
+    "2*cos(1)^2 - cos(2) - 1",
+    "0.1 + 0.2 - 0.3",
+    "1/3 + 2/3 - 1",
+];
+const NOT_ZERO: [&str; 4] = ["1e-17", "sin(1e-9)^2", "1/3 - 0.333333333333333333", "cos(pi/5) - 0.809"];
+
 /// `z' = a x y' + y x'`, where `a` is this parameter, or stands there as it is.
 fn form(a: &str, as_parameter: bool) -> Scene {
+    constrained("z' - (A)*x*y' - y*x'", a, as_parameter)
+}
+
+/// A scene with this constraint, in which `A` is a parameter, or stands there as it is.
+fn constrained(f: &str, a: &str, as_parameter: bool) -> Scene {
     let (parameters, own) = if as_parameter { (format!("[parameters]\na = \"{a}\"\n"), "a") } else { (String::new(), a) };
     let text = format!(
         "title = \"form\"\n{parameters}[coordinates]\nx = {{ start = 1 }}\ny = {{ start = \"1/2\" }}\nz = {{ start = 0 }}\n\
-         [system]\nlagrangian = \"(x'^2 + y'^2 + z'^2)/2 - x^2/2\"\nconstraints = [\"z' - ({own})*x*y' - y*x'\"]\n\
-         [start.velocities]\n\"x'\" = 1\n\"y'\" = \"1/3\"\n[run]\nduration = 2\n"
+         [system]\nlagrangian = \"(x'^2 + y'^2 + z'^2)/2 - x^2/2\"\nconstraints = [\"{}\"]\n\
+         [start.velocities]\n\"x'\" = 1\n\"y'\" = \"1/3\"\n[run]\nduration = 2\n",
+        f.replace('A', own)
     );
     Scene::parse("form", &text).unwrap_or_else(|e| panic!("{a}: {e}"))
 }
@@ -78,6 +101,22 @@ fn what_is_one_in_floats_alone_is_not_taken_for_it() {
             assert_eq!(scene.system.parameters.first().map_or(1.0, |p| p.value), 1.0, "{a}");
             let found = integrability(&scene).expect("linear");
             assert_eq!(found, Integrability::Nonintegrable { depth: 1 }, "{a}: {found}");
+        }
+    }
+}
+
+#[test]
+fn what_is_zero_is_zero_as_a_parameter_as_well() {
+    for f in ["z' - (A)*x*y'", "z' - x*y' - y*x' + (A)*x*z'"] {
+        for (a, is_zero) in ZERO.map(|a| (a, true)).into_iter().chain(NOT_ZERO.map(|a| (a, false))) {
+            for as_parameter in [true, false] {
+                let scene = constrained(f, a, as_parameter);
+                let found = integrability(&scene).expect("a verdict");
+                let right = if is_zero { found.is_integrable() } else { found == Integrability::Nonintegrable { depth: 1 } };
+                assert!(right, "{f}, A = {a}, {as_parameter}: {found}");
+                let every = matches!(answer(&scene), Some(Answer::SomeProved | Answer::Some { settled: true, .. }));
+                assert!(every || !is_zero, "{f}, A = {a}, {as_parameter}");
+            }
         }
     }
 }

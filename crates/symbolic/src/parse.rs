@@ -80,6 +80,9 @@ impl Graph {
     }
 }
 
+/// What rounded numbers leave of themselves in a sum, at least.
+const LEFT: f64 = 1e-9;
+
 /// Names that stand for numbers, without time.
 struct Scalars<'a> {
     scope: &'a dyn Fn(&str) -> Option<Expr>,
@@ -208,7 +211,11 @@ impl<'a> Parser<'a> {
     /// A fault where rounded numbers have cancelled: they may differ in digits that they have not got, and
     /// the sum would be taken for exact.
     fn rounded(&self, terms: &[Expr], sum: Expr, start: usize) -> Result<(), Fault> {
-        match self.graph.are_exact(terms) || !self.graph.are_exact(&[sum]) {
+        let numbers: Option<Vec<f64>> = terms.iter().map(|&e| self.graph.as_number(e)).collect();
+        let most = numbers.map_or(0.0, |numbers| numbers.iter().map(|x| x.abs()).sum());
+        let stays = |x: f64| x.abs() > LEFT * most;
+        let holds = !self.graph.are_exact(&[sum]) && self.graph.as_number(sum).is_none_or(stays);
+        match holds || self.graph.are_exact(terms) {
             true => Ok(()),
             false => Err(Fault { kind: ParseErrorKind::NotExact, start, end: self.last }),
         }
