@@ -176,8 +176,7 @@ impl System {
     pub fn written_parameter(&self, p: &Parameter) -> Expr {
         let g = &self.graph;
         let unknown = |e: Expr| g.as_number(e).is_some_and(f64::is_nan);
-        let is_zero = |e: Expr| p.value == 0.0 && g.vanishes_exactly(e);
-        let counts = |e: &Expr| unknown(*e) || g.evaluate(*e, &HashMap::new()) == Ok(p.value) || is_zero(*e);
+        let counts = |e: &Expr| unknown(*e) || g.evaluate(g.constant(*e), &HashMap::new()) == Ok(p.value);
         p.formula.filter(counts).unwrap_or_else(|| g.number(p.value))
     }
 

@@ -124,8 +124,7 @@ fn parameters(
         if !given_by_others {
             let formula = is_formula.then(|| unrounded(graph, e));
             // 2 cos(π/3) − 1 is 0, and no last digit of 1
-            let is_zero = is_formula && graph.vanishes_exactly(e);
-            let value = if is_zero { 0.0 } else { graph.evaluate(e, &HashMap::new()).unwrap_or(f64::NAN) };
+            let value = graph.evaluate(graph.constant(e), &HashMap::new()).unwrap_or(f64::NAN);
             parameters.push((places[entry.key], Parameter { symbol: graph.symbol(entry.key), value, formula }));
         }
     }

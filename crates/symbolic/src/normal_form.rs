@@ -2,15 +2,34 @@
 
 use crate::arena::{Arena, Node};
 use crate::number::{Number, Rational};
-use crate::{Expr, Function};
+use crate::{Expr, Function, Graph};
 use rustc_hash::FxHashMap;
 
 /// sin(n u) is taken apart up to this n.
 const MULTIPLE_LIMIT: i64 = 8;
+/// Terms of a formula of numbers that are multiplied out.
+const TERMS: usize = 100;
 /// Prime factors under this are looked for under roots of numbers.
 const TRIED: i64 = 4096;
 /// Rounds of clearing denominators.
 const ROUNDS: usize = 4;
+
+impl Graph {
+    /// A formula of numbers in the simplest form that is known: a number, where multiples of π/12 under sines
+    /// and roots of numbers cancel to one.
+    ///
+    /// ```
+    /// let g = symbolic::Graph::new();
+    /// let half = g.call(symbolic::Function::Cos, g.mul(g.ratio(1, 3), g.pi()));
+    /// assert_eq!(g.constant(half), g.ratio(1, 2));
+    /// ```
+    pub fn constant(&self, e: Expr) -> Expr {
+        let mut arena = self.arena.borrow_mut();
+        let split = arena.with_split_angles(e);
+        let number = arena.expand(split, TERMS);
+        if arena.as_number(number).is_some_and(Number::is_exact) { number } else { e }
+    }
+}
 
 impl Arena {
     /// The numerator of `e` in sines, cosines, roots and symbols, sin² = 1 − cos²; `None` over `limit` terms.
