@@ -116,7 +116,7 @@ class System:
         self.box = None
         if self.formulas.branches(moving):
             self.box = verify.about(verify.decimals(verify.numbers_of(scene)), ["t", *self.names])
-            self.formulas.on_one_branch(moving, self.box)
+            self.formulas.on_one_branch(moving, self.box | verify.parameters_of(scene))
     def names_in(self, places):
         return {args[0] for kind, *args in self.formulas.below(places) if kind == "name"}
     def start(self):

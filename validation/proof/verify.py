@@ -16,7 +16,8 @@ Gauss sum. This is a homomorphism on all quotients whose divisors do not go to 0
 p is a prime over 2^50 and over K + 2, by which series divide. Doubt is left in two places: that f = 0 at a start with all velocities given
 is found exactly where all numbers are fractions, else mod p and in decimals; and the scene file is held against the plain scene by Taylor
 coefficients of L, f and Q along a random curve mod p. From a start drawn at random follows the same for almost every start on that piece of
-f = 0, if this is a connected analytic manifold, as the minor is analytic on it."""
+f = 0, if this is a connected analytic manifold, as the minor is analytic on it. Where roots have branches, the piece is that of the start of
+the file: the scenes are held against each other round that start, and intervals show that no root is 0 between it and the certificate's."""
 
 import hashlib, json, math, operator, os, re, secrets, sys, tomllib
 from fractions import Fraction
@@ -584,7 +585,7 @@ def hold(table, proof):
         box = about(decimals(first, meaning), ["t", *names])
         formulas.on_one_branch(moving, box)
         other, drawn = about(decimals(numbers_of(point)), ["t", *names]), drawn_in(box)
-        plain.on_one_branch(moving, {x: (min(a, other[x][0]), max(b, other[x][1])) for x, (a, b) in box.items()})
+        plain.on_one_branch(moving, parameters_of(scene) | {x: (min(a, other[x][0]), max(b, other[x][1])) for x, (a, b) in box.items()})
         at |= started(scene | {"time": drawn.pop("t"), "positions": drawn, "velocities": {}})
         branch = ", on the branch of its start"
     # Taylor coefficients along a random curve
@@ -629,6 +630,10 @@ def about(at, names):
     sizes = [abs(at[x]) for x in names if at[x]]
     size = lambda x: abs(at[x]) or min(sizes, default=1.0)
     return {x: (at[x] - size(x) / 512, at[x] + size(x) / 512) for x in names}
+
+def parameters_of(scene):
+    """Intervals of the parameters, which do not vary."""
+    return {x: (at, at) for x, at in decimals(scene["parameters"].items()).items()}
 
 def drawn_in(box):
     """Texts of fractions in a box."""

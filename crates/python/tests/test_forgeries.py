@@ -44,6 +44,15 @@ def test_a_root_that_is_left_out(images, tmp_path):
         assert (code, said) == (FORGED, "forged: the Lagrangian is not that of the file\n")
 
 
+def test_a_parameter_under_a_root(images, tmp_path):
+    l = "sqrt((s - a)^2) - s + a"
+    file = lambda s: sleigh_file(tmp_path, re.sub(r"\ba\b", "1", l), s)
+    true = measure(images, sleigh_plain(l) | {"parameters": {"a": "1"}}, free=FREE)
+    assert verdict(tmp_path, true)[0] == verdict(tmp_path, true, file(2))[0] == VERIFIED
+    assert verdict(tmp_path, true, file(0.5))[0] == UNREADABLE
+    assert verdict(tmp_path, measure(images, sleigh_plain(), free=FREE), file(0.5))[0] == FORGED
+
+
 def test_a_kink_that_is_not_at_zero(images, tmp_path):
     # a buffer, which is not there for x < 2: points of both signs do not see it
     over = SLEIGH.replace("l*", "0*")
