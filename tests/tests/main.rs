@@ -4,6 +4,7 @@ mod acceptance;
 mod architecture;
 mod discrete;
 mod faults;
+mod formulas;
 mod narrow;
 mod own_systems;
 mod properties;

@@ -313,7 +313,7 @@ fn members_have_terms_that_vanish_at_the_start_of_the_scene() {
             let mut alone = scene.clone();
             alone.start.q[0] = row[0];
             let place = alone.system.graph.find_symbol("X").unwrap();
-            alone.system.parameters = vec![Parameter { symbol: place, value: row[1] }];
+            alone.system.parameters = vec![Parameter { symbol: place, value: row[1], formula: None }];
             if row != [0.0, 5.0] && row != [3.0, 5.0] && row != [0.0, 2.0] {
                 // switched on at the start: z' = y' there, so w' = y'/(2 + cos x)
                 alone.start.v[3] = alone.start.v[1] / (2.0 + row[0].cos());

@@ -112,6 +112,11 @@ class System:
         self.texts = [read(text) for text in texts]
         places = [self.L, *self.f, *self.Q, *self.texts]
         readable(all(isinstance(place, int) for place in places), "a formula of the scene that is no number")
+        moving = {*self.names, *self.rates, "t"}
+        self.box = None
+        if self.formulas.branches(moving):
+            self.box = verify.about(verify.decimals(verify.numbers_of(scene)), ["t", *self.names])
+            self.formulas.on_one_branch(moving, self.box | verify.parameters_of(scene))
     def names_in(self, places):
         return {args[0] for kind, *args in self.formulas.below(places) if kind == "name"}
     def start(self):
@@ -119,9 +124,10 @@ class System:
         verify.resize(1)
         return verify.started(self.scene)
     def elsewhere(self):
-        """The scene with a drawn point."""
-        drawn = lambda: f"{secrets.randbelow(2**40) + 1}/{secrets.randbelow(2**10) + 1}"
-        return self.scene | {"positions": {x: drawn() for x in self.names}, "time": drawn()}
+        """The scene with a drawn point: on the branch of its own where roots have branches, else of any signs."""
+        drawn = lambda: f"{secrets.choice('+-')}{secrets.randbelow(2**40) + 1}/{secrets.randbelow(2**10) + 1}"
+        at = verify.drawn_in(self.box) if self.box else {x: drawn() for x in ["t", *self.names]}
+        return self.scene | {"time": at.pop("t"), "positions": at}
     def draw(self):
         """Numbers of a drawn point."""
         verify.resize(1)

@@ -16,7 +16,8 @@ Gauss sum. This is a homomorphism on all quotients whose divisors do not go to 0
 p is a prime over 2^50 and over K + 2, by which series divide. Doubt is left in two places: that f = 0 at a start with all velocities given
 is found exactly where all numbers are fractions, else mod p and in decimals; and the scene file is held against the plain scene by Taylor
 coefficients of L, f and Q along a random curve mod p. From a start drawn at random follows the same for almost every start on that piece of
-f = 0, if this is a connected analytic manifold, as the minor is analytic on it."""
+f = 0, if this is a connected analytic manifold, as the minor is analytic on it. Where roots have branches, the piece is that of the start of
+the file: the scenes are held against each other round that start, and intervals show that no root is 0 between it and the certificate's."""
 
 import hashlib, json, math, operator, os, re, secrets, sys, tomllib
 from fractions import Fraction
@@ -166,6 +167,60 @@ class Formulas:
                 found.add(place)
                 todo += [a for a in self.operations[place][1:] if isinstance(a, int)]
         return [self.operations[place] for place in sorted(found)]
+
+    def branches(self, names):
+        """Places of what stands under a root, or in atan2, and depends on these names."""
+        varies, found = [], set()
+        for place, (kind, *args) in enumerate(self.operations):
+            varies.append(kind == "name" and args[0] in names or kind != "name" and any(varies[a] for a in args if isinstance(a, int)))
+            exponent = self.operations[args[1]] if kind == "^" else ()
+            root = kind == "over length" or kind == "^" and not (exponent[0] == "number" and exponent[1].denominator == 1)
+            found |= {args[0]} if root and varies[args[0]] else {place} if kind == "atan2" and varies[-1] else set()
+        return found
+
+    def intervals(self, box):
+        """Of all operations over the box {name: (from, to)}, in decimals, each wider than its round-off."""
+        values, whole = [], (-math.inf, math.inf)
+        rising = {name: getattr(math, name) for name in ("exp", "log", "asin", "atan", "asinh", "acosh", "atanh")}
+        def of(kind, args):
+            if kind == "number":
+                return (float(args[0]),) * 2
+            if kind in ("name", "pi"):
+                return (math.pi,) * 2 if kind == "pi" else box.get(args[0], whole)
+            (a, b), *more = [values[x] for x in args if isinstance(x, int)]
+            c, d = more[0] if more else (0, 0)
+            if kind == "+":
+                return a + c, b + d
+            if kind == "*":
+                ends = [x * y if x and y else 0.0 for x in (a, b) for y in (c, d)]
+                return min(ends), max(ends)
+            if kind in ("sin", "cos"):
+                at, half = getattr(math, kind)((a + b) / 2), (b - a) / 2
+                return (max(at - half, -1.0), min(at + half, 1.0)) if half < 2 else (-1.0, 1.0)
+            if kind == "acos" or kind in rising:
+                ends = sorted((rising.get(kind) or math.acos)(x) for x in (a, b))
+                return ends[0], ends[1]
+            if kind == "^" and c == d and (a > 0 or c == int(c) and (c > 0 or b < 0)):
+                ends = [x**c for x in (a, b)] + ([0.0] if a < 0 < b else [])
+                return min(ends), max(ends)
+            return whole
+        for kind, *args in self.operations:
+            try:
+                a, b = of(kind, args)
+            except (ValueError, OverflowError):
+                a, b = whole
+            exact = kind == "number" and Fraction(a) == args[0]
+            wider = lambda x, by: x if exact or not math.isfinite(x) else x + by * abs(x)
+            values.append((wider(a, -1e-12), wider(b, 1e-12)) if a <= b else whole)
+        return values
+
+    def on_one_branch(self, names, box):
+        """Demands that no root is 0 in the box, and no angle of atan2 jumps."""
+        places, intervals = self.branches(names), self.intervals(box)
+        kinds = [(self.operations[place][0], intervals[place]) for place in places]
+        kinds += [("x", intervals[args[1]]) for kind, *args in (self.operations[place] for place in places) if kind == "atan2"]
+        apart = all(kind == "atan2" or a > 0 or kind != "x" and b < 0 for kind, (a, b) in kinds)
+        readable(apart, "a root that may be 0 between the points of the certificate and of the file: they may be on two branches")
 
     def degrees(self, names):
         """Of each operation as a polynomial in these names; 2 for more, and for what is no polynomial."""
@@ -511,11 +566,6 @@ def hold(table, proof):
         demand(set(proof["completed"]) <= set(rates), "what is completed")
         if proof["completed"]:
             near(scene, texts)
-    # Taylor coefficients along a random curve
-    curves = lambda firsts: [[x, *(secrets.randbelow(P) for _ in range(SIZE - 1))] for x in firsts]
-    q, v = (curves(proof["motion"][x][k] for x in names) for k in (0, 1))
-    scope = along(names, at, q, v, curves([at["t"].c[0]])[0])
-    rates = [(scope[x], scope[x + "'"]) for x in names] + [(scope["t"], Series.of(1))]
     plain, formulas = Formulas(), Formulas(meaning)
     forces, flat = table["system"].get("forces", {}), lambda x: [z for y in x for z in flat(y)] if isinstance(x, list) else [x]
     f = flat([formulas.read(text) for text in table["system"].get("constraints", [])])
@@ -527,11 +577,26 @@ def hold(table, proof):
     texts = [scene["lagrangian"], *scene["constraints"], *(scene["forces"].get(x, "0") for x in names)]
     words = ["the Lagrangian", *(f"constraint {i + 1}" for i in range(len(f))), *(f"the force on {x}" for x in names)]
     demand(len(file) == len(texts), "the number of constraints is not that of the file")
-    own, values = [plain.read(text) for text in texts], formulas.run(scope, rates)
-    others = plain.run(scope)
+    own, point, branch = [plain.read(text) for text in texts], proof.get("point", scene), ""
+    moving = {*leaves, *(x + "'" for x in names)}
+    if proof["almost_every_start"] and (formulas.branches(moving) or plain.branches(moving)):
+        # where roots have branches, on that of the start of the file
+        first = [("t", given.get("time", start.get("time", 0))), *((x, given.get(x, entry["start"])) for x, entry in table["coordinates"].items())]
+        box = about(decimals(first, meaning), ["t", *names])
+        formulas.on_one_branch(moving, box)
+        other, drawn = about(decimals(numbers_of(point)), ["t", *names]), drawn_in(box)
+        plain.on_one_branch(moving, parameters_of(scene) | {x: (min(a, other[x][0]), max(b, other[x][1])) for x, (a, b) in box.items()})
+        at |= started(scene | {"time": drawn.pop("t"), "positions": drawn, "velocities": {}})
+        branch = ", on the branch of its start"
+    # Taylor coefficients along a random curve
+    curves = lambda firsts: [[x, *(secrets.randbelow(P) for _ in range(SIZE - 1))] for x in firsts]
+    q, v = curves(at[x].c[0] for x in names), curves(proof["motion"][x][1] for x in names)
+    scope = along(names, at, q, v, curves([at["t"].c[0]])[0])
+    rates = [(scope[x], scope[x + "'"]) for x in names] + [(scope["t"], Series.of(1))]
+    values, others = formulas.run(scope, rates), plain.run(scope)
     for place, mine, word in zip(file, own, words):
         demand(values[place].plain().c == others[mine].plain().c, f"{word} is not that of the file")
-    return f", which leaves {' '.join(extra)} to the constraints" if extra else ""
+    return branch + (f", which leaves {' '.join(extra)} to the constraints" if extra else "")
 
 def by_removal(removal, here, rates, names, meaning):
     """All velocities, where the start gives rates of parameters of the first removal."""
@@ -547,14 +612,37 @@ def by_removal(removal, here, rates, names, meaning):
         rates[x + "'"] = formulas.run(at, pairs)[place]
     return {name: x for name, x in rates.items() if name[:-1] in names}
 
-def near(scene, texts):
-    """Demands of velocities that they fulfil the constraints but for round-off."""
+def decimals(texts, meaning=None):
+    """The numbers of these texts by name, each made of those before it."""
     at = {}
-    positions = [(x, scene["positions"][x]) for x in scene["coordinates"]]
-    for name, text in [*scene["parameters"].items(), ("t", scene["time"]), *positions, *texts.items()]:
-        formulas = Formulas()
+    for name, text in texts:
+        formulas = Formulas(meaning) if meaning else Formulas()
         place = formulas.read(text)
         at[name] = formulas.in_decimals(at)[place]
+    return at
+
+def numbers_of(scene):
+    """Names and texts of parameters, time and positions."""
+    return [*scene["parameters"].items(), ("t", scene["time"]), *((x, scene["positions"][x]) for x in scene["coordinates"])]
+
+def about(at, names):
+    """The box about a point: as far as the program draws from a start where roots have branches."""
+    sizes = [abs(at[x]) for x in names if at[x]]
+    size = lambda x: abs(at[x]) or min(sizes, default=1.0)
+    return {x: (at[x] - size(x) / 512, at[x] + size(x) / 512) for x in names}
+
+def parameters_of(scene):
+    """Intervals of the parameters, which do not vary."""
+    return {x: (at, at) for x, at in decimals(scene["parameters"].items()).items()}
+
+def drawn_in(box):
+    """Texts of fractions in a box."""
+    part = lambda: Fraction(secrets.randbelow(2**20), 2**20)
+    return {x: str(Fraction(a) + (Fraction(b) - Fraction(a)) * part()) for x, (a, b) in box.items()}
+
+def near(scene, texts):
+    """Demands of velocities that they fulfil the constraints but for round-off."""
+    at = decimals([*numbers_of(scene), *texts.items()])
     formulas = Formulas()
     f = [formulas.read(text) for text in scene["constraints"]]
     values = formulas.in_decimals(at)

@@ -25,7 +25,7 @@ pub(crate) fn run(arguments: &LinearizeArguments) -> Result<String> {
             if arguments.scene.set.overrides.iter().any(|(set, _)| set == name) {
                 bail!("--sweep: `{name}` varies, and --set fixes it");
             }
-            let values = linear::equidistant(range.from, range.to, range.count);
+            let values: Vec<f64> = deltaq::equidistant(range.from, range.to, range.count).collect();
             sweep(&scene, &choice, &free, (name, &values), arguments.find)?
         }
         None => {

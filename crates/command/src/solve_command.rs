@@ -6,14 +6,13 @@ use std::time::Duration;
 
 use anyhow::{Context, Result, bail, ensure};
 use deltaq::{
-    Choice, ErrorEstimate, Form, Motion, STEP_LIMIT, Setting, Settings, Steps, default_constants, error_estimates,
+    Choice, ErrorEstimate, Form, Motion, STEP_LIMIT, Setting, Settings, Steps, default_constants, equidistant, error_estimates,
     formulation_in, removal, removal_names, removals, sensitivities, setting, solve_by_steps, solve_choice,
 };
 use discrete::Composition;
 use equations::{Formulation, Outputs};
 use integrals::watched;
 use integrate::{Interrupt, Projection};
-use linear::equidistant;
 use mechanics::{Constancy, ConstantsRule, Observables, Removal, Watched};
 use scene::Scene;
 use serde_json::{Map, Value, json};
@@ -47,7 +46,7 @@ pub(crate) fn run(arguments: &SolveArguments, quiet: bool) -> Result<Answer> {
     }
     let wanted = match &arguments.motion.times {
         Some(text) => times(text, &scene)?,
-        None => equidistant(scene.start.t, scene.start.t + scene.duration, 101),
+        None => equidistant(scene.start.t, scene.start.t + scene.duration, 101).collect(),
     };
     let (n, h) = (scene.system.dimension(), scene.system.constraints.len());
     let columns = 1 + 3 * n + 2 * h + scene.system.watched.len() + 2 * (2 * n + h) * arguments.sensitivities.len();
@@ -246,7 +245,7 @@ pub(crate) fn times(text: &str, scene: &Scene) -> Result<Vec<f64>> {
             if !(1..=1_000_000).contains(&count) {
                 bail!("--times {text} asks for {count} times; 1 to 1000000 are possible");
             }
-            equidistant(number(from)?, number(to)?, count)
+            equidistant(number(from)?, number(to)?, count).collect()
         }
         [list] => list.split(',').map(number).collect::<Result<_>>()?,
         _ => bail!("--times {text} is neither `a,b,c` nor `from:to:count`"),

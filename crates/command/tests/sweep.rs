@@ -90,3 +90,15 @@ fn costates_vary_like_multipliers_and_two_formulations_are_chosen() {
     refused(&[&call[..], &["P0_x=0:1:2", "--formulation", "chetaev,vakonomic"]].concat(), &["P0_x", "no removal"]);
     refused(&[&call[..], &["g=9:10:2", "--formulation", "chetaev"]].concat(), &["two formulations, not 1"]);
 }
+
+#[test]
+fn the_values_of_a_sweep_are_the_decimals_that_are_meant() {
+    let values = |range: &str, call: &[&str]| {
+        let text = answer(&[call, &["--quiet", "--sweep", &format!("phi'={range}")]].concat(), 0).0;
+        let lines = text.lines().filter(|line| line.starts_with(['-', '0', '6'])).map(str::to_owned);
+        lines.map(|line| line.split(',').next().unwrap_or_default().to_owned()).collect::<Vec<_>>()
+    };
+    let tenths: Vec<String> = (-6..=6).map(|k| format!("{:?}", f64::from(k) / 10.0)).collect();
+    assert_eq!(values("-0.6:0.6:13", &["compare", "disc"]), tenths);
+    assert_eq!(values("-6e-10:6e-10:3", &["compare", "disc"]), ["-6e-10", "0.0", "6e-10"]);
+}

@@ -4,7 +4,7 @@
 use std::collections::{HashMap, HashSet};
 
 use equations::Equations;
-use mechanics::System;
+use mechanics::{Parameter, System};
 use symbolic::{Expr, Graph, Symbol, Vanishing};
 
 use crate::family::{Family, costate};
@@ -19,10 +19,10 @@ const LARGEST: usize = 20_000;
 /// the derivative of the section along them, or an unknown beside `z`. Velocities are put in from `f = 0`;
 /// with all unknowns eliminated, which stand linearly, what is left of every equation has to be the number
 /// zero. Pivots are not zero identically: what is shown where they differ from zero holds on all of `f = 0`
-/// by continuity.
+/// by continuity. What is no identity for all parameters may be one for those of the system, as written.
 pub(crate) fn is_identity(system: &System, curve: &Equations, family: &Family, section: Option<&[Expr]>) -> bool {
-    remainders(system, curve, family, section)
-        .is_some_and(|(g, rest)| g.are_exact(&rest) && rest.iter().all(|&e| vanishes(&g, e)))
+    let zero = |(g, rest): (Graph, Vec<Expr>)| g.are_exact(&rest) && rest.iter().all(|&e| vanishes(&g, e));
+    [false, true].into_iter().any(|as_written| remainders(system, curve, family, section, as_written).is_some_and(zero))
 }
 
 fn vanishes(g: &Graph, e: Expr) -> bool {
@@ -35,6 +35,7 @@ fn remainders(
     curve: &Equations,
     family: &Family,
     section: Option<&[Expr]>,
+    as_written: bool,
 ) -> Option<(Graph, Vec<Expr>)> {
     let equations = &family.equations;
     let g = equations.graph.clone();
@@ -87,7 +88,13 @@ fn remainders(
     known.extend(&z);
     let mut all = g.substitute_all(&residuals, &put_in);
     all.extend(of_curve(&curve.blocks.iter().flat_map(|b| b.residuals.clone()).collect::<Vec<_>>()));
-    let constraints = g.adopt(&system.graph, &system.constraints);
+    let mut constraints = g.adopt(&system.graph, &system.constraints);
+    if as_written {
+        let number = |p: &Parameter| (renamed(p.symbol), g.adopt(&system.graph, &[system.written_parameter(p)])[0]);
+        let exact = |(_, e): &(Symbol, Expr)| g.are_exact(&[*e]);
+        let numbers = system.parameters.iter().map(number).filter(exact).collect();
+        (all, constraints) = (g.substitute_all(&all, &numbers), g.substitute_all(&constraints, &numbers));
+    }
     let in_terms = all.iter().flat_map(|&e| g.symbols_of(e)).all(|s| known.contains(&s));
     if !in_terms || !g.are_exact(&[&all[..], &constraints].concat()) {
         return None;

@@ -14,7 +14,7 @@ use crate::start::ExactStart;
 pub struct PlainScene {
     /// Names, in the order of `q`.
     pub coordinates: Vec<String>,
-    /// Parameters that are no functions of others.
+    /// Parameters that stand in what follows, and are no functions of others.
     pub parameters: Vec<(String, String)>,
     /// `L(q, v, t)`.
     pub lagrangian: String,
@@ -65,9 +65,12 @@ impl PlainScene {
         let name = |i: usize| system.coordinates[i].name.clone();
         let forces = system.forces.iter().enumerate().filter(|(_, force)| !g.is_zero(**force));
         let given = (0..n).filter(|i| !open.contains(i));
+        let formulas = [&[system.lagrangian][..], &system.constraints, &system.forces, &start.written].concat();
+        let stands = |i: &usize| formulas.iter().any(|&e| g.depends_on(e, system.parameters[*i].symbol));
+        let parameter = |i: usize| (g.name(system.parameters[i].symbol), text(i));
         let scene = PlainScene {
             coordinates: (0..n).map(name).collect(),
-            parameters: (0..parameters).map(|i| (g.name(system.parameters[i].symbol), text(i))).collect(),
+            parameters: (0..parameters).filter(stands).map(parameter).collect(),
             lagrangian: g.plain(system.lagrangian),
             constraints: system.constraints.iter().map(|&f| g.plain(f)).collect(),
             forces: forces.map(|(i, &force)| (name(i), g.plain(force))).collect(),

@@ -77,12 +77,12 @@ impl ExactStart {
         let positions = q.iter().zip(&state.q).map(|(s, x)| as_written(s).unwrap_or_else(|| decimal(x)));
         let is_rate = |s: &Symbol| *s != system.time && !q.contains(s) && !symbols.contains(s);
         let rates: Vec<(Symbol, Expr)> = completion.written.iter().filter(|(s, _)| is_rate(s)).copied().collect();
-        let numbers = system.parameters.iter().map(|p| (p.symbol, p.value)).chain([(system.time, state.t)]);
         let known = system.parameter_values();
         let unknown = |e: Expr| g.as_number(e).is_some_and(f64::is_nan);
         // a number that was replaced since is no longer what was written
-        let formula = |s: &Symbol, x: f64| as_written(s).filter(|&e| unknown(e) || g.evaluate(e, &known) == Ok(x));
-        let given: Vec<Expr> = numbers.map(|(s, x)| formula(&s, x).unwrap_or_else(|| decimal(&x))).collect();
+        let time = as_written(&system.time).filter(|&e| unknown(e) || g.evaluate(e, &known) == Ok(state.t));
+        let time = time.unwrap_or_else(|| decimal(&state.t));
+        let given: Vec<Expr> = system.parameters.iter().map(|p| system.written_parameter(p)).chain([time]).collect();
         let mut written = given.clone();
         let given = Written::new(g, &symbols, &given)?;
         let mut problem = completion.projected.map(|_| NoExactStart::Projected);

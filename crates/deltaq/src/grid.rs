@@ -1,13 +1,14 @@
 //! Grids of times at which motions are sampled.
 
 use crate::Motion;
-use crate::wanted::{equidistant, kept_before};
+use crate::equidistant::equidistant;
+use crate::wanted::kept_before;
 
 impl Motion {
     /// `samples + 1` equidistant times from start to end; of a motion that was kept at some times only, the
     /// last of these before each, which may be fewer.
     pub fn grid(&self, samples: usize) -> Vec<f64> {
-        let times = equidistant([self.start(), self.end()], samples).map(|t| self.kept_before(t));
+        let times = equidistant(self.start(), self.end(), samples + 1).map(|t| self.kept_before(t));
         let mut times: Vec<f64> = times.collect();
         if self.wanted.is_some() {
             times.dedup();

@@ -79,6 +79,7 @@ mod doubt;
 mod ending;
 mod ensemble;
 mod equations_text;
+mod equidistant;
 mod error;
 mod error_estimate;
 mod first_trace;
@@ -141,6 +142,7 @@ pub use ensemble::{
     Ensemble, EnsembleMember, EnsembleOptions, EnsembleStart, MemberMotion, MemberRun, number_of_threads, over_threads,
 };
 pub use equations_text::{EquationStyle, equations_text, shared_text, system_text};
+pub use equidistant::{equidistant, equidistant_value};
 pub use error::SolveError;
 pub use error_estimate::{ErrorEstimate, TRUSTED, error_estimate, error_estimates};
 pub use first_trace::{FirstTrace, first_trace};

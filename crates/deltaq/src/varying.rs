@@ -58,7 +58,7 @@ impl Varying {
         choice.removal.as_ref().map(|removal| removal.verify(&general)).transpose()?;
         let mut equations = derived(scene, choice, &varied, settings.form)?;
         let mut constants = vec![0.0; equations.free_constants.len()];
-        for Parameter { symbol, value } in &varied {
+        for Parameter { symbol, value, .. } in &varied {
             equations.parameters.remove(symbol);
             equations.free_constants.push(FreeConstant { symbol: *symbol, natural: None, memory: None });
             constants.push(*value);

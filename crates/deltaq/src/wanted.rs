@@ -3,6 +3,8 @@
 
 use std::sync::Arc;
 
+use crate::equidistant::equidistant;
+
 /// Stretches of the whole run at whose ends everything that looks along a motion may look.
 pub const STRETCHES: [usize; 3] = [200, 32, 4];
 /// Number of times at unequal distances, which no period fits.
@@ -12,11 +14,6 @@ const SCATTERED: usize = 200;
 const OF_A_HALF: usize = 64;
 /// How often the rest of a run is halved.
 pub const HALVES: i32 = 20;
-
-/// `stretches + 1` equidistant times from `start` to `end`.
-pub(crate) fn equidistant([start, end]: [f64; 2], stretches: usize) -> impl Iterator<Item = f64> {
-    (0..=stretches).map(move |i| start + (end - start) * i as f64 / stretches as f64)
-}
 
 /// Times from `start` to `end` that no period fits: parts of the golden section.
 pub(crate) fn scattered([start, end]: [f64; 2]) -> impl Iterator<Item = f64> {
@@ -29,9 +26,9 @@ pub fn wanted(ends: [f64; 2], times: &[f64]) -> Arc<[f64]> {
     let [start, end] = [ends[0], ends[0] + (ends[1] - ends[0])];
     let ends = [start, end];
     let mut all: Vec<f64> = times.iter().copied().chain(scattered(ends)).collect();
-    all.extend(STRETCHES.iter().flat_map(|&stretches| equidistant(ends, stretches)));
+    all.extend(STRETCHES.iter().flat_map(|&stretches| equidistant(start, end, stretches + 1)));
     let halves = (0..HALVES).map(|k| start + (end - start) * 0.5_f64.powi(k));
-    all.extend(halves.flat_map(|end| equidistant([start + 0.5 * (end - start), end], OF_A_HALF)));
+    all.extend(halves.flat_map(|end| equidistant(start + 0.5 * (end - start), end, OF_A_HALF + 1)));
     all.sort_by(f64::total_cmp);
     all.dedup();
     all.into()

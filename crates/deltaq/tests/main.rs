@@ -10,6 +10,7 @@ mod contradictions;
 mod doubts;
 mod endings;
 mod ensembles;
+mod equidistant;
 mod errors;
 mod estimates;
 mod examples;

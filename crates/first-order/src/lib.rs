@@ -84,7 +84,7 @@ pub fn curvature(system: &System, multipliers: &[Expr]) -> Vec<Expr> {
 /// # system.lagrangian = system.expression("(x'^2 + y'^2 + phi'^2)/2 + x")?;
 /// # system.constraints = vec![system.expression("y'*cos(phi) - x'*sin(phi)")?];
 /// # let symbol = system.graph.symbol("epsilon");
-/// # system.parameters.push(mechanics::Parameter { symbol, value: 0.01 });
+/// # system.parameters.push(mechanics::Parameter { symbol, value: 0.01, formula: None });
 /// // the ice sledge: L = (x'^2 + y'^2 + phi'^2)/2 + x, f = y'*cos(phi) - x'*sin(phi)
 /// let equations = first_order::derive(&system, &equations::Derivation::default())?;
 /// let line = |i: usize| equations.graph.plain(equations.statements[i].left);

@@ -13,7 +13,7 @@ fn with(numbers: &[(&str, f64)]) -> System {
     let mut system = system();
     for &(name, value) in numbers {
         let symbol = system.graph.symbol(name);
-        system.parameters.push(Parameter { symbol, value });
+        system.parameters.push(Parameter { symbol, value, formula: None });
     }
     system
 }

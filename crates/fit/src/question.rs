@@ -66,7 +66,7 @@ impl Question<'_> {
         for unknown in &law {
             let symbol = scene.system.graph.symbol(&unknown.name);
             if !scene.system.parameters.iter().any(|p| p.symbol == symbol) {
-                scene.system.parameters.push(Parameter { symbol, value: unknown.start.unwrap_or(0.0) });
+                scene.system.parameters.push(Parameter { symbol, value: unknown.start.unwrap_or(0.0), formula: None });
             }
         }
         let unknowns = with_start(&scene, self.unknowns);

@@ -53,11 +53,11 @@ impl Reversible {
         let (mass, jacobian) = (system.velocity_hessian(), system.constraint_jacobian());
         let free = |es: &[Expr]| es.iter().all(|&e| v.iter().all(|&v| !g.depends_on(e, v)));
         let momenta: Vec<Expr> = g.gradient(system.lagrangian, &v).into_iter().map(at_rest).collect();
-        if !free(mass.entries()) || !momenta.iter().all(|&e| g.vanishes_exactly(e)) {
+        if !free(mass.entries()) || !momenta.iter().all(|&e| g.vanishes_exactly(system.as_written(e))) {
             return Err(Open::NotQuadratic);
         }
         let offsets: Vec<Expr> = system.constraints.iter().map(|&f| at_rest(f)).collect();
-        if !free(jacobian.entries()) || !offsets.iter().all(|&e| g.vanishes_exactly(e)) {
+        if !free(jacobian.entries()) || !offsets.iter().all(|&e| g.vanishes_exactly(system.as_written(e))) {
             return Err(Open::NotHomogeneous);
         }
         let outputs = [jacobian.entries(), mass.entries(), &[g.neg(at_rest(system.lagrangian))]].concat();

@@ -27,7 +27,7 @@ fn first_order(name: &str, epsilon: f64, slip: f64, drag: f64) -> Judgement {
     let system = &mut made.system;
     for (name, value) in [("epsilon", epsilon), ("slip", slip)] {
         let symbol = system.graph.symbol(name);
-        system.parameters.push(Parameter { symbol, value });
+        system.parameters.push(Parameter { symbol, value, formula: None });
     }
     let (g, v) = (system.graph.clone(), system.velocities());
     let momenta = g.mat_vec(&system.velocity_hessian(), &g.variables(&v));

@@ -59,7 +59,7 @@ pub const FORMULATION: Formulation = Formulation {
 /// # system.lagrangian = system.expression("(x'^2 + y'^2 + phi'^2)/2 + x")?;
 /// # system.constraints = vec![system.expression("y'*cos(phi) - x'*sin(phi)")?];
 /// # let symbol = system.graph.symbol("kappa");
-/// # system.parameters.push(mechanics::Parameter { symbol, value: 0.5 });
+/// # system.parameters.push(mechanics::Parameter { symbol, value: 0.5, formula: None });
 /// // the ice sledge: L = (x'^2 + y'^2 + phi'^2)/2 + x, f = y'*cos(phi) - x'*sin(phi)
 /// let equations = kappa::derive(&system, &equations::Derivation::default())?;
 /// let line = |i: usize| equations.graph.plain(equations.statements[i].left);

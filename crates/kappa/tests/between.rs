@@ -11,7 +11,7 @@ fn what_is_left_of_the_balance_is_force_and_friction() {
     let (kappa, mu) = (0.7, 0.6);
     let mut system = system();
     let symbol = system.graph.symbol("kappa");
-    system.parameters.push(Parameter { symbol, value: kappa });
+    system.parameters.push(Parameter { symbol, value: kappa, formula: None });
     let equations = kappa::derive(&system, &Default::default()).expect("derived");
     let v = velocities();
     let rates = rates(&equations, &[&Q[..], &v, &[mu]].concat());

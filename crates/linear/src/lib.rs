@@ -65,4 +65,4 @@ pub use error::LinearError;
 pub use find::find_steady;
 pub use linearization::{Carried, Growth, Linearization, Part, linearize, linearize_at};
 pub use spectrum::{Block, Chain, Eigenvalue, Spectrum};
-pub use sweep::{Change, Sweep, SweepPoint, equidistant, sweep};
+pub use sweep::{Change, Sweep, SweepPoint, sweep};

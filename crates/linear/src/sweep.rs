@@ -57,11 +57,6 @@ const CLOSE: f64 = 1e-14;
 /// So near, over the size of a value, errors decide again what eigenvalues on the axis do.
 const NEAR: [f64; 5] = [1e-12, 1e-11, 1e-9, 1e-7, 1e-5];
 
-/// `count` values from one to another, both included.
-pub fn equidistant(from: f64, to: f64, count: usize) -> Vec<f64> {
-    (0..count).map(|i| from + (to - from) * i as f64 / (count.max(2) - 1) as f64).collect()
-}
-
 /// The equations of `choice` to first order about the start of `scene`, with each of `values` in the place of
 /// the parameter, start value or multiplier `name`; the `free` coordinates as in [`Linearization::part`]. The
 /// start has to be a steady motion at each value, or, with `find`, is where one is looked for.

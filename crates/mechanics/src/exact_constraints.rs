@@ -3,7 +3,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use symbolic::{Expr, Graph, Symbol, Vanishing};
+use symbolic::{Expr, Symbol, Vanishing};
 
 use crate::elimination::{LinearForms, Pivot, SparseMatrix};
 use crate::{RemovalError, State, System};
@@ -51,11 +51,11 @@ impl System {
                     j < n
                         && !standing.contains(&places[j])
                         && places.iter().all(|&place| !g.depends_on(c, place))
-                        && matches!(g.vanishes(c, &self.parameter_values()), Vanishing::No { .. })
+                        && matches!(rest.vanishes(c), Vanishing::No { .. })
                 };
                 let row = &matrix.rows()[p];
                 let fewest = row.iter().filter(own).map(|(&j, _)| j).min_by_key(|&j| matrix.rows_with(j).len());
-                let Some(i) = fewest.filter(|_| is_total_derivative(g, row, &places)) else { continue };
+                let Some(i) = fewest.filter(|_| rest.is_total_derivative(row, &places)) else { continue };
                 let Some(Pivot { entry, row, column }) = matrix.take(p, i) else { continue };
                 for (r, factor) in column {
                     for (&j, &e) in &row {
@@ -89,15 +89,18 @@ impl System {
         let of = |x: &[f64]| stay.iter().map(|&i| x[i]).collect();
         Ok((rest, State { t: state.t, q: of(&state.q), v: of(&state.v) }))
     }
+
+    /// Whether `Σ a_j dq_j + b dt` is closed, exactly: `∂a_j/∂q_k = ∂a_k/∂q_j`. `places` are `q` and time.
+    fn is_total_derivative(&self, row: &BTreeMap<usize, Expr>, places: &[Symbol]) -> bool {
+        let g = &self.graph;
+        g.are_exact(&row.values().copied().collect::<Vec<_>>()) && row.iter().all(|(&j, &a)| {
+            let symbols = g.symbols_of(a);
+            places.iter().enumerate().filter(|(k, place)| *k != j && symbols.contains(place)).all(|(k, &place)| {
+                let other = row.get(&k).map_or(g.zero(), |&b| g.derivative(b, places[j]));
+                let curl = g.sub(g.derivative(a, place), other);
+                g.vanishes_exactly(curl) || g.vanishes_exactly(self.as_written(curl))
+            })
+        })
+    }
 }
 
-/// Whether `Σ a_j dq_j + b dt` is closed, exactly: `∂a_j/∂q_k = ∂a_k/∂q_j`. `places` are `q` and time.
-fn is_total_derivative(g: &Graph, row: &BTreeMap<usize, Expr>, places: &[Symbol]) -> bool {
-    row.iter().all(|(&j, &a)| {
-        let symbols = g.symbols_of(a);
-        places.iter().enumerate().filter(|(k, place)| *k != j && symbols.contains(place)).all(|(k, &place)| {
-            let other = row.get(&k).map_or(g.zero(), |&b| g.derivative(b, places[j]));
-            g.vanishes_exactly(g.sub(g.derivative(a, place), other))
-        })
-    })
-}

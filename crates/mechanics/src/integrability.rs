@@ -142,7 +142,7 @@ fn by_brackets(system: &System, state: &State, end: f64) -> Result<Integrability
     if !system.constraints_linear_in_velocity() {
         return Ok(Integrability::NonlinearInVelocity);
     }
-    let (constants, surroundings) = (system.parameter_values(), Surroundings::of_start(system, state, end));
+    let surroundings = Surroundings::of_start(system, state, end);
     let (system, state) = &system.without_exact_constraints(state)?;
     let g = &system.graph;
     let exact = h - system.constraints.len();
@@ -173,7 +173,8 @@ fn by_brackets(system: &System, state: &State, end: f64) -> Result<Integrability
     let mut fields = admissible.clone();
     let mut newest = admissible.clone();
     let mut rank = fields.len();
-    let mut open = None;
+    // rounded numbers may cancel, and differ in digits that they have not got
+    let mut open = (!g.are_exact(&system.constraints)).then_some(Undecided::AtPoints);
     while rank < space.len() {
         let mut added = Vec::new();
         for (i, x) in admissible.iter().enumerate() {
@@ -191,7 +192,7 @@ fn by_brackets(system: &System, state: &State, end: f64) -> Result<Integrability
                 let found = rank_of(&fields);
                 // as long as there are no others, what is not zero adds a direction
                 let alone = rank == admissible.len() && found <= Some(rank);
-                let verdicts: Vec<Vanishing> = z.iter().filter(|_| alone).map(|&e| g.vanishes(e, &constants)).collect();
+                let verdicts: Vec<Vanishing> = z.iter().filter(|_| alone).map(|&e| system.vanishes(e)).collect();
                 if found > Some(rank) || verdicts.iter().any(|v| matches!(v, Vanishing::No { .. })) {
                     rank += 1;
                     added.push(z);

@@ -4,7 +4,7 @@ use std::collections::{BTreeSet, HashMap};
 
 use symbolic::{Bounded, Evaluator, Expr, Graph, Matrix, Scalar, SplitMix, Symbol};
 
-use crate::{State, System};
+use crate::{Parameter, State, System};
 
 /// How far from the centre points are drawn, in sizes.
 const REACHES: [f64; 4] = [1.0, 0.1, 3.0, 0.01];
@@ -13,22 +13,26 @@ const SIGNS: [Option<f64>; 3] = [None, Some(1.0), Some(-1.0)];
 
 /// Where expressions are tried: constants have their values, everything else a centre and a size.
 pub struct Surroundings {
-    constants: HashMap<Symbol, f64>,
+    /// With the round-off of their formulas: what is zero by an identity is none that is certain.
+    constants: HashMap<Symbol, Bounded>,
     /// Centre and size; without an entry 0 and 1.
     variables: HashMap<Symbol, (f64, f64)>,
 }
 
 impl Surroundings {
     /// Round zero, in sizes of 1.
-    pub fn of_zero(constants: HashMap<Symbol, f64>) -> Self {
-        Surroundings { constants, variables: HashMap::new() }
+    pub fn of_zero(system: &System) -> Self {
+        let bounded = |p: &Parameter| {
+            let formula = system.graph.bounded(system.written_parameter(p), &HashMap::new());
+            (p.symbol, formula.filter(|x| x.is_finite()).unwrap_or(Bounded::from_f64(p.value)))
+        };
+        Surroundings { constants: system.parameters.iter().map(bounded).collect(), variables: HashMap::new() }
     }
 
     /// Round a start, in sizes that go with the units: of a coordinate how large it is, how far its velocity
     /// takes it up to `end`, how far all kinetic energy and the work of its own force up to `end` could.
     pub fn of_start(system: &System, start: &State, end: f64) -> Self {
-        let (g, constants) = (&system.graph, system.parameter_values());
-        let mut values = constants.clone();
+        let (g, mut values) = (&system.graph, system.parameter_values());
         values.extend(system.values_at(start));
         let number = |e: Expr| g.evaluate(e, &values).ok().filter(|x| x.is_finite()).unwrap_or(0.0);
         let time = (end - start.t).abs();
@@ -50,7 +54,7 @@ impl Surroundings {
             variables.insert(c.velocity, (start.v[i], if time > 0.0 { size / time } else { size }));
         }
         variables.insert(system.time, (start.t, if time > 0.0 { time } else { 1.0 }));
-        Surroundings { constants, variables }
+        Surroundings { variables, ..Surroundings::of_zero(system) }
     }
 
     /// Values at one of the points: a pure function of its number and of the places of the symbols.
@@ -61,7 +65,7 @@ impl Surroundings {
             let (magnitude, drawn) = (0.3 + random.unit(), if random.unit() < 0.5 { 1.0 } else { -1.0 });
             let (centre, size) = self.variables.get(symbol).copied().unwrap_or((0.0, 1.0));
             let varied = centre + size * reach * magnitude * sign.unwrap_or(drawn);
-            Bounded::from_f64(self.constants.get(symbol).copied().unwrap_or(varied))
+            self.constants.get(symbol).copied().unwrap_or(Bounded::from_f64(varied))
         };
         symbols.iter().map(value).collect()
     }

@@ -126,14 +126,14 @@ impl Removal {
             let (removal, found) = (self.name.clone(), self.parameters.len());
             return Err(RemovalError::WrongCount { removal, found, expected });
         }
-        let (g, constants) = (&system.graph, system.parameter_values());
+        let g = &system.graph;
         let mut exactly = true;
         for (index, &f) in system.constraints.iter().enumerate() {
             let rest = self.rewrite(system, f);
             if g.vanishes_exactly(rest) {
                 continue;
             }
-            let verdict = g.vanishes(rest, &constants);
+            let verdict = system.vanishes(rest);
             exactly &= verdict == Vanishing::Exactly;
             if verdict.is_zero() {
                 continue;

@@ -29,6 +29,9 @@ pub struct Parameter {
     pub symbol: Symbol,
     /// Value, finite.
     pub value: f64,
+    /// What it was written as, if that is no decimal: a formula of numbers, or NaN for one that is not known
+    /// exactly. It counts as long as its value is this one.
+    pub formula: Option<Expr>,
 }
 
 /// A quantity that the user wants to see along a motion.
@@ -168,6 +171,28 @@ impl System {
         self.parameters.iter().map(|p| (p.symbol, p.value)).collect()
     }
 
+    /// A parameter as it is written: the exact decimal of its value, or its formula; NaN for what is not known
+    /// exactly.
+    pub fn written_parameter(&self, p: &Parameter) -> Expr {
+        let g = &self.graph;
+        let unknown = |e: Expr| g.as_number(e).is_some_and(f64::is_nan);
+        let counts = |e: &Expr| unknown(*e) || g.evaluate(g.constant(*e), &HashMap::new()) == Ok(p.value);
+        p.formula.filter(counts).unwrap_or_else(|| g.number(p.value))
+    }
+
+    /// `e` with every parameter put in as it is written, where that is known exactly.
+    pub fn as_written(&self, e: Expr) -> Expr {
+        let g = &self.graph;
+        let written = self.parameters.iter().map(|p| (p.symbol, self.written_parameter(p)));
+        g.substitute(e, &written.filter(|(_, e)| g.are_exact(&[*e])).collect())
+    }
+
+    /// Whether `e` is identically zero for the parameters of the system as they are written: a formula is no
+    /// float ([`Graph::vanishes`]).
+    pub fn vanishes(&self, e: Expr) -> Vanishing {
+        self.graph.vanishes(self.as_written(e), &self.parameter_values())
+    }
+
     /// `outputs` from the values of `inputs`, with the parameters folded in.
     ///
     /// # Errors
@@ -254,7 +279,7 @@ impl System {
         self.constraints.iter().zip(work).all(|(&f, av)| {
             (1..=4).any(|degree| {
                 let rest = g.sub(av, g.mul(g.integer(degree), f));
-                g.vanishes(rest, &self.parameter_values()) == Vanishing::Exactly
+                self.vanishes(rest) == Vanishing::Exactly
             })
         })
     }

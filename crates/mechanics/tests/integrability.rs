@@ -52,6 +52,29 @@ fn total_derivatives_are_integrable() {
     must_be_integrable(&["x", "y", "z"], &["(1 + x^2)*(z' - y*x' - x*y')"]);
 }
 
+#[test]
+fn a_parameter_is_its_formula_and_a_rounded_number_nothing_exact() {
+    // `a` has the value of its formula, or another since
+    let form = |a: &str, value: Option<f64>, b: f64| {
+        let (mut system, state) = systems::kinetic(&["x", "y", "z"], &[("a", 0.0), ("b", b)], &["z' - a*x*y' - b*y*x'"]);
+        let formula = system.expression(a).expect("a formula");
+        let own = system.graph.evaluate(formula, &Default::default()).expect("a number");
+        system.parameters[0].value = value.unwrap_or(own);
+        system.parameters[0].formula = Some(formula);
+        integrability(&system, &state, 3.0).expect("a verdict")
+    };
+    let exactly = Integrability::Integrable { exact: true };
+    assert_eq!(form("sqrt(2)*sqrt(3)/sqrt(6)", None, 1.0), exactly);
+    assert_eq!(form("sqrt(2)*sqrt(3)/sqrt(6)", Some(0.5), 0.5), exactly);
+    assert_eq!(form("sqrt(2)*sqrt(3)/sqrt(6)", Some(0.5), 1.0), Integrability::Nonintegrable { depth: 1 });
+    assert_eq!(form("1 + 1/100000000000000000", None, 1.0), Integrability::Nonintegrable { depth: 1 });
+    // of unknown digits, or with more than are held
+    let open = Integrability::Undecided { why: Undecided::AtPoints, depth: 0, at_most: 1, constraints: 1 };
+    assert_eq!(form("1 + log(4) - 2*log(2)", None, 1.0), open);
+    assert_eq!(verdict(&["x", "y", "z"], &["z' - 12345678901234567890123*x*y' - 12345678901234567890122*y*x'"]), open);
+    assert_eq!(verdict(&["x", "y", "z"], &["z' - 12345678901234567890123*x*y' - 12345678901234567890123*y*x'"]), open);
+}
+
 /// `d/dt(xy + z)` and `d/dt(w − x²)`.
 const FIRST: &str = "(x'*y + x*y' + z')";
 const SECOND: &str = "(w' - 2*x*x')";

@@ -322,8 +322,8 @@ def harmless(true, path, changed):
     return None
 
 
-def same_function(one, other):
-    """Whether Lagrangian and constraints have the same values, in decimals at drawn points."""
+def same_function(one, other, signs={}):
+    """Whether Lagrangian and constraints have the same values, in decimals at drawn points; of these signs, where there are two branches."""
     for seed in range(5):
         names = ["t", *one["coordinates"], *(x + "'" for x in one["coordinates"])]
         values = []
@@ -332,7 +332,7 @@ def same_function(one, other):
             scope = {name: formulas.in_decimals({})[place] for name, formulas in scope.items() for place in [formulas.read(plain["parameters"][name])]}
             formulas, point = verify.Formulas(), random.Random(seed)
             places = [formulas.read(text) for text in (plain["lagrangian"], *plain["constraints"])]
-            found = formulas.in_decimals(scope | {name: point.uniform(0.5, 1.5) for name in names})
+            found = formulas.in_decimals(scope | {name: signs.get(name, point.choice((-1, 1))) * point.uniform(0.5, 1.5) for name in names})
             values.append([found[place] for place in places])
         if values[0] != pytest.approx(values[1], rel=1e-12):
             return False

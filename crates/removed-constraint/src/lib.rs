@@ -252,7 +252,7 @@ fn require_regular(
     }
     let hessian = g.jacobian(&momenta, &highest);
     // without a value at any point tried, the start will tell
-    let rank = generic_rank(g, &hessian, &Surroundings::of_zero(system.parameter_values()));
+    let rank = generic_rank(g, &hessian, &Surroundings::of_zero(system));
     let Some(rank) = rank.filter(|&rank| rank < highest.len()) else { return Ok(()) };
     let second: Vec<String> =
         parameters.iter().filter(|p| p.momentum.is_some()).map(|p| g.name(p.u.second_rate)).collect();

@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use symbolic::{Expr, Graph, Symbol};
+use symbolic::{Graph, Symbol};
 
 use super::context::{Context, unrounded};
 use super::names::{Names, OF_LAWS, Role};
@@ -20,9 +20,8 @@ pub(super) fn build<'a>(
 ) -> Result<Context<'a>, SceneError> {
     let graph = Graph::new();
     let mut names = Names::default();
-    let mut written = Vec::new();
     let parameters = match source.note(root.section("parameters")).flatten() {
-        Some(section) => parameters(&section, &overrides, &graph, &mut names, &mut written),
+        Some(section) => parameters(&section, &overrides, &graph, &mut names),
         None => Vec::new(),
     };
     let coordinates = root.require("coordinates", "a table with one entry a coordinate")?.section()?;
@@ -51,7 +50,7 @@ pub(super) fn build<'a>(
         names,
         system,
         positions: Vec::new(),
-        written,
+        written: Vec::new(),
         time: 0.0,
         places: Vec::new(),
         on_positions: Vec::new(),
@@ -61,7 +60,7 @@ pub(super) fn build<'a>(
         // a number of a law, which is no part of the system: any scene takes it
         if let Some(value) = context.overrides.get(name) {
             let symbol = context.system.graph.symbol(name);
-            context.system.parameters.push(Parameter { symbol, value });
+            context.system.parameters.push(Parameter { symbol, value, formula: None });
         }
     }
     source.note(definitions(&mut context));
@@ -87,13 +86,11 @@ fn unit(section: &Section) -> Result<String, SceneError> {
 }
 
 /// Parameters that are numbers. One that is given by others is an expression in them, and follows them.
-/// `formulas`: those that are written as formulas of numbers.
 fn parameters(
     section: &Section,
     overrides: &Overrides,
     graph: &Graph,
     names: &mut Names,
-    formulas: &mut Vec<(Symbol, Expr)>,
 ) -> Vec<Parameter> {
     let source = section.source;
     let mut written = Vec::new();
@@ -125,11 +122,10 @@ fn parameters(
         let value = if given_by_others { e } else { graph.variable(graph.symbol(entry.key)) };
         names.insert_parameter(entry.key, graph, value);
         if !given_by_others {
-            if is_formula {
-                formulas.push((graph.symbol(entry.key), unrounded(graph, e)));
-            }
-            let value = graph.evaluate(e, &HashMap::new()).unwrap_or(f64::NAN);
-            parameters.push((places[entry.key], Parameter { symbol: graph.symbol(entry.key), value }));
+            let formula = is_formula.then(|| unrounded(graph, e));
+            // 2 cos(π/3) − 1 is 0, and no last digit of 1
+            let value = graph.evaluate(graph.constant(e), &HashMap::new()).unwrap_or(f64::NAN);
+            parameters.push((places[entry.key], Parameter { symbol: graph.symbol(entry.key), value, formula }));
         }
     }
     parameters.sort_by_key(|(place, _)| *place);

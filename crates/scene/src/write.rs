@@ -33,7 +33,10 @@ fn written(scene: &Scene) -> String {
     if !system.parameters.is_empty() {
         text.header("parameters");
         for p in &system.parameters {
-            text.line(&g.name(p.symbol), &number(p.value));
+            let written = system.written_parameter(p);
+            let is_number = g.as_number(written).is_some();
+            let value = if is_number { number(p.value) } else { quoted(&g.plain(written)) };
+            text.line(&g.name(p.symbol), &value);
         }
     }
     text.header("coordinates");

@@ -50,8 +50,8 @@ impl Vanishing {
 impl Graph {
     /// Is `e` identically zero? Exact in a finite field or by expansion where that succeeds, else at random
     /// points (fixed seed; both signs, sizes from 0.01 to 100) against the round-off bound of the evaluation.
-    /// `constants` are numbers to put in first; where they do not stay exact, what they cancel to is
-    /// round-off as well.
+    /// `values` of symbols are those at the points; what is exact is so for all values, since a float is none
+    /// that is known exactly.
     ///
     /// ```
     /// use std::collections::HashMap;
@@ -61,10 +61,13 @@ impl Graph {
     /// let square = g.powi(g.add(x, g.one()), 2);
     /// let rest = g.sum(&[square, g.neg(g.powi(x, 2)), g.mul(g.integer(-2), x), g.integer(-1)]);
     /// assert_eq!(g.vanishes(rest, &HashMap::new()), Vanishing::Exactly);
+    /// let k = g.symbol("k");
+    /// let rest = g.sub(g.mul(g.variable(k), x), g.mul(g.ratio(1, 2), x));
+    /// assert!(matches!(g.vanishes(rest, &HashMap::from([(k, 0.5)])), Vanishing::Numerically { .. }));
     /// ```
     #[track_caller]
-    pub fn vanishes(&self, e: Expr, constants: &HashMap<Symbol, f64>) -> Vanishing {
-        match self.vanishes_in_truth(e, constants) {
+    pub fn vanishes(&self, e: Expr, values: &HashMap<Symbol, f64>) -> Vanishing {
+        match self.vanishes_in_truth(e, values) {
             answer if !faults::goes_wrong("answer turned") => answer,
             answer if answer.is_zero() => Vanishing::No { value: 1.0, bound: 0.0 },
             _ => Vanishing::Exactly,
@@ -105,19 +108,11 @@ impl Graph {
         Some(Evaluator::new(tape).evaluate(&inputs)[0])
     }
 
-    fn vanishes_in_truth(&self, open: Expr, constants: &HashMap<Symbol, f64>) -> Vanishing {
-        let e = self.substituted(&[open], &self.as_numbers(constants))[0];
+    fn vanishes_in_truth(&self, e: Expr, values: &HashMap<Symbol, f64>) -> Vanishing {
         if e == Arena::ZERO {
             return Vanishing::Exactly;
         }
-        let mut sampled = self.sample(e, &HashMap::new());
-        if matches!(sampled, Vanishing::No { .. }) && e != open && self.arena.borrow().contains_float(e) {
-            // what cancelled floats leave does not tell their size; constants as inputs keep it
-            let again = self.sample(open, constants);
-            if again.is_zero() {
-                sampled = again;
-            }
-        }
+        let sampled = self.sample(e, values);
         if matches!(sampled, Vanishing::No { .. }) {
             return sampled;
         }
@@ -127,8 +122,8 @@ impl Graph {
         if zero { Vanishing::Exactly } else { sampled }
     }
 
-    /// The numerical test, at these values of the constants.
-    fn sample(&self, e: Expr, constants: &HashMap<Symbol, f64>) -> Vanishing {
+    /// The numerical test, at these values of symbols.
+    fn sample(&self, e: Expr, values: &HashMap<Symbol, f64>) -> Vanishing {
         let symbols: Vec<Symbol> = self.symbols_of(e).into_iter().collect();
         let Ok(tape) = self.compile(&symbols, &[e], &HashMap::new()) else {
             return Vanishing::Undecided { tried: 0 };
@@ -140,7 +135,7 @@ impl Graph {
         while points < POINTS && tried < TRIES {
             for (x, symbol) in inputs.iter_mut().zip(&symbols) {
                 let drawn = || coordinate(&mut random, tried);
-                *x = Bounded::from_f64(constants.get(symbol).copied().unwrap_or_else(drawn));
+                *x = Bounded::from_f64(values.get(symbol).copied().unwrap_or_else(drawn));
             }
             tried += 1;
             let output = evaluator.evaluate(&inputs)[0];

@@ -2,13 +2,34 @@
 
 use crate::arena::{Arena, Node};
 use crate::number::{Number, Rational};
-use crate::{Expr, Function};
+use crate::{Expr, Function, Graph};
 use rustc_hash::FxHashMap;
 
 /// sin(n u) is taken apart up to this n.
 const MULTIPLE_LIMIT: i64 = 8;
+/// Terms of a formula of numbers that are multiplied out.
+const TERMS: usize = 100;
+/// Prime factors under this are looked for under roots of numbers.
+const TRIED: i64 = 4096;
 /// Rounds of clearing denominators.
 const ROUNDS: usize = 4;
+
+impl Graph {
+    /// A formula of numbers in the simplest form that is known: a number, where multiples of π/12 under sines
+    /// and roots of numbers cancel to one.
+    ///
+    /// ```
+    /// let g = symbolic::Graph::new();
+    /// let half = g.call(symbolic::Function::Cos, g.mul(g.ratio(1, 3), g.pi()));
+    /// assert_eq!(g.constant(half), g.ratio(1, 2));
+    /// ```
+    pub fn constant(&self, e: Expr) -> Expr {
+        let mut arena = self.arena.borrow_mut();
+        let split = arena.with_split_angles(e);
+        let number = arena.expand(split, TERMS);
+        if arena.as_number(number).is_some_and(Number::is_exact) { number } else { e }
+    }
+}
 
 impl Arena {
     /// The numerator of `e` in sines, cosines, roots and symbols, sin² = 1 − cos²; `None` over `limit` terms.
@@ -39,13 +60,42 @@ impl Arena {
         }
     }
 
-    /// tan = sin/cos, and sines and cosines of sums by the addition theorems; likewise hyperbolic ones.
+    /// tan = sin/cos, and sines and cosines of sums by the addition theorems; likewise hyperbolic ones. Those of
+    /// multiples of π/12 are made of √2 and √3, and roots of numbers of those of primes.
     pub(crate) fn with_split_angles(&mut self, e: Expr) -> Expr {
-        let split = |arena: &mut Arena, e: Expr| match *arena.node(e) {
-            Node::Call(function, argument) => arena.split_call(function, argument).unwrap_or(e),
+        let split = |arena: &mut Arena, e: Expr| match arena.node(e) {
+            &Node::Call(function, argument) => arena.split_call(function, argument).unwrap_or(e),
+            Node::Product(factors) => {
+                let factors = factors.clone();
+                arena.with_prime_roots(&factors).unwrap_or(e)
+            }
             _ => e,
         };
         self.rewritten(&[e], split)[0]
+    }
+
+    /// The product, if a number stands under a root in it.
+    fn with_prime_roots(&mut self, factors: &[(Expr, Rational)]) -> Option<Expr> {
+        let whole = |arena: &Arena, base: Expr| match arena.as_number(base) {
+            Some(Number::Exact(r)) => r.as_integer(),
+            _ => None,
+        };
+        factors.iter().find(|(base, _)| whole(self, *base).is_some())?;
+        let mut all = Vec::new();
+        for &(base, exponent) in factors {
+            let Some(mut rest) = whole(self, base) else {
+                all.push((base, exponent));
+                continue;
+            };
+            for prime in 2..TRIED {
+                while rest % prime == 0 && rest != 0 {
+                    rest /= prime;
+                    all.push((self.number(Number::integer(prime)), exponent));
+                }
+            }
+            all.push((self.number(Number::integer(rest)), exponent));
+        }
+        Some(self.power_product(Number::ONE, all))
     }
 
     fn split_call(&mut self, function: Function, argument: Expr) -> Option<Expr> {
@@ -94,8 +144,37 @@ impl Arena {
         total
     }
 
+    /// `(sin u, cos u)` of a multiple `u` of π/12.
+    fn at_twelfth(&mut self, u: Expr) -> Option<(Expr, Expr)> {
+        let twelfths = self.as_number(u)?.mul(Number::PI.recip()).mul(Number::integer(12));
+        let Number::Exact(twelfths) = twelfths else { return None };
+        let k = twelfths.as_integer()?;
+        let mut sine = |k: i64| {
+            let (k, sign) = if k.rem_euclid(24) < 12 { (k.rem_euclid(12), 1) } else { (k.rem_euclid(12), -1) };
+            // a + b √2 + c √3 + d √6
+            let quarters = match k.min(12 - k) {
+                0 => [0, 0, 0, 0],
+                1 => [0, -1, 0, 1],
+                2 => [2, 0, 0, 0],
+                3 => [0, 2, 0, 0],
+                4 => [0, 0, 2, 0],
+                5 => [0, 1, 0, 1],
+                _ => [4, 0, 0, 0],
+            };
+            let half = Rational::new(1, 2)?;
+            let [two, three] = [2, 3].map(|n| self.number(Number::integer(n)));
+            let roots = [vec![], vec![(two, half)], vec![(three, half)], vec![(two, half), (three, half)]];
+            let roots = roots.map(|factors| self.power_product(Number::ONE, factors));
+            let terms = roots.into_iter().zip(quarters.map(|n| Number::ratio(sign * n, 4))).collect();
+            Some(self.linear(Number::ZERO, terms))
+        };
+        Some((sine(k)?, sine(k.checked_add(6)?)?))
+    }
+
     fn plain_pair(&mut self, u: Expr, hyperbolic: bool) -> (Expr, Expr) {
-        if hyperbolic {
+        if let Some(pair) = self.at_twelfth(u).filter(|_| !hyperbolic) {
+            pair
+        } else if hyperbolic {
             (self.call(Function::Sinh, u), self.call(Function::Cosh, u))
         } else {
             (self.call(Function::Sin, u), self.call(Function::Cos, u))

@@ -80,6 +80,9 @@ impl Graph {
     }
 }
 
+/// What rounded numbers leave of themselves in a sum, at least.
+const LEFT: f64 = 1e-9;
+
 /// Names that stand for numbers, without time.
 struct Scalars<'a> {
     scope: &'a dyn Fn(&str) -> Option<Expr>,
@@ -187,12 +190,34 @@ impl<'a> Parser<'a> {
             match (self.graph.add_values(&terms[0], &term), &term) {
                 (None, _) => return Err(self.mismatch("added", &terms[0], &term, operator)),
                 (Some(_), Value::Scalar(_)) => terms.push(term),
-                (Some(sum), _) => terms[0] = sum,
+                (Some(sum), _) => {
+                    for ((&a, &b), &sum) in terms[0].entries().iter().zip(term.entries()).zip(sum.entries()) {
+                        self.rounded(&[a, b], sum, start)?;
+                    }
+                    terms[0] = sum;
+                }
             }
         }
         match terms.iter().map(Value::scalar).collect::<Option<Vec<Expr>>>() {
-            Some(numbers) if numbers.len() > 1 => self.finite(Value::Scalar(self.graph.sum(&numbers)), start),
+            Some(numbers) if numbers.len() > 1 => {
+                let sum = self.graph.sum(&numbers);
+                self.rounded(&numbers, sum, start)?;
+                self.finite(Value::Scalar(sum), start)
+            }
             _ => self.finite(terms.swap_remove(0), start),
+        }
+    }
+
+    /// A fault where rounded numbers have cancelled: they may differ in digits that they have not got, and
+    /// the sum would be taken for exact.
+    fn rounded(&self, terms: &[Expr], sum: Expr, start: usize) -> Result<(), Fault> {
+        let numbers: Option<Vec<f64>> = terms.iter().map(|&e| self.graph.as_number(e)).collect();
+        let most = numbers.map_or(0.0, |numbers| numbers.iter().map(|x| x.abs()).sum());
+        let stays = |x: f64| x.abs() > LEFT * most;
+        let holds = !self.graph.are_exact(&[sum]) && self.graph.as_number(sum).is_none_or(stays);
+        match holds || self.graph.are_exact(terms) {
+            true => Ok(()),
+            false => Err(Fault { kind: ParseErrorKind::NotExact, start, end: self.last }),
         }
     }
 

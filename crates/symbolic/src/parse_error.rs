@@ -70,6 +70,9 @@ pub enum ParseErrorKind {
     /// A variable that is used like a function.
     #[error("`{name}` is not a function; for a product write {name}*(…)")]
     VariableCalled { name: String },
+    /// Numbers of more digits than are held cancel.
+    #[error("numbers of more than 18 digits are rounded here and cancel: what is left is not exact; write it itself")]
+    NotExact,
     /// Two factors without a multiplication sign between them.
     #[error("a multiplication sign is missing: write {left}*{right}")]
     ImplicitMultiplication { left: String, right: String },

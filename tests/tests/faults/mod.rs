@@ -135,7 +135,7 @@ fn with_needs(scene: Scene) -> Scene {
     let g = &system.graph;
     // λ of slip would be zero in all states on the constraint: see the tests of its crate
     let names = FORMULATIONS.iter().flat_map(|formulation| formulation.needs.parameters()).filter(|n| **n != "slip");
-    let parameters = names.map(|name| Parameter { symbol: g.symbol(name), value: judge::KAPPA });
+    let parameters = names.map(|name| Parameter { symbol: g.symbol(name), value: judge::KAPPA, formula: None });
     system.parameters.extend(parameters.collect::<Vec<_>>());
     let condition = |(i, &f): (usize, &symbolic::Expr)| {
         let c = &system.coordinates[i];

@@ -160,7 +160,7 @@ fn unconstrained(system: &System, mass: f64, friction: f64) -> System {
 /// The system with the parameter `kappa` of the family between.
 pub fn with_kappa(system: &System, value: f64) -> System {
     let mut other = system.clone();
-    other.parameters.push(Parameter { symbol: other.graph.symbol("kappa"), value });
+    other.parameters.push(Parameter { symbol: other.graph.symbol("kappa"), value, formula: None });
     other
 }
 

@@ -2,7 +2,7 @@
 
 use anyhow::{Context, Result, bail};
 use deltaq::{CHETAEV, Choice, default_constants};
-use linear::{Eigenvalue, Sweep, SweepPoint, equidistant, sweep};
+use linear::{Eigenvalue, Sweep, SweepPoint, sweep};
 use nalgebra::Complex;
 use serde_json::{Value, json};
 
@@ -120,7 +120,7 @@ fn bicycle((from, to, count): (f64, f64, usize)) -> Result<Sweep> {
     let scene = catalogue::find("bicycle", &[])?;
     let constants = default_constants(CHETAEV, &scene);
     let choice = Choice { label: CHETAEV.title.into(), formulation: CHETAEV, removal: None, constants };
-    Ok(sweep(&scene, &choice, &["lean", "steer"], ("v", &equidistant(from, to, count)), false)?)
+    Ok(sweep(&scene, &choice, &["lean", "steer"], ("v", &deltaq::equidistant(from, to, count).collect::<Vec<_>>()), false)?)
 }
 
 /// First column, eigenvalue.

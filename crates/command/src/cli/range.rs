@@ -1,5 +1,7 @@
 //! Equidistant values, and their combinations.
 
+use deltaq::equidistant_value;
+
 /// Members of an ensemble, or points of a sweep, at most.
 pub const MOST_MEMBERS: usize = 1_000_000;
 
@@ -17,27 +19,13 @@ pub struct Range {
 }
 
 impl Range {
-    /// Value number `place`: the ends as they are, those between to fifteen digits. 0.6 is meant, not
-    /// 0.6000000000000001, and a proof is about the number as it is written.
-    fn value(&self, place: usize) -> f64 {
-        match place {
-            0 => self.from,
-            _ if place + 1 == self.count => self.to,
-            _ => {
-                let part = place as f64 / (self.count - 1) as f64;
-                let value = self.from * (1.0 - part) + self.to * part;
-                format!("{value:.14e}").parse().unwrap_or(value)
-            }
-        }
-    }
-
     /// Combination number `index` of the values of these ranges, the last one changing fastest, and
     /// how often all combinations have come before it.
     pub fn combined(ranges: &[Range], index: usize) -> (Vec<f64>, usize) {
         let mut rest = index;
         let mut values: Vec<f64> = Vec::with_capacity(ranges.len());
         for range in ranges.iter().rev() {
-            values.push(range.value(rest % range.count));
+            values.push(equidistant_value(range.from, range.to, range.count, rest % range.count));
             rest /= range.count;
         }
         values.reverse();

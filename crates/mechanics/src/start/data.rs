@@ -71,8 +71,8 @@ pub struct Completion {
     /// Length `√(δvᵀ M δv)` of the projection onto the constraint, where one was asked for.
     pub projected: Option<f64>,
     /// Positions and given velocities or rates as they were written, in parameters, time and earlier
-    /// positions, then parameters and the time of formulas: exact where state and values are rounded. Empty
-    /// where there are numbers only; NaN for a formula that arithmetic has rounded.
+    /// positions, and the time of a formula: exact where the state is rounded. Empty where there are numbers
+    /// only; NaN for a formula that arithmetic has rounded.
     pub written: Vec<(Symbol, Expr)>,
     /// Guesses of the others likewise, in parameters, time and positions.
     pub guessed: Vec<(Symbol, Expr)>,

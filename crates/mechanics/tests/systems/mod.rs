@@ -7,7 +7,7 @@ use symbolic::Graph;
 pub fn kinetic(coordinates: &[&str], parameters: &[(&str, f64)], constraints: &[&str]) -> (System, State) {
     let named: Vec<(&str, &str)> = coordinates.iter().map(|&c| (c, "m")).collect();
     let mut system = System::new(Graph::new(), &named);
-    let value = |&(name, value): &(&str, f64)| Parameter { symbol: system.graph.symbol(name), value };
+    let value = |&(name, value): &(&str, f64)| Parameter { symbol: system.graph.symbol(name), value, formula: None };
     system.parameters = parameters.iter().map(value).collect();
     let half_squares: Vec<String> = coordinates.iter().map(|c| format!("{c}'^2/2")).collect();
     let parse = |text: &str| system.expression(text).unwrap_or_else(|e| panic!("{text}: {e}"));
