@@ -81,6 +81,7 @@ mod family;
 mod flow;
 mod identity;
 mod leading;
+mod leaf;
 mod lift;
 mod order_by_order;
 mod plain_scene;

@@ -1,7 +1,7 @@
 //! The proof over a finite field.
 
 use equations::Equations;
-use mechanics::{State, System};
+use mechanics::{Domain, State, System};
 
 use crate::DecisionError;
 use crate::curve::{Dynamics, Flow};
@@ -64,9 +64,8 @@ pub struct Proof {
     pub this_start: Finding,
     /// About all starts on the constraint but a set of measure zero.
     pub almost_every_start: Finding,
-    /// Whether a variable expression stands under a root: `almost_every_start` then refers to the branch of
-    /// this start.
-    pub one_branch: bool,
+    /// Which starts these are.
+    pub domain: Domain,
     /// Velocities given as decimals that miss the constraints by round-off, solved from these here.
     pub completed: Vec<String>,
 }
@@ -191,7 +190,7 @@ impl<'a> Question<'a> {
             Ok(ranks) => self.particular(&ranks, &almost_every_start),
             Err(reason) => Finding::NotApplicable(reason),
         };
-        Proof { this_start, almost_every_start, completed, one_branch: start.has_branches }
+        Proof { this_start, almost_every_start, completed, domain: start.domain }
     }
 
     /// Ranks at few orders where these are `enough`, else at more, else at all.

@@ -2,11 +2,12 @@
 
 use std::collections::HashMap;
 
-use mechanics::{Completion, Removal, State, System};
+use mechanics::{Completion, Domain, Removal, State, System};
 use symbolic::{Expr, Graph, Scalar, Symbol};
 
 use crate::DecisionError;
 use crate::exact::{Coefficient, Exact, Flaw, Jet, Modular, inverse, subtract_product};
+use crate::leaf::Leaf;
 use crate::program::Program;
 use crate::series::SeriesStart;
 
@@ -26,6 +27,9 @@ pub enum NoExactStart {
     /// The velocities at the start are projected ones.
     #[error("the velocities at the start are not those of the scene, but projected ones")]
     Projected,
+    /// Random positions on which the constraints on positions hold are not found.
+    #[error("at random places the constraints on positions are not solved: each coordinate stands in several, or with a degree over 2")]
+    Positions,
     /// The constraints hold on several surfaces, and which of them the start is on is not seen in the field.
     #[error("the constraints are products, and at random starts it is not known which factor is zero")]
     Product,
@@ -53,8 +57,9 @@ pub struct ExactStart {
     /// `∂f/∂v` at the start, row by row.
     pub(crate) slopes: Vec<f64>,
     pub(crate) constraints: Program,
-    /// Whether something that varies stands under a root: then random starts are near this one.
-    pub(crate) has_branches: bool,
+    pub(crate) leaf: Leaf,
+    /// Where random starts are: on the branch of this one they are near it.
+    pub(crate) domain: Domain,
     problem: Option<NoExactStart>,
 }
 
@@ -115,10 +120,7 @@ impl ExactStart {
         let constraints = Program::new(g, &inputs, &outputs)?;
         let slopes = slopes(system, state, &constraints);
         let spare = independent_columns(&slopes, system.dimension());
-        let formulas = [&[system.lagrangian][..], &system.constraints, &system.forces].concat();
-        let rooted = [g.kinks(&formulas), g.radicands(&formulas)].concat();
-        let constant = |e: &Expr| g.symbols_of(*e).iter().all(|s| system.parameters.iter().any(|p| p.symbol == *s));
-        let has_branches = !rooted.iter().all(constant);
+        let (leaf, domain) = (Leaf::new(system)?, Domain::of(system));
         let (system, rounded) = (system.clone(), state.v.clone());
         Ok(ExactStart {
             system,
@@ -130,14 +132,15 @@ impl ExactStart {
             spare,
             slopes,
             constraints,
-            has_branches,
+            leaf,
+            domain,
             problem,
         })
     }
 
-    /// Whether something that varies stands under a root of `L`, `f` or `Q`, or has a kink there.
-    pub fn has_branches(&self) -> bool {
-        self.has_branches
+    /// Where what holds at random starts holds.
+    pub fn domain(&self) -> Domain {
+        self.domain
     }
 
     /// Names of given velocities solved from the constraints, which their decimals miss by round-off.
@@ -200,7 +203,7 @@ impl ExactStart {
     }
 
     /// Positions and velocities as they are written, but for those that are others.
-    fn written_state<C: Coefficient>(
+    pub(crate) fn written_state<C: Coefficient>(
         &self,
         parameters: &[Jet<C>],
         time: Jet<C>,

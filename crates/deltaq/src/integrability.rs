@@ -23,7 +23,7 @@ pub fn integrability(scene: &Scene) -> Result<Integrability, SolveError> {
     let Some((left, depth)) = integrals_by_ranks(&rest, &state)? else { return Ok(verdict) };
     Ok(match exact + left {
         more if more > at_most => verdict,
-        0 => Integrability::Nonintegrable { depth },
+        0 => Integrability::Nonintegrable { depth, growth: None },
         all if all == constraints => Integrability::Integrable { exact: false },
         integrals => Integrability::PartlyIntegrable { integrals, constraints, exact: false },
     })

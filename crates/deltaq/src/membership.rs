@@ -74,7 +74,7 @@ impl Membership {
 
     /// Whether what holds on the branch of the start does not hold up to the end.
     fn leaves_its_branch(&self) -> bool {
-        self.proof.one_branch && self.decision.verdict == Verdict::NotContained
+        self.proof.domain.branch && self.decision.verdict == Verdict::NotContained
     }
 
     /// The answer. A proof is about the numbers as they are written, and has the last word, unless what is

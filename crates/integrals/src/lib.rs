@@ -60,4 +60,3 @@ pub use density::Density;
 pub use multiplier::{Multiplier, Reduction};
 pub use open::Open;
 pub use reversible::{Cyclic, Found, Measure, Reversed, reversible, reversible_scene};
-pub use words::NEAR;

@@ -231,7 +231,7 @@ fn watched(context: &mut Context, section: &str, constancy: Constancy) -> Result
 /// Each element is a constraint, or a vector of them. One on positions is kept as its time derivative.
 fn constraints(context: &mut Context, entry: &Entry) -> Result<(), SceneError> {
     let source = context.source;
-    let mut constraints = Vec::new();
+    let (mut constraints, mut on_positions) = (Vec::new(), Vec::new());
     for (index, element) in entry.elements("an array of expressions")?.iter().enumerate() {
         let read = element.text("an expression in quotes");
         let read = read.and_then(|text| context.names.parse_value(source, &context.system.graph, &text));
@@ -243,6 +243,7 @@ fn constraints(context: &mut Context, entry: &Entry) -> Result<(), SceneError> {
             if depends(system.velocities()) {
                 constraints.push(*f);
             } else if depends(system.positions()) {
+                on_positions.push((constraints.len(), *f));
                 constraints.push(g.total_derivative(*f, &system.flow()));
                 context.on_positions.push((index + 1, element.span.clone(), *f));
             } else {
@@ -255,6 +256,7 @@ fn constraints(context: &mut Context, entry: &Entry) -> Result<(), SceneError> {
         return Err(entry.error_at_key(SceneErrorKind::TooManyConstraints { found, dimension }));
     }
     context.system.constraints = constraints;
+    context.system.on_positions = on_positions;
     Ok(())
 }
 
