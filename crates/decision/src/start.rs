@@ -1,8 +1,9 @@
 //! A start in exact numbers: as it was written, or drawn at random on the constraint.
 
+use std::cell::OnceCell;
 use std::collections::HashMap;
 
-use mechanics::{Completion, Domain, Removal, State, System};
+use mechanics::{Completion, Domain, Integrability, Removal, State, System, integrability};
 use symbolic::{Expr, Graph, Scalar, Symbol};
 
 use crate::DecisionError;
@@ -50,8 +51,9 @@ pub struct ExactStart {
     values: Written,
     /// Velocities that the constraints supply.
     pub(crate) supplied: Vec<usize>,
-    /// All velocities as they were found.
-    rounded: Vec<f64>,
+    /// The state as it was found.
+    rounded: State,
+    integrable: OnceCell<usize>,
     /// What `v` a constraint would be solved for, if none is supplied and the given miss it by round-off.
     pub(crate) spare: Vec<usize>,
     /// `∂f/∂v` at the start, row by row.
@@ -121,7 +123,7 @@ impl ExactStart {
         let slopes = slopes(system, state, &constraints);
         let spare = independent_columns(&slopes, system.dimension());
         let (leaf, domain) = (Leaf::new(system)?, Domain::of(system));
-        let (system, rounded) = (system.clone(), state.v.clone());
+        let (system, rounded, integrable) = (system.clone(), state.clone(), OnceCell::new());
         Ok(ExactStart {
             system,
             written,
@@ -129,6 +131,7 @@ impl ExactStart {
             values,
             supplied,
             rounded,
+            integrable,
             spare,
             slopes,
             constraints,
@@ -141,6 +144,20 @@ impl ExactStart {
     /// Where what holds at random starts holds.
     pub fn domain(&self) -> Domain {
         self.domain
+    }
+
+    /// How many independent combinations of the constraints are known to be integrable, exactly: motions stay
+    /// on their leaves, and `O` has as many independent columns fewer (theorem 3, iii).
+    pub fn integrable_combinations(&self) -> usize {
+        *self.integrable.get_or_init(|| {
+            let (system, state) = (&self.system.clone(), &self.rounded);
+            let h = system.constraints.len();
+            match integrability(system, state, state.t + 1.0) {
+                Ok(Integrability::Integrable { exact: true }) => h,
+                Ok(Integrability::PartlyIntegrable { integrals, exact: true, .. }) => integrals,
+                _ => system.integrable_constraints(state),
+            }
+        })
     }
 
     /// Names of given velocities solved from the constraints, which their decimals miss by round-off.
@@ -168,7 +185,7 @@ impl ExactStart {
             // constraints
             Err(NoExactStart::Nonlinear) => {
                 let mut v = v.clone();
-                self.supplied.iter().for_each(|&i| v[i] = Jet::of(self.rounded[i]));
+                self.supplied.iter().for_each(|&i| v[i] = Jet::of(self.rounded.v[i]));
                 Ok((start(self.solved(&parameters, time, &q, &v, &[])?), Vec::new()))
             }
             Err(fault) => Err(fault),

@@ -18,7 +18,7 @@ fn membership(comparison: &mut Comparison) -> &mut Membership {
 
 /// What is known of a start in exact numbers: nothing, a no with a proof or by ranks, a yes, neither so far.
 fn findings() -> [(&'static str, Finding); 5] {
-    let none = |full_rank| Finding::None(NoConstants { order: 4, full_rank });
+    let none = |full_rank| Finding::None(NoConstants { order: 4, full_rank, size: 2 });
     [
         ("a no", none(true)),
         ("a no by ranks", none(false)),

@@ -101,6 +101,13 @@ impl Question<'_> {
         self.of("no measure", |point| {
             let flag = Flag::new(reversible, point, SEED, &[])?;
             let size = self.system.dimension() + 1;
+            if flag.with_rates.len() < size {
+                return Err(Open::Other(
+                    "the minor that shows it is smaller, as combinations of the constraints are integrable: certificates \
+                     have minors of full size"
+                        .into(),
+                ));
+            }
             let (places, rows): (Vec<usize>, Vec<Vec<Modular>>) = flag.with_rates.iter().cloned().unzip();
             let minor = if rows.len() == size { inverse(&rows.concat(), size, Modular::one()) } else { None };
             let (_, minor) = minor.ok_or(Open::Accident)?;

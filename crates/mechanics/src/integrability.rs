@@ -101,7 +101,7 @@ impl std::fmt::Display for Integrability {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
             Integrability::Unconstrained => write!(f, "no constraint"),
-            Integrability::Integrable { exact: true } => write!(f, "integrable (brackets vanish identically)"),
+            Integrability::Integrable { exact: true } => write!(f, "integrable (identically)"),
             Integrability::Integrable { exact: false } => write!(f, "integrable (by ranks over a finite field)"),
             Integrability::PartlyIntegrable { integrals, constraints, exact } => {
                 let by = if *exact { "exactly" } else { "by ranks over a finite field" };
@@ -139,7 +139,8 @@ impl std::fmt::Display for Integrability {
 /// are differentiated exactly. Ranks are taken at points round `state` and the way up to `end`, in the
 /// scene's own sizes, on the branch of `state` where something varies under a root: a rank there is certain,
 /// and what adds none may do so elsewhere, or be lost in round-off. So *integrable*, and *partly*, are said
-/// only where every further bracket vanishes identically, or none is needed. [`Growth`] has the ranks at
+/// only where every further bracket vanishes identically, or none is needed, or `ω ∧ dω = 0` identically for as
+/// many of the constraints as are left. [`Growth`] has the ranks at
 /// `state` itself beside those round it.
 ///
 /// # Errors
@@ -182,8 +183,14 @@ pub fn integrability(system: &System, state: &State, end: f64) -> Result<Integra
     }
     let admissible = solved.fields(system, with_time);
     let mut depth = 0;
-    let undecided =
-        |why, depth, left| Ok(Integrability::Undecided { why, depth, at_most: exact + left, constraints: h });
+    // as many as are known are no fewer, and no more are left
+    let undecided = |why, depth, left| {
+        Ok(match exact + left {
+            all if system.integrable_alone()? < left => Integrability::Undecided { why, depth, at_most: all, constraints: h },
+            all if all == h => Integrability::Integrable { exact: true },
+            integrals => Integrability::PartlyIntegrable { integrals, constraints: h, exact: true },
+        })
+    };
     if g.size(&admissible.concat()) > LONGEST {
         return undecided(Undecided::TooLong, depth, system.constraints.len());
     }
