@@ -70,7 +70,7 @@ impl Leaf {
     /// `q` moved onto `g = 0`, near `start` where `q` is; `None` where there is no root. A constraint is
     /// `rootless` that once had none: it is no product then.
     ///
-    /// What is linear in a coordinate gives that. A quadric whose coordinates stand nowhere else is met a second
+    /// A single coordinate stays; what is linear in a coordinate gives that. A quadric whose coordinates stand nowhere else is met a second
     /// time by the line from `start` in the direction of `q`, in numbers as exact as both; else a square root
     /// is taken in the field.
     pub(crate) fn placed(
@@ -89,6 +89,11 @@ impl Leaf {
         for Given { constraint: i, own, is_whole } in order {
             let slope = |values: &[Short], j: usize| values[order.len() + i * self.coordinates + j];
             let is_zero = |x: &Short| x.coefficient(0).is_zero();
+            let is_from_start = *is_whole && at_start[*i].flaw().is_none() && is_zero(&at_start[*i]);
+            if let ([j], true) = (&own[..], is_from_start) {
+                q[*j] = start[*j];
+                continue;
+            }
             // a factor without this coordinate would be zero at the start, and its slope with it
             let given = own.iter().copied().filter(|&j| slope(&at_start, j).flaw().is_none() && !is_zero(&slope(&at_start, j)));
             let mut along = |j: usize| -> Option<[Modular; 3]> {
@@ -112,7 +117,7 @@ impl Leaf {
             let root = (b * b - two * two * a * c).square_root();
             rootless[*i] |= root.is_none();
             free.push(*i);
-            if *is_whole && at_start[*i].flaw().is_none() && is_zero(&at_start[*i]) {
+            if is_from_start {
                 match self.met_again(*i, j, own, start, &q, near, &at_start, &mut run) {
                     Some(met) => q = met,
                     None => return Ok(None),
