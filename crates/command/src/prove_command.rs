@@ -26,7 +26,8 @@ pub fn run(arguments: &ProveArguments) -> Result<Answer> {
                 TextOrJson::Text => {
                     let what = "no μ₀ makes the vakonomic motion Chetaev's";
                     let domain = Domain::of(&scene.system);
-                    let start = if *almost_every { format!(" from {}", domain.almost_every("start")) } else { String::new() };
+                    let start =
+                        if *almost_every { format!(" from {}", domain.almost_every("start")) } else { String::new() };
                     format!("{}: {what}{start}: proved (order {order}); the certificate is in {file}\n", scene.name)
                 }
                 TextOrJson::Json => {

@@ -70,9 +70,9 @@ impl Leaf {
     /// `q` moved onto `g = 0`, near `start` where `q` is; `None` where there is no root. A constraint is
     /// `rootless` that once had none: it is no product then.
     ///
-    /// A single coordinate stays; what is linear in a coordinate gives that. A quadric whose coordinates stand nowhere else is met a second
-    /// time by the line from `start` in the direction of `q`, in numbers as exact as both; else a square root
-    /// is taken in the field.
+    /// A single coordinate stays; what is linear in a coordinate gives that. A quadric whose coordinates
+    /// stand nowhere else is met a second time by the line from `start` in the direction of `q`, in numbers
+    /// as exact as both; else a square root is taken in the field.
     pub(crate) fn placed(
         &self,
         parameters: &[Short],
@@ -95,10 +95,14 @@ impl Leaf {
                 continue;
             }
             // a factor without this coordinate would be zero at the start, and its slope with it
-            let given = own.iter().copied().filter(|&j| slope(&at_start, j).flaw().is_none() && !is_zero(&slope(&at_start, j)));
+            let given =
+                own.iter().copied().filter(|&j| slope(&at_start, j).flaw().is_none() && !is_zero(&slope(&at_start, j)));
             let mut along = |j: usize| -> Option<[Modular; 3]> {
                 let mut line = q.clone();
-                line[j] = Short::series(&[q[j].coefficient(0), Modular::one(), Modular::ZERO, Modular::ZERO, Modular::ZERO], q[j].exact());
+                line[j] = Short::series(
+                    &[q[j].coefficient(0), Modular::one(), Modular::ZERO, Modular::ZERO, Modular::ZERO],
+                    q[j].exact(),
+                );
                 let value = run(&line)[*i];
                 let [c, b, a, third, fourth] = std::array::from_fn(|k| value.coefficient(k));
                 (value.flaw().is_none() && third.is_zero() && fourth.is_zero()).then_some([c, b, a])

@@ -62,8 +62,8 @@ impl ExactStart {
     /// Random integers for time, positions and velocities, the others from the constraints, on the surface
     /// that the start is on: near the start, on its branch, if something varies under roots; roots in a
     /// constant ratio keep the ratio that they have there. Any other square must once have no root. The
-    /// square of a function always has one; without such the surface is in one piece. Positions are on the leaf
-    /// of the start, where constraints on positions hold.
+    /// square of a function always has one; without such the surface is in one piece. Positions are on the
+    /// leaf of the start, where constraints on positions hold.
     pub(crate) fn random(&self, seed: u64, bits: u32) -> Result<SeriesStart<Modular>, NoExactStart> {
         let short = |numbers: &[Jet<Modular>]| numbers.iter().map(Jet::resized).collect::<Vec<Short>>();
         let long = |numbers: &[Short]| numbers.iter().map(Short::resized).collect::<Vec<Jet<Modular>>>();
@@ -91,7 +91,8 @@ impl ExactStart {
         let times = vec![time.resized(); n];
         let choices = [&self.supplied, &self.spare];
         let usual = choices.into_iter().find(|choice| choice.len() == self.system.constraints.len());
-        let own = if self.domain.leaf { self.written_state(&given, time, &[])?.first().map(|q| short(q)) } else { None };
+        let own =
+            if self.domain.leaf { self.written_state(&given, time, &[])?.first().map(|q| short(q)) } else { None };
         let (mut rootless, mut rooted) = (vec![false; self.system.constraints.len()], 0);
         let mut leaf_rootless = vec![false; self.leaf.constraints()];
         let mut found = None;

@@ -29,7 +29,9 @@ pub enum NoExactStart {
     #[error("the velocities at the start are not those of the scene, but projected ones")]
     Projected,
     /// Random positions on which the constraints on positions hold are not found.
-    #[error("at random places the constraints on positions are not solved: each coordinate stands in several, or with a degree over 2")]
+    #[error(
+        "at random places the constraints on positions are not solved: each coordinate stands in several, or with a degree over 2"
+    )]
     Positions,
     /// The constraints hold on several surfaces, and which of them the start is on is not seen in the field.
     #[error("the constraints are products, and at random starts it is not known which factor is zero")]

@@ -100,7 +100,10 @@ fn a_plane_that_begins_to_tilt() {
 fn a_root_has_branches() {
     for constraint in ["z' - (x - sqrt(x^2))*y'", "z' - (x - (x^2)^(3/2)/x^2)*y'"] {
         let (proof, section) = of(constraint, ["1", "0"]);
-        assert!(proof.domain.branch && matches!(proof.this_start, Finding::Contained { .. }), "{constraint}: {proof:?}");
+        assert!(
+            proof.domain.branch && matches!(proof.this_start, Finding::Contained { .. }),
+            "{constraint}: {proof:?}"
+        );
         assert!(section.is_none_or(|section| !section.proved), "{constraint}");
         let (proof, section) = of(constraint, ["-1", "0"]);
         assert!(matches!(proof.this_start, Finding::None(_)) && section.is_none(), "{constraint}: {proof:?}");

@@ -1,5 +1,5 @@
-//! Constraints on positions: random starts are on the leaf of the scene's, and what is known exactly of leaves
-//! makes proofs.
+//! Constraints on positions: random starts are on the leaf of the scene's, and what is known exactly of
+//! leaves makes proofs.
 
 use decision::{Finding, Proof};
 
@@ -106,7 +106,8 @@ fn surfaces_have_random_points() {
     }
 }
 
-/// One of two constraints is integrable: `O` has rank 1 at most, and a minor of size 2 proves that there is none.
+/// One of two constraints is integrable: `O` has rank 1 at most, and a minor of size 2 proves that there is
+/// none.
 #[test]
 fn known_integrals_make_proofs_of_smaller_minors() {
     let text = r#"

@@ -84,7 +84,8 @@ fn what_has_no_answer_says_why() {
     }
 }
 
-/// One of its three constraints is integrable: brackets stay on its leaves, and a minor of their size is a proof.
+/// One of its three constraints is integrable: brackets stay on its leaves, and a minor of their size is a
+/// proof.
 #[test]
 fn the_rattleback_has_no_measure() {
     assert_eq!(volume(&asked("rattleback", &[], 0).measure), Some(Volume::None));

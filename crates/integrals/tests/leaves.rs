@@ -54,8 +54,8 @@ fn eulers_body_in_unit_quaternions_keeps_its_angular_momentum() {
     assert!(found.where_it_holds().is_some_and(|words| words.starts_with(domain)));
 }
 
-/// Chaplygin's sphere, radius 1 and mass 1, as its rolling `x' = ω_y`, `y' = −ω_x`; its measure and its angular
-/// momentum about the contact (Chaplygin 1903). With the matrix spelled either way.
+/// Chaplygin's sphere, radius 1 and mass 1, as its rolling `x' = ω_y`, `y' = −ω_x`; its measure and its
+/// angular momentum about the contact (Chaplygin 1903). With the matrix spelled either way.
 #[test]
 fn chaplygins_sphere_in_unit_quaternions_has_its_measure() {
     for square in ["1", "(a^2+b^2+c^2+d^2)"] {

@@ -17,8 +17,8 @@ use crate::System;
 pub struct Domain {
     /// Constraints on positions hold, `g(q, t) = 0`, and nothing is said where `g` is another constant.
     pub leaf: bool,
-    /// Something that varies stands under a root or has a kink: `√(s²)` is `s` for one sign of `s` and `−s` for
-    /// the other, and is what it is at the start.
+    /// Something that varies stands under a root or has a kink: `√(s²)` is `s` for one sign of `s` and `−s`
+    /// for the other, and is what it is at the start.
     pub branch: bool,
 }
 
@@ -29,10 +29,7 @@ impl Domain {
         let formulas = [&[system.lagrangian], &system.constraints[..], &system.forces].concat();
         let parameters: Vec<Symbol> = system.parameters.iter().map(|p| p.symbol).collect();
         let varies = |e: &Expr| g.symbols_of(*e).iter().any(|s| !parameters.contains(s));
-        Domain {
-            leaf: !system.on_positions.is_empty(),
-            branch: g.ends_of_pieces(&formulas).iter().any(varies),
-        }
+        Domain { leaf: !system.on_positions.is_empty(), branch: g.ends_of_pieces(&formulas).iter().any(varies) }
     }
 
     /// "almost every place of the leaf of this start", or of what else there are so many.

@@ -10,9 +10,9 @@ use crate::{RemovalError, State, System};
 
 impl System {
     /// The system and its state on the leaf of the start, if constraints on positions hold, and without
-    /// constraints `f = d/dt (c q_i + ψ(q, t))`, where `c ≠ 0` is constant and `q_i` stands in no coefficient of
-    /// any constraint: `q̇_i` from `f = 0` is put into the others, and `q_i` is left out. The rest has a graph of
-    /// its own.
+    /// constraints `f = d/dt (c q_i + ψ(q, t))`, where `c ≠ 0` is constant and `q_i` stands in no coefficient
+    /// of any constraint: `q̇_i` from `f = 0` is put into the others, and `q_i` is left out. The rest has a
+    /// graph of its own.
     ///
     /// The other directions are the same on each leaf `c q_i + ψ = const`, so that the rest has exactly one
     /// integrable combination fewer for each, and its brackets nest as deep. `L` stays as it is.
@@ -109,8 +109,8 @@ impl System {
         known.unwrap_or(self.on_positions.len())
     }
 
-    /// How many of the constraints are integrable each on its own: `ω ∧ dω = 0` for `ω = Σ a_j dq_j + b dt`, exactly,
-    /// that is `ω = g dh` (Frobenius).
+    /// How many of the constraints are integrable each on its own: `ω ∧ dω = 0` for `ω = Σ a_j dq_j + b dt`,
+    /// exactly, that is `ω = g dh` (Frobenius).
     ///
     /// # Errors
     /// [`RemovalError::NotLinear`]

@@ -139,8 +139,8 @@ impl std::fmt::Display for Integrability {
 /// are differentiated exactly. Ranks are taken at points round `state` and the way up to `end`, in the
 /// scene's own sizes, on the branch of `state` where something varies under a root: a rank there is certain,
 /// and what adds none may do so elsewhere, or be lost in round-off. So *integrable*, and *partly*, are said
-/// only where every further bracket vanishes identically, or none is needed, or `ω ∧ dω = 0` identically for as
-/// many of the constraints as are left. [`Growth`] has the ranks at
+/// only where every further bracket vanishes identically, or none is needed, or `ω ∧ dω = 0` identically for
+/// as many of the constraints as are left. [`Growth`] has the ranks at
 /// `state` itself beside those round it.
 ///
 /// # Errors
@@ -186,7 +186,9 @@ pub fn integrability(system: &System, state: &State, end: f64) -> Result<Integra
     // as many as are known are no fewer, and no more are left
     let undecided = |why, depth, left| {
         Ok(match exact + left {
-            all if system.integrable_alone()? < left => Integrability::Undecided { why, depth, at_most: all, constraints: h },
+            all if system.integrable_alone()? < left => {
+                Integrability::Undecided { why, depth, at_most: all, constraints: h }
+            }
             all if all == h => Integrability::Integrable { exact: true },
             integrals => Integrability::PartlyIntegrable { integrals, constraints: h, exact: true },
         })
@@ -253,7 +255,12 @@ pub fn integrability(system: &System, state: &State, end: f64) -> Result<Integra
             // fields that add a direction at almost every place need not be those that do at the start
             let start = match at_start == generic {
                 true => at_start,
-                false => growth_at_start(admissible, |x, y| bracket(x, y), |fields| surroundings.rank_at_centre(g, fields), |x| g.size(x)),
+                false => growth_at_start(
+                    admissible,
+                    |x, y| bracket(x, y),
+                    |fields| surroundings.rank_at_centre(g, fields),
+                    |x| g.size(x),
+                ),
             };
             Integrability::Nonintegrable { depth, growth: Some(Growth { domain, generic, start }) }
         }
@@ -263,8 +270,8 @@ pub fn integrability(system: &System, state: &State, end: f64) -> Result<Integra
     })
 }
 
-/// Ranks at the start of the fields and of all their brackets, until all directions are reached or there are too
-/// many.
+/// Ranks at the start of the fields and of all their brackets, until all directions are reached or there are
+/// too many.
 fn growth_at_start(
     admissible: Vec<Vec<Expr>>,
     bracket: impl Fn(&[Expr], &[Expr]) -> Vec<Expr>,

@@ -1,4 +1,5 @@
-//! Constraints on positions, solved for a coordinate each: what is left are the motions on the leaf of a start.
+//! Constraints on positions, solved for a coordinate each: what is left are the motions on the leaf of a
+//! start.
 
 use std::collections::HashMap;
 
@@ -10,9 +11,9 @@ use crate::{State, System};
 const LEAST: f64 = 1e-6;
 
 impl System {
-    /// The system and its state in the coordinates of the leaf `g(q, t) = 0` of `state`: each `g` that is linear
-    /// or quadratic in a coordinate gives that, on the branch of `state`, which is put into all constraints and
-    /// left out. Other `g` stay. `L` stays as it is, and the rest has a graph of its own.
+    /// The system and its state in the coordinates of the leaf `g(q, t) = 0` of `state`: each `g` that is
+    /// linear or quadratic in a coordinate gives that, on the branch of `state`, which is put into all
+    /// constraints and left out. Other `g` stay. `L` stays as it is, and the rest has a graph of its own.
     pub(crate) fn on_leaf(&self, state: &State) -> (System, State) {
         let (mut rest, mut state) = (self.clone(), state.clone());
         while let Some((which, i, value)) = rest.solved_position(&state) {
@@ -58,7 +59,8 @@ impl System {
         })
     }
 
-    /// `s` with `e = a s² + b s + c = 0`, where `∂e/∂s = 2 a s + b = ±√(b² − 4 a c)` has the sign of `at_start`.
+    /// `s` with `e = a s² + b s + c = 0`, where `∂e/∂s = 2 a s + b = ±√(b² − 4 a c)` has the sign of
+    /// `at_start`.
     fn value_of(&self, e: Expr, s: Symbol, slope: Expr, at_start: f64) -> Option<Expr> {
         let g = &self.graph;
         let at_zero = |e: Expr| g.substitute(e, &HashMap::from([(s, g.zero())]));

@@ -85,7 +85,11 @@ impl Surroundings {
         let Ok(tape) = graph.compile(&symbols, &entries, &HashMap::new()) else { return 0 };
         let values = Evaluator::new(tape).evaluate(&self.centre(&symbols)).to_vec();
         let width = fields.first().map_or(1, Vec::len);
-        if values.iter().all(|x| x.is_finite()) { certain_rank(values.chunks(width).map(<[Bounded]>::to_vec).collect()) } else { 0 }
+        if values.iter().all(|x| x.is_finite()) {
+            certain_rank(values.chunks(width).map(<[Bounded]>::to_vec).collect())
+        } else {
+            0
+        }
     }
 }
 

@@ -78,8 +78,8 @@ pub struct System {
     pub lagrangian: Expr,
     /// `f(q, v, t)`, each to be zero along a motion.
     pub constraints: Vec<Expr>,
-    /// Constraints on positions `g(q, t) = 0`, each beside the place of `dg/dt` among the constraints: motions
-    /// stay on the leaf `g = 0` of their start.
+    /// Constraints on positions `g(q, t) = 0`, each beside the place of `dg/dt` among the constraints:
+    /// motions stay on the leaf `g = 0` of their start.
     pub on_positions: Vec<(usize, Expr)>,
     /// `Q(q, v, t)`, one per coordinate; the number 0 where no force was given.
     pub forces: Vec<Expr>,

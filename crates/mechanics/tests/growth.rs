@@ -36,19 +36,16 @@ fn normal_forms_have_their_published_growth_vectors() {
     has_growth(&["x", "y", "z", "w"], &["y' - z*x'", "z' - w*x'"], &[0.0; 4], &[2, 3, 4], &[2, 3, 4]);
 }
 
-/// Martinet 1970: singular where `x = 0`. Laumond 1993, Jean 1996: two trailers, the first at a right angle to
-/// the tractor.
+/// Martinet 1970: singular where `x = 0`. Laumond 1993, Jean 1996: two trailers, the first at a right angle
+/// to the tractor.
 #[test]
 fn singular_starts_need_more_brackets_than_almost_every_place() {
     let space = ["x", "y", "z"];
     has_growth(&space, &["z' - x^2*y'"], &[0.0; 3], &[2, 3], &[2, 2, 3]);
     has_growth(&space, &["z' - x^2*y'"], &[1.0, 0.0, 0.0], &[2, 3], &[2, 3]);
     has_growth(&space, &["z' - x^5*y'"], &[0.0; 3], &[2, 3], &[2, 2, 2, 2, 2, 3]);
-    let trailers = [
-        "y'*cos(a) - x'*sin(a)",
-        "y'*cos(b) - x'*sin(b) - b'",
-        "y'*cos(c) - x'*sin(c) - b'*cos(b - c) - c'",
-    ];
+    let trailers =
+        ["y'*cos(a) - x'*sin(a)", "y'*cos(b) - x'*sin(b) - b'", "y'*cos(c) - x'*sin(c) - b'*cos(b - c) - c'"];
     let coordinates = ["x", "y", "a", "b", "c"];
     has_growth(&coordinates, &trailers, &[0.0, 0.0, 0.3, 0.1, 0.0], &[2, 3, 4, 5], &[2, 3, 4, 5]);
     has_growth(&coordinates, &trailers, &[0.0, 0.0, FRAC_PI_2, 0.0, 0.0], &[2, 3, 4, 5], &[2, 3, 4, 4, 5]);
@@ -93,8 +90,7 @@ fn constraints_are_integrable_on_the_leaf_of_the_start() {
 #[test]
 fn a_unit_vector_is_an_angle() {
     for (c, s) in [(0.6, 0.8), (-0.6, 0.8), (0.8, -0.6), (0.0, 1.0)] {
-        let (mut system, mut state) =
-            systems::kinetic(&["x", "y", "c", "s"], &[], &["2*c*c' + 2*s*s'", "y'*c - x'*s"]);
+        let (mut system, mut state) = systems::kinetic(&["x", "y", "c", "s"], &[], &["2*c*c' + 2*s*s'", "y'*c - x'*s"]);
         state.q = vec![0.0, 0.0, c, s];
         system.on_positions = vec![(0, system.expression("c^2 + s^2 - 1").expect("a formula"))];
         let found = integrability(&system, &state, 3.0).expect("linear");

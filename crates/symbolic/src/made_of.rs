@@ -85,8 +85,8 @@ impl Graph {
         roots.into_iter().collect()
     }
 
-    /// What is zero where an analytic piece of `es` may end: [`Graph::kinks`], [`Graph::radicands`], and `1 − u²`
-    /// for inverse sines and cosines of `u`: `asin(sin x)` is `x` up to `x = π/2` only.
+    /// What is zero where an analytic piece of `es` may end: [`Graph::kinks`], [`Graph::radicands`], and `1 −
+    /// u²` for inverse sines and cosines of `u`: `asin(sin x)` is `x` up to `x = π/2` only.
     ///
     /// ```
     /// let g = symbolic::Graph::new();
