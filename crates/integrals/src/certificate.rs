@@ -134,6 +134,11 @@ impl Question<'_> {
     }
 
     fn bound(&self, reversible: &Reversible, found: &Found) -> Result<Value, Open> {
+        if reversible.dimension() < reversible.coordinates {
+            return Err(Open::Other(
+                "certificates of bounds are written where no constraint on positions holds".into(),
+            ));
+        }
         self.of("bound", |point| {
             let flag = Flag::new(reversible, point, SEED, &[])?;
             let killing = Killing::new(reversible, &flag, point, found.order, SEED)?;

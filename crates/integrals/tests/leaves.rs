@@ -50,6 +50,9 @@ fn eulers_body_in_unit_quaternions_keeps_its_angular_momentum() {
     let held: Vec<bool> = found.invariants.clone().expect("an answer").into_iter().map(|(_, held)| held).collect();
     assert_eq!(held, [true, true, true, true, false]);
     assert!(matches!(&found.reversed, Some(found) if matches!(found.measure, Measure::Local { density: Some(_), .. })));
+    // linear near a point: the three parts of the angular momentum
+    let linear = found.reversed.as_ref().map(|found| found.integrals[0].clone()).expect("Chetaev's motion");
+    assert_eq!(linear.map(|linear| (linear.count, linear.settled)), Ok((3, true)));
     let domain = "near almost every place q of the leaf of this start; ";
     assert!(found.where_it_holds().is_some_and(|words| words.starts_with(domain)));
 }
@@ -153,6 +156,8 @@ duration = 2
 "#;
     let found = asked(text);
     assert!(found.invariants.clone().expect("an answer").iter().all(|(_, held)| *held));
-    let measure = found.reversed.expect("Chetaev's motion").measure;
-    assert_eq!(measure, Measure::None { proved: true });
+    let reversed = found.reversed.expect("Chetaev's motion");
+    assert_eq!(reversed.measure, Measure::None { proved: true });
+    // as of its angle: two, without a period
+    assert_eq!(reversed.integrals[0].clone().map(|linear| (linear.count, linear.settled)), Ok((2, true)));
 }
