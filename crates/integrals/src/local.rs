@@ -18,7 +18,7 @@ pub(crate) struct Reversible {
     /// `g`, then `∂g/∂q` row by row, of the constraints on positions.
     leaf: Program,
     on_positions: usize,
-    /// Places of the coordinates that any of these contains.
+    /// Places of the coordinates that any of these, or a constraint on positions, contains.
     pub(crate) present: Vec<usize>,
     /// Places of coordinates, those first whose velocities `A(q)v = 0` is solved for where it can be.
     pub(crate) order: Vec<usize>,
@@ -66,12 +66,12 @@ impl Reversible {
         let outputs = [jacobian.entries(), mass.entries(), &[g.neg(at_rest(system.lagrangian))]].concat();
         let mut inputs: Vec<_> = system.parameters.iter().map(|p| p.symbol).collect();
         let positions = system.positions();
-        let present = |q: &usize| outputs.iter().any(|&e| g.depends_on(e, positions[*q]));
+        let on_positions: Vec<Expr> = system.on_positions.iter().map(|(_, e)| *e).collect();
+        let present = |q: &usize| outputs.iter().chain(&on_positions).any(|&e| g.depends_on(e, positions[*q]));
         let present = (0..positions.len()).filter(present).collect();
         inputs.extend(&positions);
         let program = Program::new(g, &inputs, &outputs).map_err(|fault| Open::Other(fault.to_string()))?;
         let order = (0..positions.len()).collect();
-        let on_positions: Vec<Expr> = system.on_positions.iter().map(|(_, e)| *e).collect();
         let leaf = [&on_positions[..], g.jacobian(&on_positions, &positions).entries()].concat();
         let leaf = Program::new(g, &inputs, &leaf).map_err(|fault| Open::Other(fault.to_string()))?;
         let (coordinates, constraints, on_positions) = (positions.len(), system.constraints.len(), on_positions.len());
