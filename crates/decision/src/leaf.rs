@@ -4,10 +4,19 @@ use mechanics::System;
 use symbolic::{Expr, Symbol};
 
 use crate::DecisionError;
-use crate::exact::{Coefficient, Exact, Modular};
+use crate::exact::{Coefficient, Exact, Jet, Modular};
 use crate::program::Program;
-use crate::random_start::{PART, Short};
-use crate::start::NoExactStart;
+
+/// Where roots have branches, these integers count steps of 1/`PART` of each number of the start, away from
+/// it.
+pub(crate) const PART: i128 = 1 << 30;
+
+/// A number, or a constraint as a polynomial in one velocity up to the order that shows that it is quadratic:
+/// draws are many, and short series cheap.
+pub(crate) type Short = Jet<Modular, 5>;
+
+/// That random positions on which the constraints hold are not found.
+pub(crate) struct Unsolved;
 
 /// Constraints `g(q, t) = 0`.
 #[derive(Clone)]
@@ -81,8 +90,8 @@ impl Leaf {
         mut q: Vec<Short>,
         near: bool,
         rootless: &mut [bool],
-    ) -> Result<Option<Placed>, NoExactStart> {
-        let order = self.order.as_ref().ok_or(NoExactStart::Positions)?;
+    ) -> Result<Option<Placed>, Unsolved> {
+        let order = self.order.as_ref().ok_or(Unsolved)?;
         let mut program = self.program.evaluator::<Short>();
         let mut run = |q: &[Short]| program.run(&[parameters, &[time], q].concat()).to_vec();
         let (at_start, mut free) = (run(start), Vec::new());
@@ -116,7 +125,7 @@ impl Leaf {
                 q[j] = q[j] - values[*i] / slope(&values, j);
                 continue;
             }
-            let Some(&(j, [c, b, a])) = polynomials.first() else { return Err(NoExactStart::Positions) };
+            let Some(&(j, [c, b, a])) = polynomials.first() else { return Err(Unsolved) };
             let two = Modular::new(2);
             let root = (b * b - two * two * a * c).square_root();
             rootless[*i] |= root.is_none();
@@ -132,7 +141,7 @@ impl Leaf {
             q[j] = Short::constant(q[j].coefficient(0) + (root - b) * over, None);
         }
         let is_on = run(&q)[..order.len()].iter().all(|g| g.flaw().is_none() && g.coefficient(0).is_zero());
-        if is_on { Ok(Some((q, free))) } else { Err(NoExactStart::Positions) }
+        if is_on { Ok(Some((q, free))) } else { Err(Unsolved) }
     }
 
     /// Where a line from `start` meets the quadric again: near `start`, if it is nearly tangent there.

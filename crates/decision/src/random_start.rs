@@ -1,24 +1,18 @@
 //! Starts drawn at random on the constraint, for what holds at almost every start.
 
 use crate::exact::{Coefficient, Exact, Flaw, Jet, Modular};
+use crate::leaf::{PART, Short};
 use crate::series::SeriesStart;
 use crate::start::{ExactStart, NoExactStart};
 
 /// Random times, positions and velocities are integers of either sign up to 2 to one of these powers, tried
 /// in this order: exact functions of large integers may not fit.
 const BITS: [u32; 3] = [20, 8, 3];
-/// Where roots have branches, these integers count steps of 1/`PART` of each number of the start, away from
-/// it.
-pub(crate) const PART: i128 = 1 << 30;
 /// Maximum number of draws until the constraints have roots: a square has one for every second draw.
 const DRAWS: usize = 256;
 /// Number of draws with a root after which a square counts as that of a function: one other in 2^64 has as
 /// many.
 const ROOTED: usize = 64;
-
-/// A number, or a constraint as a polynomial in one velocity up to the order that shows that it is quadratic:
-/// draws are many, and short series cheap.
-pub(crate) type Short = Jet<Modular, 5>;
 
 /// The number with this place, where it is not zero; else the least of the others, or 1.
 fn size(numbers: &[Short], place: usize) -> Short {
@@ -102,7 +96,11 @@ impl ExactStart {
             let time = draws(near.as_ref().map(|_| &times[..]))?[0];
             let (q, on_leaf) = match &own {
                 None => (q, Vec::new()),
-                Some(own) => match self.leaf.placed(&parameters, time, own, q, near.is_some(), &mut leaf_rootless)? {
+                Some(own) => match self
+                    .leaf
+                    .placed(&parameters, time, own, q, near.is_some(), &mut leaf_rootless)
+                    .map_err(|_| NoExactStart::Positions)?
+                {
                     Some(placed) => placed,
                     None => continue,
                 },
