@@ -209,7 +209,8 @@ fn a_large_disc_and_a_short_hitch() {
         for value in values {
             let scene = set(name, key, value);
             let found = deltaq::integrability(&scene).expect("linear");
-            assert_eq!(found, Integrability::Nonintegrable { depth }, "{name}, {key} = {value}");
+            let as_deep = matches!(found, Integrability::Nonintegrable { depth: found, .. } if found == depth);
+            assert!(as_deep, "{name}, {key} = {value}: {found}");
             let usual = decided(&catalogue::find(name, &[]).expect("a scene"));
             let found = decided(&scene);
             // what is proved has the last word

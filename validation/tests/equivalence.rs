@@ -12,13 +12,16 @@ fn every_start_is_what_the_page_says_and_the_headline_counts_its_tables() {
         .map(|block| block.lines().skip(2).collect())
         .collect();
     let [systems, starts] = &tables[..] else { panic!("{} tables", tables.len()) };
-    let everywhere = |row: &&&str| row.split('|').nth(5).is_some_and(|cell| cell.trim().starts_with("**none**"));
-    let none = systems.iter().filter(everywhere).count();
-    let open = systems.iter().filter(|row| row.split('|').nth(5).is_some_and(|cell| cell.contains("**open**"))).count();
+    let count = |what: &str| {
+        let begins = |row: &&&str| row.split('|').nth(5).is_some_and(|cell| cell.trim().starts_with(what));
+        systems.iter().filter(begins).count()
+    };
+    let [none, one, more, every] = ["**none**", "**one**", "**dimension", "**every one**"].map(count);
     let headline = report.headline();
     let begins = format!("Of {} classic systems and variants, {none} have no $\\mu_0$", systems.len());
     assert!(headline.starts_with(&begins), "{begins}: {headline}");
-    let some = format!("at almost every start; {} have one", systems.len() - none - open);
+    assert_eq!(none + one + more + every + count("**open**"), systems.len());
+    let some = format!("; {one} have one $\\mu_0$, {more} a set of dimension 1 or more, {every} every $\\mu_0$");
     assert!(
         headline.contains(&some) && headline.contains(&format!(" {} further starts, ", starts.len())),
         "{headline}"

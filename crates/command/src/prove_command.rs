@@ -2,6 +2,7 @@
 
 use anyhow::Result;
 use deltaq::{certificate, holds_beside_numbers, membership};
+use mechanics::Domain;
 use serde_json::json;
 
 use crate::cli::ProveArguments;
@@ -24,7 +25,9 @@ pub fn run(arguments: &ProveArguments) -> Result<Answer> {
             let told = |file: &str| match format {
                 TextOrJson::Text => {
                     let what = "no μ₀ makes the vakonomic motion Chetaev's";
-                    let start = if *almost_every { " from almost every start" } else { "" };
+                    let domain = Domain::of(&scene.system);
+                    let start =
+                        if *almost_every { format!(" from {}", domain.almost_every("start")) } else { String::new() };
                     format!("{}: {what}{start}: proved (order {order}); the certificate is in {file}\n", scene.name)
                 }
                 TextOrJson::Json => {

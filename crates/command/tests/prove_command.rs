@@ -157,7 +157,7 @@ fn the_words_say_what_is_proved_and_what_is_not() {
     assert!(answer(&["prove", &path, "--out", &out], 0).0.contains("proved (order 11)"));
     particle("z' - (x - sqrt(x^2))*y'", "x = { unit = \"m\", start = 1");
     let complaint = answer(&["prove", &path, "--out", &out], 3).1;
-    assert!(complaint.contains("modulo two primes, near this start, which is no proof"), "{complaint}");
+    assert!(complaint.contains("at random starts of the branch of this start"), "{complaint}");
     let complaint = answer(&["prove", "disc", "--out", &out], 3).1;
     assert!(complaint.contains("an identity, (-m*x', -m*y'), for all starts: proved"), "{complaint}");
     let complaint = answer(&["prove", "disc", "--set", "phi=1.0471975511965976", "--out", &out], 3).1;

@@ -176,12 +176,22 @@ impl Question<'_> {
         completed: Vec<String>,
         at_random: bool,
     ) -> Result<Certificate, String> {
-        let refuted = self.ranks(exact, |_| false)?.refuted().ok_or("Taylor coefficients leave some μ₀")?;
+        let refuted = self.ranks(exact, |_| false)?.refuted(start).ok_or("Taylor coefficients leave some μ₀")?;
         let (curve, _) = self.series(exact, refuted.order + 3).map_err(|fault| fault.to_string())?;
         let shape = &self.family().shape;
         let (n, h, last) = (shape.coordinates, shape.constraints, refuted.order);
+        if ![0, h].contains(&open.len()) {
+            return Err("the start that was drawn has numbers that are no fractions".into());
+        }
         if shape.rates.iter().any(|rate| matches!(rate, CostateRate::Explicit(_))) || curve.unknowns[0].len() != n + h {
             return Err("certificates are written for Chetaev's motion as a vakonomic one only".into());
+        }
+        if refuted.full_rank && refuted.size <= shape.constants {
+            return Err(format!(
+                "it is proved by a minor of size {} for {} multipliers, as combinations of the constraints are integrable: \
+                 certificates have minors of full size",
+                refuted.size, shape.constants
+            ));
         }
         if !refuted.full_rank {
             return Err(

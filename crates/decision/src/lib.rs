@@ -72,6 +72,7 @@
 //! J. Cortés, M. de León, D. Martín de Diego, S. Martínez 2003; O. Fernandez, A. Bloch 2008; M. Crampin, T.
 //! Mestdag 2010; M. Jóźwikowski, W. Respondek 2019.
 
+mod at_rest;
 mod certificate;
 mod curve;
 mod decide;
@@ -81,6 +82,7 @@ mod family;
 mod flow;
 mod identity;
 mod leading;
+mod leaf;
 mod lift;
 mod order_by_order;
 mod plain_scene;

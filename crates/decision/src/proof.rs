@@ -1,7 +1,7 @@
 //! The proof over a finite field.
 
 use equations::Equations;
-use mechanics::{State, System};
+use mechanics::{Domain, State, System};
 use symbolic::question;
 
 use crate::DecisionError;
@@ -52,10 +52,12 @@ pub enum Finding {
 pub struct NoConstants {
     /// The order of the derivative of the mismatch that excludes the last constants.
     pub order: usize,
-    /// Whether a minor of full size is not zero: a proof. Without full rank of `O` there is no such minor,
-    /// and the result rests on ranks modulo two primes, which equal those of the real numbers except by
-    /// accident.
+    /// Whether `O` has the largest rank that it can have, one less for each integrable combination of the
+    /// constraints that is known: then a minor that is not zero is a proof. Otherwise the result rests on
+    /// ranks modulo two primes, which equal those of the real numbers except by accident.
     pub full_rank: bool,
+    /// The size of that minor: the rank of `[O | o]`.
+    pub size: usize,
 }
 
 /// Results of the proof for one start and for almost every start.
@@ -65,9 +67,8 @@ pub struct Proof {
     pub this_start: Finding,
     /// About all starts on the constraint but a set of measure zero.
     pub almost_every_start: Finding,
-    /// Whether a variable expression stands under a root: `almost_every_start` then refers to the branch of
-    /// this start.
-    pub one_branch: bool,
+    /// Which starts these are.
+    pub domain: Domain,
     /// Velocities given as decimals that miss the constraints by round-off, solved from these here.
     pub completed: Vec<String>,
 }
@@ -95,9 +96,17 @@ impl Ranks {
     }
 
     /// The order at which no constants are left.
-    pub(crate) fn refuted(&self) -> Option<NoConstants> {
+    pub(crate) fn refuted(&self, start: &ExactStart) -> Option<NoConstants> {
         let order = self.by_order.iter().position(|(of_constants, whole)| whole > of_constants)?;
-        Some(NoConstants { order, full_rank: self.by_order[order].0 == self.constants })
+        let (rank, size) = self.by_order[order];
+        let are_multipliers = self.constants == start.system.constraints.len();
+        let full_rank =
+            rank == self.constants || are_multipliers && rank + start.integrable_combinations() == self.constants;
+        Some(NoConstants { order, full_rank, size })
+    }
+
+    fn is_refuted(&self) -> bool {
+        self.by_order.iter().any(|(of_constants, whole)| whole > of_constants)
     }
 
     /// The order from which on the ranks stay the same.
@@ -183,16 +192,16 @@ impl<'a> Question<'a> {
     pub fn prove(&self, start: &ExactStart) -> Proof {
         let almost_every_start = self.prove_almost_every(start);
         let mut completed = Vec::new();
-        let ranks = agreed(|_| {
+        let ranks = agreed(start, |_| {
             let (exact, names) = start.series().map_err(|fault| fault.to_string())?;
             completed = names;
             self.ranks(&exact, |ranks| is_generic(ranks, &almost_every_start))
         });
         let this_start = match ranks {
-            Ok(ranks) => self.particular(&ranks, &almost_every_start),
+            Ok(ranks) => self.particular(start, &ranks, &almost_every_start),
             Err(reason) => Finding::NotApplicable(reason),
         };
-        Proof { this_start, almost_every_start, completed, one_branch: start.has_branches }
+        Proof { this_start, almost_every_start, completed, domain: start.domain }
     }
 
     /// Ranks at few orders where these are `enough`, else at more, else at all.
@@ -201,15 +210,15 @@ impl<'a> Question<'a> {
         let all = self.orders();
         for orders in [h + 3, 2 * h + 7] {
             let ranks = Ranks::of(&self.series(start, orders.min(all)).map_err(|fault| fault.to_string())?.1);
-            if orders >= all || ranks.refuted().is_some() || enough(&ranks) {
+            if orders >= all || ranks.is_refuted() || enough(&ranks) {
                 return Ok(ranks);
             }
         }
         Ok(Ranks::of(&self.series(start, all).map_err(|fault| fault.to_string())?.1))
     }
 
-    fn particular(&self, ranks: &Ranks, generic: &Finding) -> Finding {
-        if let Some(none) = ranks.refuted() {
+    fn particular(&self, start: &ExactStart, ranks: &Ranks, generic: &Finding) -> Finding {
+        if let Some(none) = ranks.refuted(start) {
             return Finding::None(none);
         }
         // at rest η obeys one linear equation with constant coefficients, and the constant 1 beside it makes
@@ -227,8 +236,8 @@ impl<'a> Question<'a> {
     /// What can be proved about almost every start on the branch of `start`.
     pub fn prove_almost_every(&self, start: &ExactStart) -> Finding {
         let ranks =
-            agreed(|seed| at_random(start, seed, |exact| self.ranks(&exact, |ranks| ranks.settled().is_some())));
-        match ranks.map(|ranks| (ranks.refuted(), ranks.settled(), ranks)) {
+            agreed(start, |seed| at_random(start, seed, |exact| self.ranks(&exact, |ranks| ranks.settled().is_some())));
+        match ranks.map(|ranks| (ranks.refuted(start), ranks.settled(), ranks)) {
             Err(reason) => Finding::NotApplicable(reason),
             Ok((Some(none), ..)) => Finding::None(none),
             Ok((None, Some(order), ranks)) => Finding::Contained { rank: ranks.last(), order },
@@ -243,8 +252,9 @@ fn is_generic(ranks: &Ranks, generic: &Finding) -> bool {
 }
 
 /// Ranks that two fields agree on; a minor that is not zero needs one field only.
-fn agreed(ranks: impl FnMut(u64) -> Result<Ranks, String>) -> Result<Ranks, String> {
-    let found = question(|| exact::agreed(SEEDS, ranks, |ranks| ranks.refuted().is_some_and(|none| none.full_rank)));
+fn agreed(start: &ExactStart, ranks: impl FnMut(u64) -> Result<Ranks, String>) -> Result<Ranks, String> {
+    let is_proof = |ranks: &Ranks| ranks.refuted(start).is_some_and(|none| none.full_rank);
+    let found = question(|| exact::agreed(SEEDS, ranks, is_proof));
     found
         .map_err(|stopped| stopped.to_string())?
         .map_err(|fault| fault.unwrap_or_else(|| "no two fields agree on the ranks".into()))

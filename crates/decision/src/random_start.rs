@@ -1,24 +1,18 @@
 //! Starts drawn at random on the constraint, for what holds at almost every start.
 
 use crate::exact::{Coefficient, Exact, Flaw, Jet, Modular};
+use crate::leaf::{PART, Short};
 use crate::series::SeriesStart;
 use crate::start::{ExactStart, NoExactStart};
 
 /// Random times, positions and velocities are integers of either sign up to 2 to one of these powers, tried
 /// in this order: exact functions of large integers may not fit.
 const BITS: [u32; 3] = [20, 8, 3];
-/// Where roots have branches, these integers count steps of 1/`PART` of each number of the start, away from
-/// it.
-const PART: i128 = 1 << 30;
 /// Maximum number of draws until the constraints have roots: a square has one for every second draw.
 const DRAWS: usize = 256;
 /// Number of draws with a root after which a square counts as that of a function: one other in 2^64 has as
 /// many.
 const ROOTED: usize = 64;
-
-/// A number, or a constraint as a polynomial in one velocity up to the order that shows that it is quadratic:
-/// draws are many, and short series cheap.
-type Short = Jet<Modular, 5>;
 
 /// The number with this place, where it is not zero; else the least of the others, or 1.
 fn size(numbers: &[Short], place: usize) -> Short {
@@ -62,13 +56,14 @@ impl ExactStart {
     /// Random integers for time, positions and velocities, the others from the constraints, on the surface
     /// that the start is on: near the start, on its branch, if something varies under roots; roots in a
     /// constant ratio keep the ratio that they have there. Any other square must once have no root. The
-    /// square of a function always has one; without such the surface is in one piece.
+    /// square of a function always has one; without such the surface is in one piece. Positions are on the
+    /// leaf of the start, where constraints on positions hold.
     pub(crate) fn random(&self, seed: u64, bits: u32) -> Result<SeriesStart<Modular>, NoExactStart> {
         let short = |numbers: &[Jet<Modular>]| numbers.iter().map(Jet::resized).collect::<Vec<Short>>();
         let long = |numbers: &[Short]| numbers.iter().map(Short::resized).collect::<Vec<Jet<Modular>>>();
         let (given, time) = self.given();
         let parameters = short(&given);
-        let near = if self.has_branches { Some(self.series()?.0) } else { None };
+        let near = if self.domain.branch { Some(self.series()?.0) } else { None };
         let (near_q, near_v) = near.as_ref().map(|near| (short(&near.positions), short(&near.velocities))).unzip();
         let mut state = seed;
         let mut draw = || {
@@ -90,12 +85,26 @@ impl ExactStart {
         let times = vec![time.resized(); n];
         let choices = [&self.supplied, &self.spare];
         let usual = choices.into_iter().find(|choice| choice.len() == self.system.constraints.len());
+        let own =
+            if self.domain.leaf { self.written_state(&given, time, &[])?.first().map(|q| short(q)) } else { None };
         let (mut rootless, mut rooted) = (vec![false; self.system.constraints.len()], 0);
+        let mut leaf_rootless = vec![false; self.leaf.constraints()];
         let mut found = None;
         for _ in 0..DRAWS {
             let q = draws(near_q.as_deref())?;
             let v = draws(near_v.as_deref())?;
             let time = draws(near.as_ref().map(|_| &times[..]))?[0];
+            let (q, on_leaf) = match &own {
+                None => (q, Vec::new()),
+                Some(own) => match self
+                    .leaf
+                    .placed(&parameters, time, own, q, near.is_some(), &mut leaf_rootless)
+                    .map_err(|_| NoExactStart::Positions)?
+                {
+                    Some(placed) => placed,
+                    None => continue,
+                },
+            };
             let velocities = match self.solved(&parameters, time, &q, &v, usual.unwrap_or(&self.spare)) {
                 Err(NoExactStart::Nonlinear) => self.with_roots(&parameters, time, &q, &v)?,
                 solved => Solved::At { velocities: solved?, free: Vec::new() },
@@ -104,15 +113,20 @@ impl ExactStart {
                 Solved::Rootless(constraint) => rootless[constraint] = true,
                 Solved::At { velocities, free } => {
                     rooted += 1;
-                    found.get_or_insert((time, q, velocities, free));
+                    found.get_or_insert((time, q, velocities, free, on_leaf));
                 }
             }
-            if rooted == ROOTED || found.as_ref().is_some_and(|(.., free)| free.iter().all(|&i| rootless[i])) {
+            let is_one_piece = |free: &[usize], on_leaf: &[usize]| {
+                free.iter().all(|&i| rootless[i]) && on_leaf.iter().all(|&i| leaf_rootless[i])
+            };
+            if rooted == ROOTED || found.as_ref().is_some_and(|(.., free, on_leaf)| is_one_piece(free, on_leaf)) {
                 break;
             }
         }
         match found {
-            Some((time, q, v, free)) if free.iter().all(|&i| rootless[i]) => {
+            Some((time, q, v, free, on_leaf))
+                if free.iter().all(|&i| rootless[i]) && on_leaf.iter().all(|&i| leaf_rootless[i]) =>
+            {
                 Ok(SeriesStart { parameters: given, time: time.resized(), positions: long(&q), velocities: long(&v) })
             }
             Some(_) => Err(NoExactStart::Product),

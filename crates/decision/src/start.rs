@@ -1,12 +1,14 @@
 //! A start in exact numbers: as it was written, or drawn at random on the constraint.
 
+use std::cell::OnceCell;
 use std::collections::HashMap;
 
-use mechanics::{Completion, Removal, State, System};
+use mechanics::{Completion, Domain, Integrability, Removal, State, System, integrability};
 use symbolic::{Expr, Graph, Scalar, Symbol};
 
 use crate::DecisionError;
 use crate::exact::{Coefficient, Exact, Flaw, Jet, Modular, inverse, subtract_product};
+use crate::leaf::Leaf;
 use crate::program::Program;
 use crate::series::SeriesStart;
 
@@ -26,6 +28,11 @@ pub enum NoExactStart {
     /// The velocities at the start are projected ones.
     #[error("the velocities at the start are not those of the scene, but projected ones")]
     Projected,
+    /// Random positions on which the constraints on positions hold are not found.
+    #[error(
+        "at random places the constraints on positions are not solved: each coordinate stands in several, or with a degree over 2"
+    )]
+    Positions,
     /// The constraints hold on several surfaces, and which of them the start is on is not seen in the field.
     #[error("the constraints are products, and at random starts it is not known which factor is zero")]
     Product,
@@ -46,15 +53,17 @@ pub struct ExactStart {
     values: Written,
     /// Velocities that the constraints supply.
     pub(crate) supplied: Vec<usize>,
-    /// All velocities as they were found.
-    rounded: Vec<f64>,
+    /// The state as it was found.
+    rounded: State,
+    integrable: OnceCell<usize>,
     /// What `v` a constraint would be solved for, if none is supplied and the given miss it by round-off.
     pub(crate) spare: Vec<usize>,
     /// `∂f/∂v` at the start, row by row.
     pub(crate) slopes: Vec<f64>,
     pub(crate) constraints: Program,
-    /// Whether something that varies stands under a root: then random starts are near this one.
-    pub(crate) has_branches: bool,
+    pub(crate) leaf: Leaf,
+    /// Where random starts are: on the branch of this one they are near it.
+    pub(crate) domain: Domain,
     problem: Option<NoExactStart>,
 }
 
@@ -115,11 +124,8 @@ impl ExactStart {
         let constraints = Program::new(g, &inputs, &outputs)?;
         let slopes = slopes(system, state, &constraints);
         let spare = independent_columns(&slopes, system.dimension());
-        let formulas = [&[system.lagrangian][..], &system.constraints, &system.forces].concat();
-        let rooted = [g.kinks(&formulas), g.radicands(&formulas)].concat();
-        let constant = |e: &Expr| g.symbols_of(*e).iter().all(|s| system.parameters.iter().any(|p| p.symbol == *s));
-        let has_branches = !rooted.iter().all(constant);
-        let (system, rounded) = (system.clone(), state.v.clone());
+        let (leaf, domain) = (Leaf::new(system)?, Domain::of(system));
+        let (system, rounded, integrable) = (system.clone(), state.clone(), OnceCell::new());
         Ok(ExactStart {
             system,
             written,
@@ -127,17 +133,33 @@ impl ExactStart {
             values,
             supplied,
             rounded,
+            integrable,
             spare,
             slopes,
             constraints,
-            has_branches,
+            leaf,
+            domain,
             problem,
         })
     }
 
-    /// Whether something that varies stands under a root of `L`, `f` or `Q`, or has a kink there.
-    pub fn has_branches(&self) -> bool {
-        self.has_branches
+    /// Where what holds at random starts holds.
+    pub fn domain(&self) -> Domain {
+        self.domain
+    }
+
+    /// How many independent combinations of the constraints are known to be integrable, exactly: motions stay
+    /// on their leaves, and `O` has as many independent columns fewer (theorem 3, iii).
+    pub fn integrable_combinations(&self) -> usize {
+        *self.integrable.get_or_init(|| {
+            let (system, state) = (&self.system.clone(), &self.rounded);
+            let h = system.constraints.len();
+            match integrability(system, state, state.t + 1.0) {
+                Ok(Integrability::Integrable { exact: true }) => h,
+                Ok(Integrability::PartlyIntegrable { integrals, exact: true, .. }) => integrals,
+                _ => system.integrable_constraints(state),
+            }
+        })
     }
 
     /// Names of given velocities solved from the constraints, which their decimals miss by round-off.
@@ -165,7 +187,7 @@ impl ExactStart {
             // constraints
             Err(NoExactStart::Nonlinear) => {
                 let mut v = v.clone();
-                self.supplied.iter().for_each(|&i| v[i] = Jet::of(self.rounded[i]));
+                self.supplied.iter().for_each(|&i| v[i] = Jet::of(self.rounded.v[i]));
                 Ok((start(self.solved(&parameters, time, &q, &v, &[])?), Vec::new()))
             }
             Err(fault) => Err(fault),
@@ -200,7 +222,7 @@ impl ExactStart {
     }
 
     /// Positions and velocities as they are written, but for those that are others.
-    fn written_state<C: Coefficient>(
+    pub(crate) fn written_state<C: Coefficient>(
         &self,
         parameters: &[Jet<C>],
         time: Jet<C>,

@@ -174,6 +174,8 @@ fn said(text: &str) -> [String; 2] {
     let words = |finding: &Finding| match finding {
         Finding::NotApplicable(_) => "not applicable".into(),
         Finding::Contained { rank, .. } => format!("contained, rank {rank}"),
+        // whether integrable combinations are found depends on the words
+        Finding::None(none) => format!("none, order {}, minor of size {}", none.order, none.size),
         other => format!("{other:?}"),
     };
     [words(&proof.this_start), words(&proof.almost_every_start)]

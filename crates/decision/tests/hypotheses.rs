@@ -100,11 +100,14 @@ fn a_plane_that_begins_to_tilt() {
 fn a_root_has_branches() {
     for constraint in ["z' - (x - sqrt(x^2))*y'", "z' - (x - (x^2)^(3/2)/x^2)*y'"] {
         let (proof, section) = of(constraint, ["1", "0"]);
-        assert!(proof.one_branch && matches!(proof.this_start, Finding::Contained { .. }), "{constraint}: {proof:?}");
+        assert!(
+            proof.domain.branch && matches!(proof.this_start, Finding::Contained { .. }),
+            "{constraint}: {proof:?}"
+        );
         assert!(section.is_none_or(|section| !section.proved), "{constraint}");
         let (proof, section) = of(constraint, ["-1", "0"]);
         assert!(matches!(proof.this_start, Finding::None(_)) && section.is_none(), "{constraint}: {proof:?}");
-        assert!(proof.one_branch && matches!(proof.almost_every_start, Finding::None(_)), "{constraint}: {proof:?}");
+        assert!(proof.domain.branch && matches!(proof.almost_every_start, Finding::None(_)), "{constraint}: {proof:?}");
     }
     let shifted = "z' - (x - 0.2 - sqrt(x^2 - 0.4*x + 0.04))*y'";
     assert!(matches!(of(shifted, ["0.3", "0"]).0.this_start, Finding::Contained { .. }));

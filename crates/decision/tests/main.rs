@@ -6,6 +6,7 @@ mod drawn;
 mod exact;
 mod floating;
 mod hypotheses;
+mod leaves;
 mod numbers;
 mod proofs;
 mod questions;

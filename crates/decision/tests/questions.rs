@@ -73,7 +73,7 @@ pub(crate) fn is_vakonomic(scene: &Scene) -> Decision {
     decided(&vakonomic(scene), &chetaev(scene))
 }
 
-fn exact_start(scene: &Scene) -> ExactStart {
+pub(crate) fn exact_start(scene: &Scene) -> ExactStart {
     ExactStart::new(&scene.system, &scene.start, &scene.completion, scene.removals.first()).expect("a start")
 }
 

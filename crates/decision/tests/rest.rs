@@ -6,7 +6,8 @@ use scene::Scene;
 
 use crate::closed_forms::COIN;
 use crate::questions::{
-    as_written, built_in, chetaev, chetaev_equations, decided, is_vakonomic, proved, proved_in, removed, written,
+    as_written, built_in, chetaev, chetaev_equations, decided, exact_start, is_vakonomic, proved, proved_in, removed,
+    written,
 };
 
 /// How many dimensions of constants are left; floating point and proof have to say the same.
@@ -37,6 +38,17 @@ fn constraints_without_a_curvature_there_bind_nothing() {
     let family = removed(&sledge, &sledge.removals[0]);
     let proof = proved_in(&sledge, &chetaev_equations(&sledge), &[], &family).0;
     assert_eq!(left(&decided(&family, &chetaev(&sledge)), &proof), Some(1));
+}
+
+/// Held by the reaction across the blade, or by nothing at all; along the slope it is not.
+#[test]
+fn rest_is_known_exactly() {
+    let rests = |name: &str, overrides: &[(&str, &str)]| exact_start(&as_written(name, overrides)).is_at_rest();
+    assert!(rests("sledge", &[("x'", "0"), ("phi'", "0"), ("phi", "pi/2")]));
+    assert!(rests("disc", &[("psi'", "0"), ("phi'", "0")]));
+    assert!(!rests("sledge", &[("x'", "0"), ("phi'", "0"), ("phi", "1.57")]));
+    assert!(!rests("sledge", &[("x'", "0"), ("phi'", "1e-9"), ("phi", "pi/2")]));
+    assert!(!rests("turntable", &[]));
 }
 
 #[test]

@@ -84,7 +84,7 @@ impl Membership {
                 ))
             }
             // a motion may leave the branch of its start
-            (_, Floating::NotContained) if self.proof.one_branch => None,
+            (_, Floating::NotContained) if self.proof.domain.branch => None,
             (Finding::Contained { .. }, Floating::NotContained) => Some(contradiction(
                 "ranks show that some constants give the motion",
                 format!("the least mismatch found is {least} with noise {noise}"),

@@ -3,7 +3,7 @@
 
 use decision::{ExactStart, Family, Finding, Question};
 use equations::Derivation;
-use mechanics::{Completion, Integrability, State, System};
+use mechanics::{Completion, Domain, Integrability, State, System};
 use scene::Scene;
 
 use crate::SolveError;
@@ -18,12 +18,16 @@ pub fn integrability(scene: &Scene) -> Result<Integrability, SolveError> {
     let (system, state) = (&scene.system.clone(), &scene.start);
     let verdict = mechanics::integrability(system, state, state.t + scene.duration)?;
     let Integrability::Undecided { at_most, constraints, .. } = verdict else { return Ok(verdict) };
+    // what ranks find on the branch of the start, a motion may leave
+    if Domain::of(system).branch {
+        return Ok(verdict);
+    }
     let (rest, state) = system.without_exact_constraints(state)?;
     let exact = constraints - rest.constraints.len();
     let Some((left, depth)) = integrals_by_ranks(&rest, &state)? else { return Ok(verdict) };
     Ok(match exact + left {
         more if more > at_most => verdict,
-        0 => Integrability::Nonintegrable { depth },
+        0 => Integrability::Nonintegrable { depth, growth: None },
         all if all == constraints => Integrability::Integrable { exact: false },
         integrals => Integrability::PartlyIntegrable { integrals, constraints, exact: false },
     })

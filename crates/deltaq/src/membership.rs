@@ -74,7 +74,7 @@ impl Membership {
 
     /// Whether what holds on the branch of the start does not hold up to the end.
     fn leaves_its_branch(&self) -> bool {
-        self.proof.one_branch && self.decision.verdict == Verdict::NotContained
+        self.proof.domain.branch && self.decision.verdict == Verdict::NotContained
     }
 
     /// The answer. A proof is about the numbers as they are written, and has the last word, unless what is
@@ -174,7 +174,7 @@ impl<'a> Pairing<'a> {
             Finding::NotApplicable(_) if all => question.every_constant(system),
             _ => question.section(system, &exact, start)?,
         };
-        let theorem = if all && section.is_none() { self.theorem(end) } else { None };
+        let theorem = if all && section.is_none() { self.theorem(&exact, end) } else { None };
         let unseen = refuted && decision.verdict == Verdict::Contained;
         let least = |until| question.least_by_series(system, start, until - start.t);
         let implied = unseen.then(|| least(decision.until.unwrap_or(end))).flatten();
@@ -182,10 +182,14 @@ impl<'a> Pairing<'a> {
     }
 
     /// Vakonomic motions are Chetaev's for every `μ₀` where the constraints are integrable (theorem 3):
-    /// `f = g dh/dt` with an invertible `g`, and for `dh/dt` the equations contain `μ` as a rate only, `−λ`.
-    fn theorem(&self, end: f64) -> Option<&'static str> {
+    /// `f = g dh/dt` with an invertible `g`, and for `dh/dt` the equations contain `μ` as a rate only, `−λ`. At
+    /// rest they do so, too.
+    fn theorem(&self, start: &ExactStart, end: f64) -> Option<&'static str> {
         if self.curve.formulation != CHETAEV.name || self.family.formulation() != VAKONOMIC.name {
             return None;
+        }
+        if start.is_at_rest() {
+            return Some("nothing moves, and the constraints are linear in the velocities");
         }
         let integrability = mechanics::integrability(&self.scene.system.clone(), &self.scene.start, end).ok()?;
         let is_exact = integrability == Integrability::Integrable { exact: true };

@@ -18,7 +18,7 @@ fn membership(comparison: &mut Comparison) -> &mut Membership {
 
 /// What is known of a start in exact numbers: nothing, a no with a proof or by ranks, a yes, neither so far.
 fn findings() -> [(&'static str, Finding); 5] {
-    let none = |full_rank| Finding::None(NoConstants { order: 4, full_rank });
+    let none = |full_rank| Finding::None(NoConstants { order: 4, full_rank, size: 2 });
     [
         ("a no", none(true)),
         ("a no by ranks", none(false)),
@@ -107,7 +107,7 @@ fn every_answer_follows_from_what_was_found() {
         };
         section.proved = found == "!";
         is_so.section = if found == "-" { None } else { Some(section.clone()) };
-        (is_so.proof.one_branch, is_so.implied) = (branch == "yes", None);
+        (is_so.proof.domain.branch, is_so.implied) = (branch == "yes", None);
         let (answer, expected) = (told(is_so), expected.trim());
         assert!(
             expected.strip_prefix("none ").map_or(answer == expected, |ends| answer.ends_with(ends)),

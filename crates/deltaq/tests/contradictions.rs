@@ -25,7 +25,7 @@ fn disc() -> Comparison {
 }
 
 fn no_constants() -> Finding {
-    Finding::None(NoConstants { order: 1, full_rank: true })
+    Finding::None(NoConstants { order: 1, full_rank: true, size: 2 })
 }
 
 /// The one thing that is found, the page's first words and the command's error.

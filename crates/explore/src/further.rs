@@ -1,7 +1,7 @@
 //! What is said of one motion beside it: its integrals, and its derivatives by the numbers that can be set.
 
 use deltaq::{Choice, sensitivities, setting};
-use integrals::{Integrals, NEAR};
+use integrals::Integrals;
 use serde_json::{Value, json};
 
 use crate::controls;
@@ -16,7 +16,7 @@ pub(crate) fn integrals(subject: &Subject, question: &Question) -> Result<Value,
         return Ok(json!({ "refused": "no motion is shown" }));
     };
     let found = Integrals::find(scene, choice, question.degree, &[])?;
-    let near = found.reversed.as_ref().map(|_| NEAR);
+    let near = found.where_it_holds();
     Ok(json!({ "label": choice.label, "near": near, "degree": question.degree, "lines": found.lines() }))
 }
 

@@ -87,7 +87,7 @@ fn pair(comparison: &Comparison, pair: &Pair) -> Value {
 fn sentence(comparison: &Comparison) -> Option<String> {
     let (chetaev, vakonomic) = (comparison.run(CHETAEV)?, comparison.run(VAKONOMIC)?);
     let verdict = &comparison.pair(chetaev, vakonomic)?.gap.verdict;
-    let constraint = match comparison.integrability {
+    let constraint = match &comparison.integrability {
         Integrability::Unconstrained => {
             return Some(
                 "Nothing is constrained, so Chetaev's and the vakonomic equations are both Lagrange's.".into(),

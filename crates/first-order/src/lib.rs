@@ -64,7 +64,7 @@ pub const FORMULATION: Formulation = Formulation {
 
 /// The Euler–Lagrange derivative `C μ` of `μ·f`, `C = (∂f/∂q)ᵀ − Ȧᵀ`, with `multipliers` `μ` held fixed: n
 /// components, in `(q, v, a, t)`.
-pub fn curvature(system: &System, multipliers: &[Expr]) -> Vec<Expr> {
+pub fn euler_lagrange(system: &System, multipliers: &[Expr]) -> Vec<Expr> {
     let g = &system.graph;
     let flow = system.flow();
     let (by_q, by_v) = (g.jacobian(&system.constraints, &system.positions()), system.constraint_jacobian());
@@ -117,8 +117,8 @@ pub fn law(system: &System, epsilon: Expr, slip: Option<Expr>) -> Equations {
     let gradient = g.gradient(system.lagrangian, &q);
     let trace = g.neg(epsilon);
     let along = g.transpose_vec(&system.constraint_jacobian(), &lambda);
-    let curvature = curvature(&system, &lambda);
-    let reaction: Vec<Expr> = along.iter().zip(curvature).map(|(&a, c)| g.add(a, g.mul(trace, c))).collect();
+    let turned = euler_lagrange(&system, &lambda);
+    let reaction: Vec<Expr> = along.iter().zip(turned).map(|(&a, c)| g.add(a, g.mul(trace, c))).collect();
     let mut residuals = system.balances(&momenta, &[&gradient, &system.forces, &reaction], &flow);
     equations.state_balances(&system, &residuals);
     match slip {

@@ -112,7 +112,7 @@ impl<'a> Jets<'a> {
         let system = &scene.system;
         let start = ExactStart::new(system, &scene.start, &scene.completion, choice.removal.as_ref());
         let start = start.map_err(|fault| fault.to_string())?;
-        if start.has_branches() {
+        if start.domain().branch {
             return Err("something that varies stands under a root or has a kink in L, f or Q".into());
         }
         let equations = derive(system, choice).map_err(|fault| fault.to_string())?;

@@ -4,7 +4,7 @@ use std::iter::zip;
 
 use decision::{DecisionError, ExactStart};
 use deltaq::{CHETAEV, Choice, Contradicted, Settings, SolveError, derive, solve_choice};
-use mechanics::{Constancy, System, Watched};
+use mechanics::{Constancy, Domain, System, Watched};
 use scene::Scene;
 use symbolic::{Expr, Graph, Symbol};
 
@@ -14,6 +14,8 @@ use crate::{Ansatz, Open, Printed, Reversed, constants, reversible};
 /// Tolerance of the motion along which what is printed is looked at, and times at which it is.
 const TOLERANCE: f64 = 1e-12;
 const TIMES: u32 = 50;
+/// An integral that changes by more than this part is none on the motion.
+pub(crate) const CHANGED: f64 = 1e-3;
 
 /// Measures and integrals of a scene's motions under one formulation.
 #[derive(Clone)]
@@ -87,6 +89,11 @@ impl Integrals {
             if printed > linear.count {
                 all.push(format!("{name}: at most {} linear integrals, but {printed} are printed", linear.count));
             }
+        }
+        // a motion may leave the branch of its start
+        if let (Ok(found), Ok(drifts), false) = (&self.ansatz, &self.drifts, Domain::of(&self.scene.system).branch) {
+            let changed = zip(&found.printed, drifts).filter(|(_, drift)| **drift > CHANGED);
+            all.extend(changed.map(|(p, drift)| format!("{name}: {} = const, which changes by {drift:.0e}", p.text)));
         }
         let open = self.reversed.iter().flat_map(|found| &found.integrals).filter_map(|found| found.as_ref().err());
         let faults = open.chain(self.ansatz.as_ref().err()).filter(|open| matches!(open, Open::Contradiction(_)));

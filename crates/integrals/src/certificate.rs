@@ -101,6 +101,13 @@ impl Question<'_> {
         self.of("no measure", |point| {
             let flag = Flag::new(reversible, point, SEED, &[])?;
             let size = self.system.dimension() + 1;
+            if flag.with_rates.len() < size {
+                return Err(Open::Other(
+                    "the minor that shows it is smaller, as combinations of the constraints are integrable: certificates \
+                     have minors of full size"
+                        .into(),
+                ));
+            }
             let (places, rows): (Vec<usize>, Vec<Vec<Modular>>) = flag.with_rates.iter().cloned().unzip();
             let minor = if rows.len() == size { inverse(&rows.concat(), size, Modular::one()) } else { None };
             let (_, minor) = minor.ok_or(Open::Accident)?;
@@ -127,6 +134,11 @@ impl Question<'_> {
     }
 
     fn bound(&self, reversible: &Reversible, found: &Found) -> Result<Value, Open> {
+        if reversible.dimension() < reversible.coordinates {
+            return Err(Open::Other(
+                "certificates of bounds are written where no constraint on positions holds".into(),
+            ));
+        }
         self.of("bound", |point| {
             let flag = Flag::new(reversible, point, SEED, &[])?;
             let killing = Killing::new(reversible, &flag, point, found.order, SEED)?;

@@ -73,8 +73,9 @@ type Logarithms = (Vec<Vec<Modular>>, Vec<usize>);
 
 fn logarithms(system: &Reversible, point: &SeriesStart<Modular>, seed: u64) -> Result<Logarithms, Open> {
     let (ring, local) = system.near(point, 1, seed)?;
-    let angles: Vec<[Modular; 2]> =
-        system.present.iter().map(|&i| slopes(&point.positions[i])).collect::<Option<_>>().ok_or(Open::Accident)?;
+    // a root of the field has no sine: such a coordinate is no angle
+    let angles = system.present.iter().map(|&i| slopes(&point.positions[i]).unwrap_or([Modular::ZERO; 2]));
+    let angles: Vec<[Modular; 2]> = angles.collect();
     let rows = fields_with_rates(&ring, &local).into_iter().map(|x| {
         let pairs = local.inverse.iter().flatten().zip(local.metric.iter().flatten());
         let of_metric = pairs.fold(Modular::ZERO, |sum, (over, g)| sum + over[0] * ring.along(&x.components, g)[0]);

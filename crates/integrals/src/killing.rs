@@ -74,8 +74,8 @@ fn with(monomial: &[usize], more: &[usize]) -> Vec<usize> {
 }
 
 impl Killing {
-    /// In privileged coordinates from the frame of `flag`: `q(z) = Σ z^α/α! (Y_n^{α_n} … Y_1^{α_1} q)(q₀)`,
-    /// that is `exp(z_1 Y_1) ∘ … ∘ exp(z_n Y_n)(q₀)` up to the weight of the heaviest.
+    /// In privileged coordinates of the leaf from the frame of `flag`: `q(z) = Σ z^α/α! (Y_n^{α_n} … Y_1^{α_1} q)(q₀)`,
+    /// that is `exp(z_1 Y_1) ∘ … ∘ exp(z_n Y_n)(q₀)` up to the weight of the heaviest; on the leaf beyond it, too.
     pub(crate) fn new(
         system: &Reversible,
         flag: &Flag,
@@ -83,22 +83,28 @@ impl Killing {
         order: usize,
         seed: u64,
     ) -> Result<Killing, Open> {
-        let n = system.coordinates;
-        if flag.fields.len() < n {
-            return Err(Open::Integrable { rank: flag.fields.len(), dimension: n });
+        let n = flag.fields.len();
+        if n < system.dimension() {
+            return Err(Open::Integrable { rank: n, dimension: system.dimension() });
         }
         let weights: Vec<usize> = flag.fields.iter().map(|y| y.weight).collect();
         let step = weights.iter().copied().max().unwrap_or(1);
         count(&weights, order, MOST).ok_or(Open::Size { order, most: MOST })?;
         let ring = Ring::new(&weights, (0..n).collect(), order);
-        let chart = chart(&ring, flag, step);
         Open::room(flag.fields.len().pow(3).saturating_mul(ring.len()))?;
         let rays = Rays::new(&ring, &mut draws(seed)).ok_or(Open::Accident)?;
+        let chart = system.on_leaf(point, &ring, &rays, chart(&ring, flag, step))?;
         let local = system.at(point, &ring, &rays, &chart)?;
         let jacobian: Vec<Vec<Series>> =
             chart.iter().map(|q| (0..n).map(|j| ring.derivative(q, j)).collect()).collect();
-        let over = ring.inverse(&jacobian).ok_or(Open::Accident)?;
-        let fields: Vec<Vec<Series>> = local.basis.iter().map(|x| row_times(&ring, &over, x)).collect();
+        // as many coordinates as the leaf has dimensions determine the others on it
+        let mut rows = Echelon::default();
+        let own: Vec<usize> =
+            (0..jacobian.len()).filter(|&i| rows.add(jacobian[i].iter().map(|x| x[0]).collect())).collect();
+        let square: Vec<Vec<Series>> = own.iter().map(|&i| jacobian[i].clone()).collect();
+        let over = ring.inverse(&square).ok_or(Open::Accident)?;
+        let of = |x: &[Series]| own.iter().map(|&i| x[i].clone()).collect::<Vec<_>>();
+        let fields: Vec<Vec<Series>> = local.basis.iter().map(|x| row_times(&ring, &over, &of(x))).collect();
         let (gamma, force) = accelerations(&ring, &local, &fields);
         Ok(Killing { ring, chart, step, fields, local, gamma, force })
     }
@@ -259,7 +265,7 @@ pub(crate) fn rank(ring: &Ring, integrals: &[Integral], order: usize) -> usize {
 }
 
 fn chart(ring: &Ring, flag: &Flag, step: usize) -> Vec<Series> {
-    let n = flag.fields.len();
+    let n = flag.fields.first().map_or(0, |y| y.components.len());
     let mut derived: Vec<Option<Vec<Series>>> = Vec::new();
     let mut chart = vec![ring.zero(); n];
     for (place, alpha) in ring.monomials.iter().enumerate().take(ring.of_weight(step.min(ring.order)).end) {

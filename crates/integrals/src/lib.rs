@@ -17,7 +17,8 @@
 //!   potential there may be others: on a spiral spring `V = kφ` the sleigh passes `ω = 0` once on every
 //!   motion, and what that section carries is invariant. The equations without cyclic coordinates may have no
 //!   measure where there is a `σ`: [`Cyclic`]. Where constraints are integrable in part, all this is said of
-//!   almost every leaf, that of the start not always among them.
+//!   almost every leaf, that of the start not always among them; constraints on positions `g(q) = 0` hold at
+//!   the random points, and all is said of that leaf.
 //! - *Multipliers* `f(r)` that make a reduced motion Hamilton's in a time with `dτ = f dt` ([`Multiplier`]).
 //! - *Integrals* that are polynomials in the velocities: kernels of equations of Killing's kind on weighted
 //!   Taylor coefficients. Every kernel bounds their number from above, as ranks mod p are lower bounds;
@@ -60,4 +61,3 @@ pub use density::Density;
 pub use multiplier::{Multiplier, Reduction};
 pub use open::Open;
 pub use reversible::{Cyclic, Found, Measure, Reversed, reversible, reversible_scene};
-pub use words::NEAR;

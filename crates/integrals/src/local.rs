@@ -1,6 +1,6 @@
 //! A system at a random point: `M`, `N` and `V` as power series there.
 
-use decision::exact::{Exact, Jet, Modular};
+use decision::exact::{Echelon, Exact, Jet, Modular};
 use decision::{ExactStart, Program, SeriesStart};
 use mechanics::System;
 use symbolic::Expr;
@@ -15,7 +15,10 @@ pub(crate) struct Reversible {
     program: Program,
     pub(crate) coordinates: usize,
     pub(crate) constraints: usize,
-    /// Places of the coordinates that any of these contains.
+    /// `g`, then `∂g/∂q` row by row, of the constraints on positions.
+    leaf: Program,
+    on_positions: usize,
+    /// Places of the coordinates that any of these, or a constraint on positions, contains.
     pub(crate) present: Vec<usize>,
     /// Places of coordinates, those first whose velocities `A(q)v = 0` is solved for where it can be.
     pub(crate) order: Vec<usize>,
@@ -63,12 +66,16 @@ impl Reversible {
         let outputs = [jacobian.entries(), mass.entries(), &[g.neg(at_rest(system.lagrangian))]].concat();
         let mut inputs: Vec<_> = system.parameters.iter().map(|p| p.symbol).collect();
         let positions = system.positions();
-        let present = |q: &usize| outputs.iter().any(|&e| g.depends_on(e, positions[*q]));
+        let on_positions: Vec<Expr> = system.on_positions.iter().map(|(_, e)| *e).collect();
+        let present = |q: &usize| outputs.iter().chain(&on_positions).any(|&e| g.depends_on(e, positions[*q]));
         let present = (0..positions.len()).filter(present).collect();
         inputs.extend(&positions);
         let program = Program::new(g, &inputs, &outputs).map_err(|fault| Open::Other(fault.to_string()))?;
         let order = (0..positions.len()).collect();
-        Ok(Reversible { program, coordinates: positions.len(), constraints: system.constraints.len(), present, order })
+        let leaf = [&on_positions[..], g.jacobian(&on_positions, &positions).entries()].concat();
+        let leaf = Program::new(g, &inputs, &leaf).map_err(|fault| Open::Other(fault.to_string()))?;
+        let (coordinates, constraints, on_positions) = (positions.len(), system.constraints.len(), on_positions.len());
+        Ok(Reversible { program, coordinates, constraints, leaf, on_positions, present, order })
     }
 
     /// The same, solved for the velocities of these coordinates first.
@@ -76,6 +83,11 @@ impl Reversible {
         let rest = (0..self.coordinates).filter(|i| !dependent.contains(i));
         self.order = dependent.iter().copied().chain(rest).collect();
         self
+    }
+
+    /// The dimension of the leaf on which constraints on positions hold.
+    pub(crate) fn dimension(&self) -> usize {
+        self.coordinates - self.on_positions
     }
 
     /// Places of the coordinates that none of these contains.
@@ -93,6 +105,32 @@ impl Reversible {
         Ok((ring, local))
     }
 
+    /// `chart`, moved onto the leaf `g = 0` of `point` by as many coordinates as there are `g`, by Newton's steps:
+    /// each makes twice as many weights right.
+    pub(crate) fn on_leaf(
+        &self,
+        point: &SeriesStart<Modular>,
+        ring: &Ring,
+        rays: &Rays,
+        mut chart: Vec<Series>,
+    ) -> Result<Vec<Series>, Open> {
+        let (n, k, mut right) = (self.coordinates, self.on_positions, 1);
+        while k > 0 && right <= ring.order {
+            let all = along(&self.leaf, point, ring, rays, &chart)?;
+            let columns = |j: usize| -> Vec<Series> { (0..k).map(|i| all[k + i * n + j].clone()).collect() };
+            let mut span = Echelon::default();
+            let given: Vec<usize> = (0..n).filter(|&j| span.add(columns(j).iter().map(|x| x[0]).collect())).collect();
+            let slopes: Vec<Vec<Series>> =
+                (0..k).map(|i| given.iter().map(|&j| all[k + i * n + j].clone()).collect()).collect();
+            let over = ring.inverse(&slopes).ok_or(Open::Accident)?;
+            for (&j, step) in given.iter().zip(row_times(ring, &over, &all[..k])) {
+                chart[j] = minus(&chart[j], &step);
+            }
+            right *= 2;
+        }
+        Ok(chart)
+    }
+
     /// Its series at `point`, where `q − q₀ = chart(z)`, without constant terms.
     pub(crate) fn at(
         &self,
@@ -102,27 +140,7 @@ impl Reversible {
         chart: &[Series],
     ) -> Result<Local, Open> {
         let (n, h) = (self.coordinates, self.constraints);
-        let mut evaluator = self.program.evaluator::<Jet<Modular>>();
-        let mut values: Vec<Vec<Jet<Modular>>> = Vec::with_capacity(rays.values.len());
-        for monomials in &rays.values {
-            let mut inputs = point.parameters.clone();
-            for (q, chart) in point.positions.iter().zip(chart) {
-                let part = |k: usize| {
-                    let places = ring.of_weight(k);
-                    places.fold(Modular::ZERO, |sum, place| sum + chart[place] * monomials[place])
-                };
-                let mut coefficients: Vec<Modular> = (0..=ring.order).map(part).collect();
-                coefficients[0] = q.coefficient(0);
-                inputs.push(Jet::series(&coefficients, q.exact()));
-            }
-            let along = evaluator.run(&inputs);
-            if let Some(flaw) = along.iter().find_map(Jet::flaw) {
-                return Err(Open::Flaw(flaw));
-            }
-            values.push(along.to_vec());
-        }
-        let series = |i: usize| rays.series(ring, &|ray, k| values[ray][i].coefficient(k));
-        let all: Vec<Series> = (0..h * n + n * n + 1).map(series).collect();
+        let all = along(&self.program, point, ring, rays, chart)?;
         let mut rows: Vec<Vec<Series>> = all[..h * n].chunks_exact(n).map(<[Series]>::to_vec).collect();
         let mass: Vec<Vec<Series>> = all[h * n..h * n + n * n].chunks_exact(n).map(<[Series]>::to_vec).collect();
         let order = &self.order;
@@ -146,6 +164,37 @@ impl Reversible {
         let inverse = ring.inverse(&metric).ok_or(Open::Singular)?;
         Ok(Local { mass, potential: all[h * n + n * n].clone(), basis, free, metric, inverse })
     }
+}
+
+/// The outputs of a program at `q₀ + chart(z)`.
+fn along(
+    program: &Program,
+    point: &SeriesStart<Modular>,
+    ring: &Ring,
+    rays: &Rays,
+    chart: &[Series],
+) -> Result<Vec<Series>, Open> {
+    let mut evaluator = program.evaluator::<Jet<Modular>>();
+    let mut values: Vec<Vec<Jet<Modular>>> = Vec::with_capacity(rays.values.len());
+    for monomials in &rays.values {
+        let mut inputs = point.parameters.clone();
+        for (q, chart) in point.positions.iter().zip(chart) {
+            let part = |k: usize| {
+                let places = ring.of_weight(k);
+                places.fold(Modular::ZERO, |sum, place| sum + chart[place] * monomials[place])
+            };
+            let mut coefficients: Vec<Modular> = (0..=ring.order).map(part).collect();
+            coefficients[0] = q.coefficient(0);
+            inputs.push(Jet::series(&coefficients, q.exact()));
+        }
+        let outputs = evaluator.run(&inputs);
+        if let Some(flaw) = outputs.iter().find_map(Jet::flaw) {
+            return Err(Open::Flaw(flaw));
+        }
+        values.push(outputs.to_vec());
+    }
+    let series = |i: usize| rays.series(ring, &|ray, k| values[ray][i].coefficient(k));
+    Ok((0..values.first().map_or(0, Vec::len)).map(series).collect())
 }
 
 /// `M x`.

@@ -99,9 +99,12 @@ fn decide_measure(system: &Reversible, start: &ExactStart) -> Result<Measure, Op
                 Ok((flag.fields.len(), flag.with_rates.len()))
             })
         };
-        let proved = |with_rates| with_rates == system.coordinates + 1;
-        let found = agreed(SEEDS, ranks, |&(_, with_rates)| proved(with_rates)).map_err(Open::or_accident)?;
-        Ok((found.1 > found.0).then_some(proved(found.1)))
+        // brackets stay on the leaves of integrable combinations; held coordinates do not
+        let most = || system.coordinates - if held.is_empty() { start.integrable_combinations() } else { 0 };
+        let proved =
+            |&(rank, with_rates): &(usize, usize)| with_rates > rank && (rank == system.coordinates || rank == most());
+        let found = agreed(SEEDS, ranks, proved).map_err(Open::or_accident)?;
+        Ok((found.1 > found.0).then(|| proved(&found)))
     };
     if let Some(proved) = none(&[])? {
         return Ok(Measure::None { proved });

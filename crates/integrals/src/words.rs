@@ -2,9 +2,10 @@
 
 use std::fmt::{self, Display, Formatter};
 
-use mechanics::System;
+use mechanics::{Domain, System};
 use serde_json::{Value, json};
 
+use crate::answer::CHANGED;
 use crate::{Cyclic, Density, Found, Integrals, Measure, Multiplier, Open, Printed, Reduction, Reversed};
 
 /// What integrals of degree `below + 1` are called.
@@ -15,18 +16,25 @@ pub(crate) fn degree(below: usize) -> &'static str {
 impl Display for Integrals {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
         writeln!(f, "{}: {}", self.scene.name, self.formulation)?;
-        if self.reversed.is_some() {
-            writeln!(f, "{NEAR}")?;
+        if let Some(domain) = self.where_it_holds() {
+            writeln!(f, "{domain}")?;
         }
         self.lines().into_iter().try_for_each(|(about, words)| writeln!(f, "{about:<14}{words}"))
     }
 }
 
-/// Explanation of a measure, and of where it holds.
-pub const NEAR: &str =
-    "near almost every place q; a measure is e^sigma(q) dq dp, sigma smooth there, its periods not asked for";
-
 impl Integrals {
+    /// Where answers hold, where that has to be said, and what a measure is.
+    pub fn where_it_holds(&self) -> Option<String> {
+        let domain = Domain::of(&self.scene.system);
+        let measure = "a measure is e^sigma(q) dq dp, sigma smooth there, its periods not asked for";
+        match &self.reversed {
+            Some(_) => Some(format!("near {}; {measure}", domain.almost_every("place q"))),
+            None if domain == Domain::default() => None,
+            None => Some(format!("at {}", domain.almost_every("place q"))),
+        }
+    }
+
     /// What each answer is about, and the answer in words.
     pub fn lines(&self) -> Vec<(&'static str, String)> {
         let mut lines = Vec::new();
@@ -49,11 +57,14 @@ impl Integrals {
                 );
                 lines.push(("ansatz", words));
                 for (i, integral) in found.printed.iter().enumerate() {
-                    let drift = match &self.drifts {
-                        Ok(drifts) => format!("drift {:.0e}", drifts[i]),
-                        Err(why) => format!("no motion to try it on: {why}"),
+                    let (part, drift) = match &self.drifts {
+                        Ok(drifts) if drifts[i] > CHANGED => {
+                            (" on the branch of this start", format!("drift {:.0e}: the motion leaves it", drifts[i]))
+                        }
+                        Ok(drifts) => ("", format!("drift {:.0e}", drifts[i])),
+                        Err(why) => ("", format!("no motion to try it on: {why}")),
                     };
-                    lines.push((kind(integral), format!("{} = const ({drift})", integral.text)));
+                    lines.push((kind(integral), format!("{} = const{part} ({drift})", integral.text)));
                 }
                 if found.unprinted > 0 {
                     let words = format!("{} with coefficients that are no moderate fractions", found.unprinted);
@@ -285,6 +296,7 @@ impl Integrals {
         json!({
             "scene": self.scene.name,
             "formulation": self.formulation,
+            "domain": Domain::of(system).almost_every("place"),
             "measure": measure,
             "multipliers": multipliers,
             "polynomials": counts,

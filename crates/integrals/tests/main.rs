@@ -3,6 +3,7 @@
 mod backwards;
 mod in_an_ansatz;
 mod known;
+mod leaves;
 mod multiplier;
 mod other_units;
 mod questions;

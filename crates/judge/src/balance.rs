@@ -67,7 +67,7 @@ impl Balance {
         outputs.extend(system.constraint_jacobian().entries());
         for i in 0..h {
             let unit: Vec<Expr> = (0..h).map(|j| if i == j { g.one() } else { g.zero() }).collect();
-            outputs.extend(first_order::curvature(system, &unit));
+            outputs.extend(first_order::euler_lagrange(system, &unit));
         }
         outputs.extend(&system.constraints);
         outputs.extend(g.total_derivatives(&system.constraints, &still));

@@ -9,9 +9,10 @@ use crate::elimination::{LinearForms, Pivot, SparseMatrix};
 use crate::{RemovalError, State, System};
 
 impl System {
-    /// The system and its state without constraints `f = d/dt (c q_i + ψ(q, t))`, where `c ≠ 0` is constant
-    /// and `q_i` stands in no coefficient of any constraint: `q̇_i` from `f = 0` is put into the others, and
-    /// `q_i` is left out. The rest has a graph of its own.
+    /// The system and its state on the leaf of the start, if constraints on positions hold, and without
+    /// constraints `f = d/dt (c q_i + ψ(q, t))`, where `c ≠ 0` is constant and `q_i` stands in no coefficient
+    /// of any constraint: `q̇_i` from `f = 0` is put into the others, and `q_i` is left out. The rest has a
+    /// graph of its own.
     ///
     /// The other directions are the same on each leaf `c q_i + ψ = const`, so that the rest has exactly one
     /// integrable combination fewer for each, and its brackets nest as deep. `L` stays as it is.
@@ -31,14 +32,15 @@ impl System {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn without_exact_constraints(&self, state: &State) -> Result<(System, State), RemovalError> {
-        let (mut rest, n) = (self.clone(), self.dimension());
+        let (mut rest, state) = self.on_leaf(state);
+        let (coordinates, forces, n) = (rest.coordinates.clone(), rest.forces.clone(), rest.dimension());
         let g = &rest.graph;
         let LinearForms { mut rows, offsets } = rest.linear_constraints()?;
         // [A | b]
         for (row, &offset) in rows.iter_mut().zip(&offsets).filter(|(_, b)| !g.is_zero(**b)) {
             row.insert(n, offset);
         }
-        let places: Vec<Symbol> = self.positions().into_iter().chain([self.time]).collect();
+        let places: Vec<Symbol> = rest.positions().into_iter().chain([self.time]).collect();
         let mut matrix = SparseMatrix::new(rows);
         let (mut left_out, mut kept) = (BTreeSet::new(), BTreeSet::from_iter(0..offsets.len()));
         loop {
@@ -75,16 +77,21 @@ impl System {
             }
         }
         let form = |p: &usize| {
-            let terms = matrix.rows()[*p].iter().map(|(&j, &e)| match self.coordinates.get(j) {
+            let terms = matrix.rows()[*p].iter().map(|(&j, &e)| match coordinates.get(j) {
                 Some(c) => g.mul(e, g.variable(c.velocity)),
                 None => e,
             });
             g.sum(&terms.collect::<Vec<Expr>>())
         };
         let stay: Vec<usize> = (0..n).filter(|i| !left_out.contains(i)).collect();
+        let stays = |e: Expr| left_out.iter().all(|&i| !g.depends_on(e, coordinates[i].position));
+        let at = |place: &usize| kept.iter().position(|p| p == place);
+        let on_positions = rest.on_positions.iter().filter(|(_, e)| stays(*e));
+        let on_positions = on_positions.filter_map(|(place, e)| Some((at(place)?, *e))).collect();
         rest.constraints = kept.iter().map(form).collect();
-        rest.coordinates = stay.iter().map(|&i| self.coordinates[i].clone()).collect();
-        rest.forces = stay.iter().map(|&i| self.forces[i]).collect();
+        rest.on_positions = on_positions;
+        rest.coordinates = stay.iter().map(|&i| coordinates[i].clone()).collect();
+        rest.forces = stay.iter().map(|&i| forces[i]).collect();
         rest.virtual_conditions.clear();
         let of = |x: &[f64]| stay.iter().map(|&i| x[i]).collect();
         Ok((rest, State { t: state.t, q: of(&state.q), v: of(&state.v) }))
@@ -93,14 +100,51 @@ impl System {
     /// Whether `Σ a_j dq_j + b dt` is closed, exactly: `∂a_j/∂q_k = ∂a_k/∂q_j`. `places` are `q` and time.
     fn is_total_derivative(&self, row: &BTreeMap<usize, Expr>, places: &[Symbol]) -> bool {
         let g = &self.graph;
-        g.are_exact(&row.values().copied().collect::<Vec<_>>()) && row.iter().all(|(&j, &a)| {
-            let symbols = g.symbols_of(a);
-            places.iter().enumerate().filter(|(k, place)| *k != j && symbols.contains(place)).all(|(k, &place)| {
-                let other = row.get(&k).map_or(g.zero(), |&b| g.derivative(b, places[j]));
-                let curl = g.sub(g.derivative(a, place), other);
-                g.vanishes_exactly(curl) || g.vanishes_exactly(self.as_written(curl))
+        g.are_exact(&row.values().copied().collect::<Vec<_>>())
+            && row.iter().all(|(&j, &a)| {
+                let symbols = g.symbols_of(a);
+                places.iter().enumerate().filter(|(k, place)| *k != j && symbols.contains(place)).all(|(k, &place)| {
+                    let other = row.get(&k).map_or(g.zero(), |&b| g.derivative(b, places[j]));
+                    let curl = g.sub(g.derivative(a, place), other);
+                    g.vanishes_exactly(curl) || g.vanishes_exactly(self.as_written(curl))
+                })
             })
-        })
     }
 }
 
+impl System {
+    /// How many independent combinations of the constraints are known to be integrable: exactly, and without
+    /// brackets.
+    pub fn integrable_constraints(&self, state: &State) -> usize {
+        let known = self.without_exact_constraints(state).and_then(|(rest, _)| {
+            let exact = self.constraints.len() - rest.constraints.len();
+            Ok(exact + rest.integrable_alone()?)
+        });
+        known.unwrap_or(self.on_positions.len())
+    }
+
+    /// How many of the constraints are integrable each on its own: `ω ∧ dω = 0` for `ω = Σ a_j dq_j + b dt`,
+    /// exactly, that is `ω = g dh` (Frobenius).
+    ///
+    /// # Errors
+    /// [`RemovalError::NotLinear`]
+    pub(crate) fn integrable_alone(&self) -> Result<usize, RemovalError> {
+        let g = &self.graph;
+        let LinearForms { rows, offsets } = self.linear_constraints()?;
+        let places: Vec<Symbol> = self.positions().into_iter().chain([self.time]).collect();
+        let is_integrable = |(row, offset): &(BTreeMap<usize, Expr>, Expr)| {
+            let a = |j: usize| row.get(&j).copied().unwrap_or(if j + 1 == places.len() { *offset } else { g.zero() });
+            let turn = |j: usize, k: usize| g.sub(g.derivative(a(k), places[j]), g.derivative(a(j), places[k]));
+            let n = places.len();
+            let triples = (0..n).flat_map(|i| (i + 1..n).flat_map(move |j| (j + 1..n).map(move |k| [i, j, k])));
+            let written = |triple: &[usize; 3]| triple.iter().any(|&i| !g.is_zero(a(i)));
+            triples.filter(written).all(|[i, j, k]| {
+                let terms = [[i, j, k], [j, k, i], [k, i, j]].map(|[i, j, k]| g.mul(a(i), turn(j, k)));
+                let sum = g.sum(&terms);
+                g.vanishes_exactly(sum) || g.vanishes_exactly(self.as_written(sum))
+            })
+        };
+        let exact = |(row, _): &(BTreeMap<usize, Expr>, Expr)| g.are_exact(&row.values().copied().collect::<Vec<_>>());
+        Ok(rows.into_iter().zip(offsets).filter(|row| exact(row) && is_integrable(row)).count())
+    }
+}

@@ -4,10 +4,10 @@ use symbolic::{Expr, Matrix, Stopped, Symbol, Vanishing, question};
 
 use crate::rank::{Surroundings, generic_rank};
 use crate::solved_constraints::SolvedConstraints;
-use crate::{RemovalError, State, System};
+use crate::{Domain, RemovalError, State, System};
 
 /// Verdict of [`integrability`].
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Integrability {
     /// There is no constraint.
     Unconstrained,
@@ -27,8 +27,10 @@ pub enum Integrability {
     },
     /// No combination of the constraints is integrable: every configuration can be reached.
     Nonintegrable {
-        /// Brackets that had to be nested until all directions were reached.
+        /// Brackets that had to be nested until all directions were reached, at almost every place.
         depth: usize,
+        /// Ranks on the way, and those at the start; `None` where ranks over a finite field tell the depth.
+        growth: Option<Growth>,
     },
     /// A constraint is not linear in the velocities; Frobenius' test is about those that are.
     NonlinearInVelocity,
@@ -43,6 +45,32 @@ pub enum Integrability {
         /// Number of constraints.
         constraints: usize,
     },
+}
+
+/// Growth vectors: how many directions are reached by admissible ones, by these and their brackets, by these
+/// and brackets nested twice, …
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Growth {
+    /// Where the generic one holds.
+    pub domain: Domain,
+    /// At almost every place.
+    pub generic: Vec<usize>,
+    /// At the start, as long as brackets are short: all directions are reached at its end, if that of the
+    /// generic one is there.
+    pub start: Vec<usize>,
+}
+
+impl std::fmt::Display for Growth {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let vector = |ranks: &[usize]| ranks.iter().map(usize::to_string).collect::<Vec<_>>().join(", ");
+        let place = self.domain.almost_every("place");
+        write!(f, "at {place}, growth vector ({}); ", vector(&self.generic))?;
+        match (self.start == self.generic, self.start.last() == self.generic.last()) {
+            (true, _) => write!(f, "the same at this start"),
+            (_, true) => write!(f, "{} deep at this start, ({})", self.start.len() - 1, vector(&self.start)),
+            _ => write!(f, "more than {} deep at this start, ({}, ...)", self.start.len() - 1, vector(&self.start)),
+        }
+    }
 }
 
 /// Why Frobenius' test cannot tell.
@@ -61,9 +89,12 @@ pub enum Undecided {
 /// Nodes over which a bracket is too long: each bracket around it makes it several times longer.
 const LONGEST: usize = 10_000;
 
+/// Brackets of which ranks at the start are looked at.
+const MANY: usize = 500;
+
 impl Integrability {
     /// Whether the verdict predicts that all formulations agree (T1).
-    pub fn is_integrable(self) -> bool {
+    pub fn is_integrable(&self) -> bool {
         matches!(self, Integrability::Unconstrained | Integrability::Integrable { .. })
     }
 }
@@ -72,7 +103,7 @@ impl std::fmt::Display for Integrability {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
             Integrability::Unconstrained => write!(f, "no constraint"),
-            Integrability::Integrable { exact: true } => write!(f, "integrable (brackets vanish identically)"),
+            Integrability::Integrable { exact: true } => write!(f, "integrable (identically)"),
             Integrability::Integrable { exact: false } => write!(f, "integrable (by ranks over a finite field)"),
             Integrability::PartlyIntegrable { integrals, constraints, exact } => {
                 let by = if *exact { "exactly" } else { "by ranks over a finite field" };
@@ -81,8 +112,9 @@ impl std::fmt::Display for Integrability {
                     "partly integrable: {integrals} of {constraints} constraints are integrable combinations ({by})"
                 )
             }
-            Integrability::Nonintegrable { depth } => {
-                write!(f, "nonintegrable: brackets nested {depth} deep reach every direction")
+            Integrability::Nonintegrable { depth, growth } => {
+                write!(f, "nonintegrable: brackets nested {depth} deep reach every direction")?;
+                growth.as_ref().map_or(Ok(()), |growth| write!(f, " {growth}"))
             }
             Integrability::Undecided { why, depth, at_most, constraints } => {
                 let next = match why {
@@ -110,9 +142,11 @@ impl std::fmt::Display for Integrability {
 /// depends on time or `b ≠ 0`), after [`System::without_exact_constraints`]. Brackets
 /// `[X, Y] = Y_x X − X_x Y` are added until the rank stays; what it lacks is the number of integrals. Fields
 /// are differentiated exactly. Ranks are taken at points round `state` and the way up to `end`, in the
-/// scene's own sizes: a rank there is certain, and what adds none may do so elsewhere, or be lost in
-/// round-off. So *integrable*, and *partly*, are said only where every further bracket vanishes
-/// identically, or none is needed.
+/// scene's own sizes, on the branch of `state` where something varies under a root: a rank there is certain,
+/// and what adds none may do so elsewhere, or be lost in round-off. So *integrable*, and *partly*, are said
+/// only where every further bracket vanishes identically, or none is needed, or `ω ∧ dω = 0` identically for
+/// as many of the constraints as are left. [`Growth`] has the ranks at
+/// `state` itself beside those round it.
 ///
 /// # Errors
 /// [`RemovalError::Dependent`] where `A` has no full row rank at `state`.
@@ -124,7 +158,9 @@ impl std::fmt::Display for Integrability {
 /// # let start = mechanics::State { t: 0.0, q: vec![0., 0., 0.3], v: vec![0.5, 0.5 * 0.3f64.tan(), 1.] };
 /// use mechanics::{Integrability, integrability};
 /// // the ice sledge: y'*cos(phi) - x'*sin(phi)
-/// assert_eq!(integrability(&system, &start, 1.0)?, Integrability::Nonintegrable { depth: 1 });
+/// let verdict = integrability(&system, &start, 1.0)?;
+/// assert!(matches!(&verdict, Integrability::Nonintegrable { depth: 1, .. }));
+/// assert!(verdict.to_string().ends_with("at almost every place, growth vector (2, 3); the same at this start"));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn integrability(system: &System, state: &State, end: f64) -> Result<Integrability, RemovalError> {
@@ -143,6 +179,7 @@ fn by_brackets(system: &System, state: &State, end: f64) -> Result<Integrability
         return Ok(Integrability::NonlinearInVelocity);
     }
     let surroundings = Surroundings::of_start(system, state, end);
+    let domain = Domain::of(system);
     let (system, state) = &system.without_exact_constraints(state)?;
     let g = &system.graph;
     let exact = h - system.constraints.len();
@@ -158,8 +195,16 @@ fn by_brackets(system: &System, state: &State, end: f64) -> Result<Integrability
     }
     let admissible = solved.fields(system, with_time);
     let mut depth = 0;
-    let undecided =
-        |why, depth, left| Ok(Integrability::Undecided { why, depth, at_most: exact + left, constraints: h });
+    // as many as are known are no fewer, and no more are left
+    let undecided = |why, depth, left| {
+        Ok(match exact + left {
+            all if system.integrable_alone()? < left => {
+                Integrability::Undecided { why, depth, at_most: all, constraints: h }
+            }
+            all if all == h => Integrability::Integrable { exact: true },
+            integrals => Integrability::PartlyIntegrable { integrals, constraints: h, exact: true },
+        })
+    };
     if g.size(&admissible.concat()) > LONGEST {
         return undecided(Undecided::TooLong, depth, system.constraints.len());
     }
@@ -173,6 +218,8 @@ fn by_brackets(system: &System, state: &State, end: f64) -> Result<Integrability
     let mut fields = admissible.clone();
     let mut newest = admissible.clone();
     let mut rank = fields.len();
+    let mut generic = vec![rank];
+    let mut at_start = vec![surroundings.rank_at_centre(g, &fields)];
     // rounded numbers may cancel, and differ in digits that they have not got
     let mut open = (!g.are_exact(&system.constraints)).then_some(Undecided::AtPoints);
     while rank < space.len() {
@@ -193,7 +240,9 @@ fn by_brackets(system: &System, state: &State, end: f64) -> Result<Integrability
                 // as long as there are no others, what is not zero adds a direction
                 let alone = rank == admissible.len() && found <= Some(rank);
                 let verdicts: Vec<Vanishing> = z.iter().filter(|_| alone).map(|&e| system.vanishes(e)).collect();
-                if found > Some(rank) || verdicts.iter().any(|v| matches!(v, Vanishing::No { .. })) {
+                // where pieces end, it may be another one on which it is not zero
+                let is_seen = verdicts.iter().any(|v| matches!(v, Vanishing::No { .. }));
+                if found > Some(rank) || is_seen && g.ends_of_pieces(&z).is_empty() {
                     rank += 1;
                     added.push(z);
                     continue;
@@ -209,13 +258,52 @@ fn by_brackets(system: &System, state: &State, end: f64) -> Result<Integrability
         }
         depth += 1;
         newest = added;
+        generic.push(rank);
+        at_start.push(surroundings.rank_at_centre(g, &fields));
     }
     let left = space.len() - rank;
     let integrals = exact + left;
     Ok(match open {
-        _ if integrals == 0 => Integrability::Nonintegrable { depth },
+        _ if integrals == 0 => {
+            // fields that add a direction at almost every place need not be those that do at the start
+            let start = match at_start == generic {
+                true => at_start,
+                false => growth_at_start(
+                    admissible,
+                    |x, y| bracket(x, y),
+                    |fields| surroundings.rank_at_centre(g, fields),
+                    |x| g.size(x),
+                ),
+            };
+            Integrability::Nonintegrable { depth, growth: Some(Growth { domain, generic, start }) }
+        }
         Some(why) if left > 0 => return undecided(why, depth, left),
         _ if integrals == h => Integrability::Integrable { exact: true },
         _ => Integrability::PartlyIntegrable { integrals, constraints: h, exact: true },
     })
+}
+
+/// Ranks at the start of the fields and of all their brackets, until all directions are reached or there are
+/// too many.
+fn growth_at_start(
+    admissible: Vec<Vec<Expr>>,
+    bracket: impl Fn(&[Expr], &[Expr]) -> Vec<Expr>,
+    rank: impl Fn(&[Vec<Expr>]) -> usize,
+    size: impl Fn(&[Expr]) -> usize,
+) -> Vec<usize> {
+    let most = admissible.first().map_or(0, Vec::len);
+    let mut ranks = vec![rank(&admissible)];
+    let (mut all, mut newest) = (admissible.clone(), admissible.clone());
+    while ranks.last().is_some_and(|&rank| rank < most) && !newest.is_empty() {
+        let first = |i: usize| if ranks.len() == 1 { i + 1 } else { 0 };
+        let pairs = admissible.iter().enumerate().flat_map(|(i, x)| newest.iter().skip(first(i)).map(move |y| (x, y)));
+        let next: Vec<Vec<Expr>> = pairs.map(|(x, y)| bracket(x, y)).collect();
+        newest = next.into_iter().filter(|z| !all.contains(z)).collect();
+        all.extend(newest.iter().cloned());
+        if all.len() > MANY || size(&all.concat()) > LONGEST {
+            break;
+        }
+        ranks.push(rank(&all));
+    }
+    ranks
 }

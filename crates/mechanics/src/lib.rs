@@ -39,7 +39,7 @@
 //! sledge.constraints = vec![sledge.expression("y'*cos(phi) - x'*sin(phi)")?];
 //! let start = State { t: 0.0, q: vec![0.0; 3], v: vec![1.0, 0.0, 0.5] };
 //!
-//! assert_eq!(integrability(&sledge, &start, 10.0)?, Integrability::Nonintegrable { depth: 1 });
+//! assert!(matches!(integrability(&sledge, &start, 10.0)?, Integrability::Nonintegrable { depth: 1, .. }));
 //! // u is the distance run along the blade
 //! let removal = Removal::by_quasi_velocities(&sledge, &start)?;
 //! assert_eq!(sledge.graph.plain(removal.memory[1].rate), "u_x'*sin(phi)");
@@ -54,9 +54,11 @@
 //! 2017.
 
 mod automatic_removal;
+mod domain;
 pub mod elimination;
 mod exact_constraints;
 mod integrability;
+mod leaf;
 pub mod linear;
 pub mod newton;
 mod observables;
@@ -71,7 +73,8 @@ mod start;
 mod system;
 mod view;
 
-pub use integrability::{Integrability, Undecided, integrability};
+pub use domain::Domain;
+pub use integrability::{Growth, Integrability, Undecided, integrability};
 pub use observables::Observables;
 pub use rank::{Surroundings, generic_rank};
 pub use removal::{ConstantsRule, DisplacementParameter, MemoryVariable, Removal};

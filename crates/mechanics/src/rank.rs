@@ -8,6 +8,8 @@ use crate::{Parameter, State, System};
 
 /// How far from the centre points are drawn, in sizes.
 const REACHES: [f64; 4] = [1.0, 0.1, 3.0, 0.01];
+/// The same where something varies under a root or has a kink: on the branch of the centre.
+const NEAR: [f64; 4] = [0.01, 0.001, 0.003, 0.0001];
 /// Signs of the way from the centre: drawn, all up, all down. Roots and logarithms have a side.
 const SIGNS: [Option<f64>; 3] = [None, Some(1.0), Some(-1.0)];
 
@@ -58,22 +60,48 @@ impl Surroundings {
     }
 
     /// Values at one of the points: a pure function of its number and of the places of the symbols.
-    fn point(&self, symbols: &[Symbol], point: usize) -> Vec<Bounded> {
-        let (reach, sign) = (REACHES[point % REACHES.len()], SIGNS[point % SIGNS.len()]);
+    fn point(&self, symbols: &[Symbol], point: usize, near: bool) -> Vec<Bounded> {
+        let reaches = if near { NEAR } else { REACHES };
+        let (reach, sign) = (reaches[point % REACHES.len()], SIGNS[point % SIGNS.len()]);
         let mut random = SplitMix::new(point as u64);
         let value = |symbol: &Symbol| {
             let (magnitude, drawn) = (0.3 + random.unit(), if random.unit() < 0.5 { 1.0 } else { -1.0 });
             let (centre, size) = self.variables.get(symbol).copied().unwrap_or((0.0, 1.0));
+            let size = if near && centre != 0.0 { size.min(centre.abs()) } else { size };
             let varied = centre + size * reach * magnitude * sign.unwrap_or(drawn);
             self.constants.get(symbol).copied().unwrap_or(Bounded::from_f64(varied))
         };
         symbols.iter().map(value).collect()
     }
+
+    /// The centre itself.
+    fn centre(&self, symbols: &[Symbol]) -> Vec<Bounded> {
+        let centre = |symbol: &Symbol| self.variables.get(symbol).map_or(0.0, |(centre, _)| *centre);
+        let value =
+            |symbol: &Symbol| self.constants.get(symbol).copied().unwrap_or_else(|| Bounded::from_f64(centre(symbol)));
+        symbols.iter().map(value).collect()
+    }
+
+    /// How many of these fields are certainly independent at the centre; 0 where they have no value there.
+    pub(crate) fn rank_at_centre(&self, graph: &Graph, fields: &[Vec<Expr>]) -> usize {
+        let entries = fields.concat();
+        let symbols: Vec<Symbol> =
+            entries.iter().flat_map(|&e| graph.symbols_of(e)).collect::<BTreeSet<_>>().into_iter().collect();
+        let Ok(tape) = graph.compile(&symbols, &entries, &HashMap::new()) else { return 0 };
+        let values = Evaluator::new(tape).evaluate(&self.centre(&symbols)).to_vec();
+        let width = fields.first().map_or(1, Vec::len);
+        if values.iter().all(|x| x.is_finite()) {
+            certain_rank(values.chunks(width).map(<[Bounded]>::to_vec).collect())
+        } else {
+            0
+        }
+    }
 }
 
 /// The rank of `matrix` almost everywhere, as far as points tell: the largest of those that are certain at
 /// one point each. So it is never too large; too small where a point of larger rank was not among them.
-/// `None` where no entry is finite at any of them.
+/// Where something varies under a root or has a kink, points are on the branch of the centre. `None` where no
+/// entry is finite at any of them.
 pub fn generic_rank(graph: &Graph, matrix: &Matrix, surroundings: &Surroundings) -> Option<usize> {
     let most = matrix.rows().min(matrix.columns());
     if most == 0 {
@@ -81,11 +109,19 @@ pub fn generic_rank(graph: &Graph, matrix: &Matrix, surroundings: &Surroundings)
     }
     let symbols: BTreeSet<Symbol> = matrix.entries().iter().flat_map(|&e| graph.symbols_of(e)).collect();
     let symbols: Vec<Symbol> = symbols.into_iter().collect();
-    let mut evaluator = Evaluator::new(graph.compile(&symbols, matrix.entries(), &HashMap::new()).ok()?);
+    let varies = |e: &Expr| graph.symbols_of(*e).iter().any(|s| surroundings.variables.contains_key(s));
+    let ends: Vec<Expr> = graph.ends_of_pieces(matrix.entries()).into_iter().filter(varies).collect();
+    let all = [matrix.entries(), &ends].concat();
+    let mut evaluator = Evaluator::new(graph.compile(&symbols, &all, &HashMap::new()).ok()?);
+    let signs = |ends: &[Bounded]| ends.iter().map(|e| e.value.total_cmp(&0.0)).collect::<Vec<_>>();
+    let count = matrix.entries().len();
+    let own = signs(&evaluator.evaluate(&surroundings.centre(&symbols))[count..]);
     let mut found = None;
     for point in 0..REACHES.len() * SIGNS.len() {
-        let entries = evaluator.evaluate(&surroundings.point(&symbols, point));
-        if entries.iter().all(|e| e.is_finite()) {
+        let values = evaluator.evaluate(&surroundings.point(&symbols, point, !ends.is_empty()));
+        let (entries, ends) = values.split_at(count);
+        let on_branch = own.iter().zip(signs(ends)).all(|(own, sign)| own.is_eq() || *own == sign);
+        if on_branch && entries.iter().all(|e| e.is_finite()) {
             found = found.max(Some(certain_rank(entries.chunks(matrix.columns()).map(<[Bounded]>::to_vec).collect())));
         }
         if found == Some(most) {

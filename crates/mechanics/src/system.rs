@@ -81,6 +81,9 @@ pub struct System {
     pub lagrangian: Expr,
     /// `f(q, v, t)`, each to be zero along a motion.
     pub constraints: Vec<Expr>,
+    /// Constraints on positions `g(q, t) = 0`, each beside the place of `dg/dt` among the constraints:
+    /// motions stay on the leaf `g = 0` of their start.
+    pub on_positions: Vec<(usize, Expr)>,
     /// `Q(q, v, t)`, one per coordinate; the number 0 where no force was given.
     pub forces: Vec<Expr>,
     /// `w(q, v, t)`, none, or as many as constraints: displacements with `∂w/∂v δq = 0` are virtual, where
@@ -128,6 +131,7 @@ impl System {
             parameters: Vec::new(),
             lagrangian: graph.zero(),
             constraints: Vec::new(),
+            on_positions: Vec::new(),
             forces: vec![graph.zero(); coordinates.len()],
             virtual_conditions: Vec::new(),
             domains: Vec::new(),

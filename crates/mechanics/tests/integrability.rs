@@ -20,7 +20,8 @@ fn must_be_integrable(coordinates: &[&str], constraints: &[&str]) {
 #[track_caller]
 fn must_be_nonintegrable(coordinates: &[&str], constraints: &[&str], depth: usize) {
     let verdict = verdict(coordinates, constraints);
-    assert_eq!(verdict, Integrability::Nonintegrable { depth }, "{constraints:?}: {verdict}");
+    let found = matches!(verdict, Integrability::Nonintegrable { depth: found, .. } if found == depth);
+    assert!(found, "{constraints:?}: {verdict}");
     assert!(!verdict.is_integrable());
 }
 
@@ -56,7 +57,8 @@ fn total_derivatives_are_integrable() {
 fn a_parameter_is_its_formula_and_a_rounded_number_nothing_exact() {
     // `a` has the value of its formula, or another since
     let form = |a: &str, value: Option<f64>, b: f64| {
-        let (mut system, state) = systems::kinetic(&["x", "y", "z"], &[("a", 0.0), ("b", b)], &["z' - a*x*y' - b*y*x'"]);
+        let (mut system, state) =
+            systems::kinetic(&["x", "y", "z"], &[("a", 0.0), ("b", b)], &["z' - a*x*y' - b*y*x'"]);
         let formula = system.expression(a).expect("a formula");
         let own = system.graph.evaluate(formula, &Default::default()).expect("a number");
         system.parameters[0].value = value.unwrap_or(own);
@@ -122,7 +124,7 @@ fn one_direction_left_is_always_integrable() {
     must_be_integrable(&["x", "y", "z"], &["z' - y*x'", "y' - (x + z^2)*x'"]);
     // but not where time drives it as well
     let verdict = verdict(&["x", "y"], &["y' - sin(x)"]);
-    assert_eq!(verdict, Integrability::Nonintegrable { depth: 1 });
+    assert!(matches!(verdict, Integrability::Nonintegrable { depth: 1, .. }));
 }
 
 #[test]
@@ -260,7 +262,7 @@ fn what_begins_elsewhere_is_not_called_integrable() {
 fn no_value_at_any_point_is_no_rank() {
     // nothing is negative but under the first root
     let found = verdict(&["x", "y", "z"], &["z' - (sqrt(x) + sqrt(a))*y'"]);
-    assert_eq!(found, Integrability::Nonintegrable { depth: 1 });
+    assert!(matches!(found, Integrability::Nonintegrable { depth: 1, .. }), "{found}");
     // in the domain at none of six points on either side of zero
     for roots in ["sqrt(x) + sqrt(a) + sqrt(b)", "sqrt(x) + sqrt(-a) + sqrt(b)", "sqrt(x) + sqrt(a) + sqrt(1 - a)"] {
         let found = verdict(&["x", "y", "z", "a", "b"], &[&format!("z' - ({roots})*y'")]);

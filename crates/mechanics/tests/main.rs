@@ -1,6 +1,7 @@
 //! Systems as a user of the crate meets them: one program, one module per subject.
 
 mod factors;
+mod growth;
 mod integrability;
 mod newton;
 mod removal;

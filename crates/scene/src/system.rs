@@ -86,12 +86,7 @@ fn unit(section: &Section) -> Result<String, SceneError> {
 }
 
 /// Parameters that are numbers. One that is given by others is an expression in them, and follows them.
-fn parameters(
-    section: &Section,
-    overrides: &Overrides,
-    graph: &Graph,
-    names: &mut Names,
-) -> Vec<Parameter> {
+fn parameters(section: &Section, overrides: &Overrides, graph: &Graph, names: &mut Names) -> Vec<Parameter> {
     let source = section.source;
     let mut written = Vec::new();
     for entry in section.entries() {
@@ -227,7 +222,7 @@ fn watched(context: &mut Context, section: &str, constancy: Constancy) -> Result
 /// Each element is a constraint, or a vector of them. One on positions is kept as its time derivative.
 fn constraints(context: &mut Context, entry: &Entry) -> Result<(), SceneError> {
     let source = context.source;
-    let mut constraints = Vec::new();
+    let (mut constraints, mut on_positions) = (Vec::new(), Vec::new());
     for (index, element) in entry.elements("an array of expressions")?.iter().enumerate() {
         let read = element.text("an expression in quotes");
         let read = read.and_then(|text| context.names.parse_value(source, &context.system.graph, &text));
@@ -239,6 +234,7 @@ fn constraints(context: &mut Context, entry: &Entry) -> Result<(), SceneError> {
             if depends(system.velocities()) {
                 constraints.push(*f);
             } else if depends(system.positions()) {
+                on_positions.push((constraints.len(), *f));
                 constraints.push(g.total_derivative(*f, &system.flow()));
                 context.on_positions.push((index + 1, element.span.clone(), *f));
             } else {
@@ -251,6 +247,7 @@ fn constraints(context: &mut Context, entry: &Entry) -> Result<(), SceneError> {
         return Err(entry.error_at_key(SceneErrorKind::TooManyConstraints { found, dimension }));
     }
     context.system.constraints = constraints;
+    context.system.on_positions = on_positions;
     Ok(())
 }
 

@@ -85,6 +85,21 @@ impl Graph {
         roots.into_iter().collect()
     }
 
+    /// What is zero where an analytic piece of `es` may end: [`Graph::kinks`], [`Graph::radicands`], and `1 −
+    /// u²` for inverse sines and cosines of `u`: `asin(sin x)` is `x` up to `x = π/2` only.
+    ///
+    /// ```
+    /// let g = symbolic::Graph::new();
+    /// let x = g.variable(g.symbol("x"));
+    /// let turned = g.call(symbolic::Function::Asin, g.call(symbolic::Function::Sin, x));
+    /// assert_eq!(g.ends_of_pieces(&[turned]).len(), 1);
+    /// ```
+    pub fn ends_of_pieces(&self, es: &[Expr]) -> Vec<Expr> {
+        let inverse = [Function::Asin, Function::Acos].into_iter().flat_map(|f| self.arguments_of(f, es));
+        let inverse: Vec<Expr> = inverse.map(|u| self.sub(self.one(), self.powi(u, 2))).collect();
+        [self.kinks(es), self.radicands(es), inverse].concat()
+    }
+
     /// Every distinct base of a power that is no integer, in `es`.
     pub fn under_roots(&self, es: &[Expr]) -> BTreeSet<Expr> {
         let reachable = self.arena.borrow().reachable(es, |_| true);

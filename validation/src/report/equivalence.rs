@@ -266,13 +266,14 @@ impl EquivalenceReport {
 
     /// The first line of the page.
     pub fn headline(&self) -> String {
-        let [none, some, open] =
-            ["none", "some", "open"].map(|what| self.rows.iter().filter(|row| row.almost_everywhere.is(what)).count());
+        let [none, one, every, some, open] = ["none", "one", "every one", "some", "open"]
+            .map(|what| self.rows.iter().filter(|row| row.almost_everywhere.is(what)).count());
+        let more = some - one - every;
         let starts: usize = self.data.system.iter().map(|system| system.start.len()).sum();
         let open = if open == 0 { String::new() } else { format!("; {open} open") };
         format!(
             "Of {} classic systems and variants, {none} have no $\\mu_0$ with which the vakonomic motion is Chetaev's, at almost \
-             every start; {some} have one{open}. {starts} further starts, on and beside the exceptional ones, are decided.",
+             every start; {one} have one $\\mu_0$, {more} a set of dimension 1 or more, {every} every $\\mu_0${open}. {starts} further starts, on and beside the exceptional ones, are decided.",
             self.rows.len()
         )
     }

@@ -178,6 +178,11 @@ impl Claim {
         let found = self.case.iter().map(Case::found).collect::<Result<Vec<_>>>();
         let found = found.with_context(|| format!("claim of {}", self.source))?;
         let (word, source) = (self.follows(&found), &self.source);
+        // a remark says of how it is known what is computed
+        for said in ["identity", "proved"] {
+            let is_so = !self.remark.contains(said) || found.iter().any(|found| found.to_string().contains(said));
+            ensure!(is_so, "claim of {source}: `{said}` in the remark, which is found of none of its cases: {found:?}");
+        }
         ensure!(word == self.word, "claim of {source}: {} was expected, it is {word}: {found:?}", self.word);
         Ok(found)
     }

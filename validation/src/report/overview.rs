@@ -56,7 +56,7 @@ fn matrix(comparisons: &[Comparison], controls: &[Option<Control>]) -> Table {
             Some(Some(fitted)) => reached(fitted),
         };
         let control = control.as_ref().map_or("–", Control::word);
-        let integrable = match c.integrability {
+        let integrable = match &c.integrability {
             Integrability::Unconstrained => "no constraint",
             Integrability::Integrable { .. } => "yes",
             Integrability::PartlyIntegrable { .. } => "partly",

@@ -143,13 +143,14 @@ pub fn by_half(fitted: &FittedMotion) -> String {
 
 /// How far it was looked, for a yes that is not proved.
 pub fn how_far(membership: &Membership, order: Option<usize>, settled: bool) -> String {
-    let branch = if membership.proof.one_branch { ", near this start" } else { "" };
+    let part = membership.proof.domain.part();
     if let Some(section) = &membership.section {
         let section = section.expressions.join(", ");
-        return format!("({section}) at random starts modulo two primes{branch}, which is no proof");
+        return format!("({section}) at random starts{part} modulo two primes, which is no proof");
     }
     if settled {
-        return format!("ranks modulo two primes grow no more{branch}, which is no proof");
+        let at = if part.is_empty() { "" } else { " at random starts" };
+        return format!("ranks modulo two primes grow no more{at}{part}, which is no proof");
     }
     let decision = &membership.decision;
     let part = decision.least.max(decision.noise) / decision.acceleration;

@@ -151,13 +151,13 @@ pub(super) fn frobenius(case: &mut Case) -> Result<(), CheckError> {
 pub fn integrals_put_in(recipe: &Recipe, scene: &Scene, findings: &mut Findings) -> Result<(), CheckError> {
     let (system, start) = (&scene.system, &scene.start);
     let found = integrability(scene)?;
-    let right = match (recipe.truth(), found) {
+    let right = match (recipe.truth(), &found) {
         (Truth::Unconstrained, Integrability::Unconstrained)
         | (Truth::Integrable, Integrability::Integrable { .. })
         | (Truth::Nonintegrable, Integrability::Nonintegrable { .. })
         | (Truth::NotLinear, Integrability::NonlinearInVelocity) => true,
         (Truth::PartlyIntegrable { integrals: put }, Integrability::PartlyIntegrable { integrals, .. }) => {
-            put == integrals
+            put == *integrals
         }
         _ => false,
     };
@@ -166,10 +166,10 @@ pub fn integrals_put_in(recipe: &Recipe, scene: &Scene, findings: &mut Findings)
         _ => integrals_by_ranks(system, start)?,
     };
     let claim = "Frobenius' test finds what the construction put in";
-    match found {
+    match &found {
         // its words begin with that one
         Integrability::Undecided { .. } => findings.undecided(11, claim, found.to_string().replace("undecided: ", "")),
-        _ => findings.require(11, claim, right, found),
+        _ => findings.require(11, claim, right, &found),
     }
     if let Some((integrals, _)) = by_ranks {
         let note = format!("{integrals} by ranks");
