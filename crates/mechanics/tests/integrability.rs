@@ -68,8 +68,8 @@ fn a_parameter_is_its_formula_and_a_rounded_number_nothing_exact() {
     let exactly = Integrability::Integrable { exact: true };
     assert_eq!(form("sqrt(2)*sqrt(3)/sqrt(6)", None, 1.0), exactly);
     assert_eq!(form("sqrt(2)*sqrt(3)/sqrt(6)", Some(0.5), 0.5), exactly);
-    assert_eq!(form("sqrt(2)*sqrt(3)/sqrt(6)", Some(0.5), 1.0), Integrability::Nonintegrable { depth: 1 });
-    assert_eq!(form("1 + 1/100000000000000000", None, 1.0), Integrability::Nonintegrable { depth: 1 });
+    assert!(matches!(form("sqrt(2)*sqrt(3)/sqrt(6)", Some(0.5), 1.0), Integrability::Nonintegrable { depth: 1, .. }));
+    assert!(matches!(form("1 + 1/100000000000000000", None, 1.0), Integrability::Nonintegrable { depth: 1, .. }));
     // of unknown digits, or with more than are held
     let open = Integrability::Undecided { why: Undecided::AtPoints, depth: 0, at_most: 1, constraints: 1 };
     assert_eq!(form("1 + log(4) - 2*log(2)", None, 1.0), open);
