@@ -78,6 +78,12 @@ impl Fit {
     pub fn objections(&self) -> impl Iterator<Item = &ResidualTest> {
         self.tests.iter().filter(|test| test.objects)
     }
+
+    /// Those of the objections after which nothing is excluded. That χ² is too small is none: standard
+    /// deviations that are too large make every exclusion weaker.
+    pub fn faults(&self) -> impl Iterator<Item = &ResidualTest> {
+        self.objections().filter(|test| !test.is_too_small())
+    }
 }
 
 /// What films show of the unknowns to first order.
@@ -181,7 +187,7 @@ pub fn fit(problem: &Problem, spread: &dyn Fn(&str) -> bool, starts: usize, know
     let fitted = unknowns - hidden.len();
     let tests = residual_tests(&films, &residuals, fitted.saturating_sub(priors(problem)), problem.is_robust());
     // what does not fit has no intervals to look for
-    let profiles = !tests.iter().any(|test| test.objects);
+    let profiles = !tests.iter().any(|test| test.objects && !test.is_too_small());
     let near = less.limited(&best.theta, PROFILE_STEPS);
     let profile = |i| Profile::new(&near, &jacobian, &best, &errors, i);
     let mut estimates: Vec<Estimate> =

@@ -55,7 +55,8 @@ pub struct Found {
 }
 
 /// The least minimum from several starts: the first is [`Problem::start`]; in the others unknowns for which
-/// `spread` says so are moved, by parts of their scales that no period fits. Beginnings are left out where
+/// `spread` says so are moved, by parts of their scales that no period fits; further ones are known before:
+/// each goes by way of beginnings and at once. Beginnings are left out where
 /// the first start is `known` to come close. Starts for the whole film at once are left out where beginnings
 /// of several lead to residuals of noise.
 ///
@@ -67,12 +68,18 @@ pub fn search(problem: &Problem, spread: &dyn Fn(&str) -> bool, starts: usize, k
     let problem = &problem.limited(problem.start(), STEPS);
     let short = problem.beginning(FIRST.max(2 * problem.unknowns().len()))?;
     let (scale, mut reason) = scales(&mut short.clone());
-    let (mut minima, mut tried) = (Vec::new(), 0);
+    let known_before: Vec<Minimum> = problem.known.iter().cloned().map(Minimum::unseen).collect();
+    // they count as starts once, by way of beginnings
+    let at_once = known_before.iter().map(|start| Minimum { reached: usize::from(known), ..start.clone() }).collect();
+    let mut minima = refined(problem, at_once, &scale, Stage::Rough, &mut reason);
+    let mut tried = known_before.len();
     if !known {
         let begun = (0..starts).map(|number| moved(problem, &scale, spread, problem.first + number));
-        tried += starts;
-        minima = followed(problem, short, &scale, begun.collect(), &mut reason)?;
-        minima = refined(problem, minima, &scale, Stage::Rough, &mut reason);
+        let begun: Vec<Minimum> = begun.chain(known_before).collect();
+        tried += begun.len();
+        let led = followed(problem, short, &scale, begun, &mut reason)?;
+        minima.extend(refined(problem, led, &scale, Stage::Rough, &mut reason));
+        distinct(&mut minima, &scale);
     }
     if starts == 1 || !minima.first().is_some_and(|least| fits(problem, least)) {
         let begun = screened(problem, spread, starts);
@@ -92,7 +99,8 @@ pub fn search(problem: &Problem, spread: &dyn Fn(&str) -> bool, starts: usize, k
         same
     });
     let no_motion = || FitError::NoMotion { starts: tried, reason: reason.unwrap_or_else(|| "no minimum".into()) };
-    let best = minima.first().cloned().ok_or_else(no_motion)?;
+    let mut best = minima.first().cloned().ok_or_else(no_motion)?;
+    best.reached = best.reached.max(1);
     Ok(Found { best, minima: minima.iter().map(|m| m.chi_squared).collect(), starts: tried })
 }
 
