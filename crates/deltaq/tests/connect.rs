@@ -287,11 +287,11 @@ const MARTINET: &str = "title = \"Martinet\"\n[coordinates]\nx = { start = 0 }\n
 /// curve, and conjugate times say nothing of it.
 #[test]
 fn an_abnormal_curve_is_one_and_has_no_statement() {
-    let all = found_in(MARTINET, &aim(&[("x", 0.0), ("y", 1.0), ("z", 0.0)], 2.0, 20));
+    let all = found_in(MARTINET, &aim(&[("x", 0.0), ("y", 1.0), ("z", 0.0)], 2.0, 8));
     let lines: Vec<_> = all.found.iter().filter(|motion| (motion.action[0] - 0.25).abs() < 1e-6).collect();
     let [line] = &lines[..] else { panic!("{} lines", lines.len()) };
     assert_eq!((line.second_variation, line.is_minimum), (SecondVariation::Abnormal, None));
-    assert!(line.conjugate.is_none() && line.starts >= 8, "{}", line.starts);
+    assert!(line.conjugate.is_none() && line.starts >= 2, "{}", line.starts);
 }
 
 /// A chain that hangs: f = v² − c², and `∂²(L + μ f)/∂v² = 1 + 2μ` along it is negative: the action, its

@@ -26,9 +26,9 @@ const GROUPS: usize = 3;
 
 /// Starts that have to lead to the least χ² of a formulation before it is excluded.
 const SEVERAL: usize = 2;
-/// Samples of the first beginning of which an exclusion is asked for that no whole film settles, and the factor
-/// from one to the next.
-const FIRST: usize = 12;
+/// Numbers per unknown of the first beginning of which an exclusion is asked for that no whole film settles, and the
+/// factor from one to the next.
+const FIRST: usize = 2;
 const LONGER: f64 = 1.6;
 /// Rounds in which standard deviations are estimated, and the part of themselves to which they are.
 const ROUNDS: usize = 4;
@@ -169,7 +169,12 @@ fn fit_given(
             row.notes.push("nested: each of its motions is vakonomic for some μ₀, which is proved".into());
         }
         let (Verdict::CannotTell { from, needs }, Ok((problem, fit))) = (&mut row.verdict, &fits[i].1) else { continue };
-        let of = |label: &String| fits.iter().find(|(own, _)| own.label == *label).and_then(|(_, fit)| fit.as_ref().ok());
+        // no film tells it from what it contains
+        let contains = |other: &Choice| {
+            ordered && *row.choice.formulation == *VAKONOMIC && *other.formulation == *CHETAEV
+        };
+        let other = |label: &String| fits.iter().find(|(own, _)| own.label == *label && !contains(own));
+        let of = |label: &String| other(label).and_then(|(_, fit)| fit.as_ref().ok());
         *needs = from
             .iter()
             .map(|label| of(label).and_then(|(other, best)| length_that_tells((other, best), (problem, fit))))
@@ -278,7 +283,9 @@ fn by_beginning(
 ) -> Option<(usize, f64)> {
     let theta: Vec<f64> = fit.estimates.iter().map(|e| e.value).take(best.unknowns().len()).collect();
     let scale: Vec<f64> = fit.estimates.iter().map(|e| if e.error.is_finite() { e.error } else { 1.0 }).collect();
-    let mut samples = FIRST.max(2 * problem.unknowns().len());
+    let columns = problem.films().map(|film| film.columns.len()).min().unwrap_or(1);
+    let films = problem.films().count();
+    let mut samples = (FIRST * problem.unknowns().len()).div_ceil(columns * films) + 1;
     while samples < problem.samples() {
         let of_best = least_of(&best.beginning(samples).ok()?, &theta, &scale[..theta.len()], Stage::Profile).ok()?;
         let found = search(&problem.beginning(samples).ok()?, spread, starts, false).ok()?.best;

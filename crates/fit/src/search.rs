@@ -23,6 +23,8 @@ const GAINS: [f64; 5] = [1e-2, 1e-4, 1e-10, 1e-6, 1e-4];
 const ITERATIONS: [usize; 5] = [10, 20, 100, 12, 50];
 /// Starts for the whole film are up to this many times halfway to the first one.
 const NEARER: i32 = 8;
+/// Starts beside one that is known and fits.
+const FEW: usize = 4;
 /// Starts that are fitted to the whole film at once beside the first one.
 const SCREENED: usize = 2;
 /// Times the steps of the first motion that one may take.
@@ -73,6 +75,8 @@ pub fn search(problem: &Problem, spread: &dyn Fn(&str) -> bool, starts: usize, k
     let at_once = known_before.iter().map(|start| Minimum { reached: usize::from(known), ..start.clone() }).collect();
     let mut minima = refined(problem, at_once, &scale, Stage::Rough, &mut reason);
     let mut tried = known_before.len();
+    // beside what is known to fit others are few
+    let starts = if minima.first().is_some_and(|m| fits(problem, m)) { starts.min(FEW) } else { starts };
     if !known {
         let begun = (0..starts).map(|number| moved(problem, &scale, spread, problem.first + number));
         let begun: Vec<Minimum> = begun.chain(known_before).collect();

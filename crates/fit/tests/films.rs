@@ -30,6 +30,11 @@ pub fn fitted(scene: &Scene, films: &[Film], free: &[&str], law: &[&str]) -> Vec
     fitted_by(&[CHETAEV, VAKONOMIC], scene, films, free, law)
 }
 
+pub fn question(unknowns: &[Unknown]) -> Question<'_> {
+    let settings = Settings { tolerance: 1e-9, max_steps: 20_000, ..Settings::default() };
+    Question { unknowns, law: &[], starts: 16, robust: None, settings, threads: 0 }
+}
+
 pub fn fitted_by(
     wanted: &[&'static equations::Formulation],
     scene: &Scene,
@@ -38,9 +43,8 @@ pub fn fitted_by(
     law: &[&str],
 ) -> Vec<Row> {
     let parsed = |list: &[&str]| list.iter().map(|text| text.parse().unwrap()).collect::<Vec<Unknown>>();
-    let settings = Settings { tolerance: 1e-9, max_steps: 20_000, ..Settings::default() };
     let (unknowns, law) = (parsed(free), parsed(law));
-    let question = Question { unknowns: &unknowns, law: &law, starts: 16, robust: None, settings, threads: 0 };
+    let question = Question { law: &law, ..question(&unknowns) };
     let rows = fit_formulations(scene, &mut films.to_vec(), &question, wanted);
     rows.unwrap_or_else(|error| panic!("{error}"))
 }
