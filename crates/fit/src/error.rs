@@ -48,7 +48,7 @@ pub enum FitError {
     /// A unit and the label of the scene are of different kinds.
     #[error(
         "`{column}` is said to be in {unit}, and the scene says {label}: give the numbers in the units of the scene, \
-         without a unit"
+         without a unit, or a standard deviation of its own"
     )]
     Unit { column: String, unit: String, label: String },
     /// An unknown cannot be read.

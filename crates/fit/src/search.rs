@@ -23,6 +23,8 @@ const GAINS: [f64; 5] = [1e-2, 1e-4, 1e-10, 1e-6, 1e-4];
 const ITERATIONS: [usize; 5] = [10, 20, 100, 12, 50];
 /// Starts for the whole film are up to this many times halfway to the first one.
 const NEARER: i32 = 8;
+/// A change of an unknown by its own size that moves the film by this part of its extent is round-off.
+const UNMOVED: f64 = 1e-9;
 /// Starts beside one that is known and fits.
 const FEW: usize = 4;
 /// Starts that are fitted to the whole film at once beside the first one.
@@ -222,7 +224,9 @@ fn scales(problem: &mut Problem) -> (Vec<f64>, Option<String>) {
             let extent = problem.extent();
             let scale = |i: usize| {
                 let length = jacobian.column(i).norm();
-                if length > 0.0 && length.is_finite() { extent / length } else { plain(i) }
+                // what only round-off moves has no scale of its own
+                let is_moved = length * plain(i) > UNMOVED * extent && length.is_finite();
+                if is_moved { extent / length } else { plain(i) }
             };
             ((0..start.len()).map(scale).collect(), None)
         }
