@@ -5,8 +5,8 @@ use std::fmt::Write;
 use anyhow::{Context, Error, Result, bail};
 use deltaq::Settings;
 use fit::{
-    Deviations, Estimate, Film, Fit, FitError, Question, ROBUST, Row, Verdict, fit_formulations, fit_value, formulations,
-    quantity,
+    Deviations, Estimate, Film, Fit, FitError, Question, ROBUST, Row, Verdict, fit_formulations, fit_value,
+    formulations, quantity,
 };
 use program::{Answer, TextOrJson, parallel, pretty, write_all};
 use scene::table_text;

@@ -94,7 +94,10 @@ fn table(file: &str, j: &Judgement) -> String {
             true => writeln!(text, "  misfit: with a {name} of {value:.4e} ± {error:.1e} chetaev leaves {left:.3e}"),
             false => {
                 let (part, error) = (1.0 + value, error);
-                writeln!(text, "  misfit: with {part:.6} ± {error:.1e} times the scene's {name} chetaev leaves {left:.3e}")
+                writeln!(
+                    text,
+                    "  misfit: with {part:.6} ± {error:.1e} times the scene's {name} chetaev leaves {left:.3e}"
+                )
             }
         };
     }

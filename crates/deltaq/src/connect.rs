@@ -24,6 +24,7 @@
 
 mod action;
 mod conjugate;
+mod curves;
 mod guesses;
 mod leaf;
 mod second_variation;
@@ -40,10 +41,11 @@ use crate::carried::{Carried, Which};
 use crate::constants::constant_names;
 use crate::{Choice, Motion, Settings, SolveError, TIGHTER, VAKONOMIC, over_threads, solve_choice};
 use action::action;
-use second_variation::second_variation;
 pub use conjugate::{ConjugateTime, samples, times};
+use curves::{Exact, one_per_curve};
 pub use guesses::spread;
 pub use second_variation::SecondVariation;
+use second_variation::second_variation;
 use two_point::TwoPoint;
 
 /// Where a motion is to end.
@@ -211,38 +213,6 @@ pub fn connect(scene: &Scene, choice: &Choice, aim: &Aim, settings: &Settings) -
     found.sort_by(|a, b| a.action[0].total_cmp(&b.action[0]));
     failures.sort_by(|a, b| b.1.cmp(&a.1).then_with(|| a.0.cmp(&b.0)));
     Ok(Connections { unknowns: problem.names, found, failures, runs, every_constant, none: None })
-}
-
-/// Instants at which curves are compared, and how much more constants differ than curves where they do.
-const COMPARED: usize = 16;
-const MORE: f64 = 100.0;
-
-/// Unknowns of a motion, how many starts led to it, and whether others with other constants are the same curve.
-type Exact = (Vec<f64>, usize, bool);
-
-/// Motions that are one curve, once, with the least constants: one for several constants has an abnormal lift.
-fn one_per_curve(exact: Vec<(Vec<f64>, usize)>, problem: &mut TwoPoint) -> Vec<Exact> {
-    let free = problem.velocities.free.len();
-    let largest = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
-    let size = |x: &[f64]| x[free..].iter().map(|x| x.abs()).fold(0.0, f64::max);
-    let mut kept: Vec<(Exact, Vec<f64>)> = Vec::new();
-    for (x, starts) in exact {
-        let curve = problem.curve(&x, COMPARED).unwrap_or_default();
-        let is_same = |((other, ..), known): &&mut (Exact, Vec<f64>)| {
-            let apart = largest(&curve, known);
-            !curve.is_empty() && apart <= ONE[0] && largest(&x[free..], &other[free..]) > MORE * apart.max(ONE[1])
-        };
-        match kept.iter_mut().find(is_same) {
-            None => kept.push(((x, starts, false), curve)),
-            Some(((other, count, several), known)) => {
-                (*count, *several) = (*count + starts, true);
-                if size(&x) < size(other) {
-                    (*other, *known) = (x, curve);
-                }
-            }
-        }
-    }
-    kept.into_iter().map(|(exact, _)| exact).collect()
 }
 
 /// What a guess leads to, with the runs that it took.

@@ -7,12 +7,12 @@ use equations::Formulation;
 use scene::Scene;
 
 use crate::creep;
-use crate::explain::explanations;
 use crate::known;
 use crate::length::length_that_tells;
 use crate::question::{SLIP, has_constants, is_constant, is_law, problem_of};
-use crate::search::{POOR, Stage, begun, least as least_of, search};
-use crate::verdict::{above, is_excluded, sigmas, threshold};
+use crate::search::{POOR, begun, fits as fits_noise, least_near};
+use crate::settled::{by_beginning, explain, settle};
+use crate::verdict::{beside, is_excluded};
 use crate::{Film, Fit, FitError, Problem, Question, Row, Unknown, Verdict, fit, verdicts};
 
 /// Most numbers of all films: with them a fit takes minutes.
@@ -24,12 +24,6 @@ const MORE_STARTS: usize = 4;
 /// Further groups of starts for a formulation that would be excluded and is not poor.
 const GROUPS: usize = 3;
 
-/// Starts that have to lead to the least χ² of a formulation before it is excluded.
-const SEVERAL: usize = 2;
-/// Numbers per unknown of the first beginning of which an exclusion is asked for that no whole film settles, and the
-/// factor from one to the next.
-const FIRST: usize = 2;
-const LONGER: f64 = 1.6;
 /// Rounds in which standard deviations are estimated, and the part of themselves to which they are.
 const ROUNDS: usize = 4;
 const CLOSE: f64 = 0.02;
@@ -77,8 +71,7 @@ fn estimate_deviations(films: &mut [Film], rows: &[Row]) -> bool {
             let column = &films[film].columns[column];
             (column.name == name && column.estimated).then_some(column.sigma)
         };
-        let errors: Vec<f64> =
-            best.residuals.iter().filter_map(|r| Some(r.value * own(r.film, r.column)?)).collect();
+        let errors: Vec<f64> = best.residuals.iter().filter_map(|r| Some(r.value * own(r.film, r.column)?)).collect();
         let sum: f64 = errors.iter().map(|e| e * e).sum();
         let sigma = (sum / (errors.len() as f64 * free)).sqrt();
         if !(sigma > 0.0 && sigma.is_finite()) {
@@ -140,9 +133,8 @@ fn fit_given(
     for group in 1..=GROUPS {
         let Some(least) = least(&fits) else { break };
         let is_doubtful = |(choice, fit): &(Choice, Fitted)| {
-            let is_near = |fit: &Fit| {
-                is_excluded(fit, &least) && fit.chi_squared < POOR * (fit.freedom as f64).max(1.0)
-            };
+            let is_near =
+                |fit: &Fit| is_excluded(fit, &least) && fit.chi_squared < POOR * (fit.freedom as f64).max(1.0);
             has_constants(choice) && fit.as_ref().is_ok_and(|(_, fit)| is_near(fit))
         };
         let places: Vec<usize> = (0..fits.len()).filter(|&i| is_doubtful(&fits[i])).collect();
@@ -159,7 +151,7 @@ fn fit_given(
     let mut rows = verdicts(fits.iter().map(plain).collect());
     for (row, (_, own)) in rows.iter_mut().zip(&fits) {
         let asked = problem_of(&scene, &row.choice, films, question).ok();
-        row.shown = asked.map(|problem| problem.identifiability(&scene, &row.choice).beside(row.fit.as_ref().ok()));
+        row.shown = asked.map(|problem| beside(problem.identifiability(&scene, &row.choice), row.fit.as_ref().ok()));
         row.problem = own.as_ref().ok().map(|(problem, _)| problem.clone());
     }
     settle(&mut rows, question);
@@ -168,11 +160,12 @@ fn fit_given(
         if ordered && *row.choice.formulation == *CHETAEV {
             row.notes.push("nested: each of its motions is vakonomic for some μ₀, which is proved".into());
         }
-        let (Verdict::CannotTell { from, needs }, Ok((problem, fit))) = (&mut row.verdict, &fits[i].1) else { continue };
-        // no film tells it from what it contains
-        let contains = |other: &Choice| {
-            ordered && *row.choice.formulation == *VAKONOMIC && *other.formulation == *CHETAEV
+        let (Verdict::CannotTell { from, needs }, Ok((problem, fit))) = (&mut row.verdict, &fits[i].1) else {
+            continue;
         };
+        // no film tells it from what it contains
+        let contains =
+            |other: &Choice| ordered && *row.choice.formulation == *VAKONOMIC && *other.formulation == *CHETAEV;
         let other = |label: &String| fits.iter().find(|(own, _)| own.label == *label && !contains(own));
         let of = |label: &String| other(label).and_then(|(_, fit)| fit.as_ref().ok());
         *needs = from
@@ -197,7 +190,13 @@ fn add(known: &mut Fitted, again: Fitted) {
     if let (Some(((a, starts, reached), (b, more, others))), Ok((_, fit))) = (both, known) {
         fit.starts = starts + more;
         let same = (a - b).abs() <= SAME + 1e-3 * a.min(b);
-        fit.reached = if same { reached + others } else if a < b { reached } else { others };
+        fit.reached = if same {
+            reached + others
+        } else if a < b {
+            reached
+        } else {
+            others
+        };
     }
 }
 
@@ -247,77 +246,6 @@ fn in_order(
     Ok(ordered)
 }
 
-/// An exclusion rests on a least χ² that several starts reach: of the whole films, or of their beginnings, which
-/// have no more minima than tell. Elsewhere the search is not settled.
-fn settle(rows: &mut [Row], question: &Question) {
-    let fitted = rows.iter().filter_map(|row| Some((row.fit.as_ref().ok()?, row.problem.as_ref()?)));
-    let best = fitted.min_by(|a, b| a.0.chi_squared.total_cmp(&b.0.chi_squared));
-    let Some((best, of_best)) = best.map(|(fit, problem)| (fit.clone(), problem.clone())) else { return };
-    let spread = |name: &str| is_constant(name) || question.law.iter().any(|u| u.name == name);
-    for row in rows.iter_mut() {
-        let (Verdict::Excluded { sigmas }, Ok(fit), Some(problem)) = (&row.verdict, &row.fit, &row.problem) else {
-            continue;
-        };
-        if fit.reached >= SEVERAL || !has_constants(&row.choice) && !is_law(row.choice.formulation) {
-            continue;
-        }
-        let (sigmas, more) = (*sigmas, above(fit, &best).1);
-        match by_beginning((&of_best, &best), problem, more, &spread, question.starts) {
-            Some((samples, sigmas)) => {
-                row.notes.push(format!("of the whole films few starts reach the least χ²: excluded by {samples} samples"));
-                row.verdict = Verdict::Excluded { sigmas };
-            }
-            None => row.verdict = Verdict::Unsettled { sigmas },
-        }
-    }
-}
-
-/// The shortest beginning of the films that excludes `problem`, by a least χ² that several starts reach: its
-/// samples, and the significance.
-fn by_beginning(
-    (best, fit): (&Problem, &Fit),
-    problem: &Problem,
-    more: usize,
-    spread: &dyn Fn(&str) -> bool,
-    starts: usize,
-) -> Option<(usize, f64)> {
-    let theta: Vec<f64> = fit.estimates.iter().map(|e| e.value).take(best.unknowns().len()).collect();
-    let scale: Vec<f64> = fit.estimates.iter().map(|e| if e.error.is_finite() { e.error } else { 1.0 }).collect();
-    let columns = problem.films().map(|film| film.columns.len()).min().unwrap_or(1);
-    let films = problem.films().count();
-    let mut samples = (FIRST * problem.unknowns().len()).div_ceil(columns * films) + 1;
-    while samples < problem.samples() {
-        let of_best = least_of(&best.beginning(samples).ok()?, &theta, &scale[..theta.len()], Stage::Profile).ok()?;
-        let found = search(&problem.beginning(samples).ok()?, spread, starts, false).ok()?.best;
-        let above = found.chi_squared - of_best.chi_squared;
-        if above >= threshold(more) && found.reached >= SEVERAL {
-            return Some((samples, sigmas(above, more)));
-        }
-        samples = (samples as f64 * LONGER) as usize;
-    }
-    None
-}
-
-/// What a plain explanation brings as near as the best fits is not excluded, and does not leave the best as the only one.
-fn explain(scene: &Scene, rows: &mut [Row], films: &[Film], question: &Question) {
-    let supported = |row: &Row| row.verdict == Verdict::Supported;
-    let Some(best) = rows.iter().find(|row| supported(row)).cloned() else { return };
-    let Ok(least) = &best.fit else { return };
-    let mut as_well = Vec::new();
-    for row in rows.iter_mut() {
-        let (Verdict::Excluded { .. }, Ok(fit), Some(problem)) = (&row.verdict, &row.fit, &row.problem) else { continue };
-        for found in explanations(scene, &row.choice, films, question, (problem, fit), least) {
-            as_well.push(format!("{} with {}", row.choice.label, found.name));
-            row.notes.push(found.words());
-            row.verdict = Verdict::Explained { with: Some(found.name), from: vec![best.choice.label.clone()] };
-        }
-    }
-    if !as_well.is_empty() {
-        let supported = rows.iter_mut().filter(|row| supported(row));
-        supported.for_each(|row| row.verdict = Verdict::Explained { with: None, from: as_well.clone() });
-    }
-}
-
 /// The fit of less χ².
 fn keep_less(known: &mut Fitted, again: Fitted) {
     let least = known.as_ref().map_or(f64::INFINITY, |(_, fit)| fit.chi_squared);
@@ -339,20 +267,37 @@ fn fit_choices(
     let problem = |choice: &Choice| {
         let mut problem = problem_of(scene, choice, films, question)?;
         problem.first = first;
-        if let Some(near) = near.filter(|_| first == 0 && has_constants(choice)) {
-            let (own, chetaev, fit) = near;
+        let near = near.filter(|_| first == 0 && has_constants(choice));
+        if let Some((own, chetaev, fit)) = near {
             problem.known = known::beside_chetaev(scene, choice, &problem, (own, chetaev, &known::numbers(fit)));
         }
-        Ok::<_, FitError>(problem)
+        let near = near.filter(|(.., fit)| fit.faults().next().is_none());
+        Ok::<_, FitError>((problem, near.map(|(own, _, fit)| (own.clone(), fit.clone()))))
     };
     let problems: Vec<_> = choices.iter().map(|choice| Mutex::new(Some(problem(choice)))).collect();
     let is_of_law = |name: &str| question.law.iter().any(|u| u.name == name);
     let (starts, is_of_law): (usize, &(dyn Fn(&str) -> bool + Sync)) = (question.starts, &is_of_law);
     let fits = over_threads(question.threads, choices.len(), |i| {
-        let problem = problems[i].lock().ok().and_then(|mut own| own.take()).expect("each is taken once")?;
+        let (mut problem, near) =
+            problems[i].lock().ok().and_then(|mut own| own.take()).expect("each is taken once")?;
+        // where a beginning excludes it, the least χ² of the whole films is no matter
+        if let Some((own, fit)) = near.filter(|_| !begins_well(&problem)) {
+            let spread = |name: &str| is_constant(name) || is_of_law(name);
+            problem.excluded_by = by_beginning((&own, &fit), &problem, 1, &spread, starts);
+        }
+        let is_open = problem.excluded_by.is_none();
+        if !is_open {
+            problem.known.clear();
+        }
+        let starts = if is_open { starts } else { 1 };
         fit_one(problem, None, is_of_law, starts, false)
     });
     choices.into_iter().zip(fits).collect()
+}
+
+/// Whether a start that is known leads to residuals of noise.
+fn begins_well(problem: &Problem) -> bool {
+    problem.known.iter().any(|start| least_near(problem, start).is_some_and(|found| fits_noise(problem, &found)))
 }
 
 /// The law of first order fitted: with slip, constraints that are kept are its bound.

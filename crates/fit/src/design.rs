@@ -235,7 +235,18 @@ impl Design {
         let length = ends.fold(0.0, |length: f64, end| length.max(end - scene.start.t));
         let labels = choices.iter().map(|choice| choice.label.clone()).collect();
         let scene = scene.clone();
-        Ok(Design { aim: aim.clone(), scene, choices, labels, truth, rival, unknown, chosen, starts: question.starts, length })
+        Ok(Design {
+            aim: aim.clone(),
+            scene,
+            choices,
+            labels,
+            truth,
+            rival,
+            unknown,
+            chosen,
+            starts: question.starts,
+            length,
+        })
     }
 
     /// What films are to show.

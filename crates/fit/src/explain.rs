@@ -120,7 +120,8 @@ fn tried(
         let Some((problem, mut start, _)) = with(&candidate.numbers) else { continue };
         let place = |name: &String| problem.unknowns().iter().position(|u| u.name == *name);
         let at: Vec<usize> = candidate.numbers.iter().filter_map(place).collect();
-        let error = |label: String| fit.estimates.iter().find(|e| e.name == label && e.error.is_finite()).map(|e| e.error);
+        let error =
+            |label: String| fit.estimates.iter().find(|e| e.name == label && e.error.is_finite()).map(|e| e.error);
         let mut scale: Vec<f64> = problem.unknowns().iter().map(|u| error(u.label()).unwrap_or(1.0)).collect();
         for (&i, by) in at.iter().zip(by.iter()) {
             scale[i] = by.abs().max(f64::MIN_POSITIVE);

@@ -60,7 +60,8 @@ impl Deviations {
     pub fn written(list: &[String]) -> Result<Deviations, FitError> {
         let mut deviations = Deviations::default();
         for text in list {
-            let (name, sigma) = text.split_once('=').map_or((None, &text[..]), |(name, sigma)| (Some(name.trim()), sigma));
+            let (name, sigma) =
+                text.split_once('=').map_or((None, &text[..]), |(name, sigma)| (Some(name.trim()), sigma));
             if name.is_none() && sigma.trim() == FREE {
                 deviations.free = true;
                 continue;
@@ -77,7 +78,9 @@ impl Deviations {
     /// That of a column, in the units of the scene; none where it is to be estimated.
     fn of(&self, scene: &Scene, name: &str, written: Option<f64>) -> Result<Option<f64>, FitError> {
         let with_unit = |of: Option<&str>| -> Result<Option<f64>, FitError> {
-            let Some((_, text)) = self.with_units.iter().find(|(known, _)| known.as_deref() == of) else { return Ok(None) };
+            let Some((_, text)) = self.with_units.iter().find(|(known, _)| known.as_deref() == of) else {
+                return Ok(None);
+            };
             let (value, unit) = split(text)?;
             Ok(Some(value * unit.map_or(Ok(1.0), |unit| unit_of(scene, name, unit))?))
         };

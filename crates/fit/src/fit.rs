@@ -250,7 +250,9 @@ fn off_stationary(problem: &Problem, best: Minimum) -> Minimum {
             let mut theta = best.theta.clone();
             theta[i] += side * step;
             let found = least(problem, &theta, &scale, Stage::Whole);
-            if let Some(found) = found.ok().filter(|found| found.chi_squared < least_known.chi_squared - SAME_CHI_SQUARED) {
+            if let Some(found) =
+                found.ok().filter(|found| found.chi_squared < least_known.chi_squared - SAME_CHI_SQUARED)
+            {
                 least_known = Minimum { reached: best.reached, ..found };
             }
         }
@@ -273,7 +275,14 @@ fn stationary(problem: &Problem, best: &Minimum, i: usize, step: f64) -> Estimat
     let mut profile = Profile::new(&near, &jacobian, best, &errors, i);
     let [low, high] = [-1.0, 1.0].map(|side| profile.end(side, RISE, bound));
     let error = 0.5 * (high - low) / NORMAL;
-    Estimate { name: unknown.label(), value: best.theta[i], error, interval: [low, high], profiled: true, at_bound: None }
+    Estimate {
+        name: unknown.label(),
+        value: best.theta[i],
+        error,
+        interval: [low, high],
+        profiled: true,
+        at_bound: None,
+    }
 }
 
 /// How χ² rises above its least where the unknown of this name has these values and the others are fitted

@@ -19,7 +19,7 @@ use deltaq::{Choice, costate_names, derive};
 use scene::Scene;
 use symbolic::{SplitMix, Symbol};
 
-use crate::{Film, Fit};
+use crate::Film;
 use crate::film::expression;
 use crate::part::{Part, Place};
 use crate::unknown::Unknown;
@@ -50,24 +50,6 @@ pub enum Identifiability {
 }
 
 impl Identifiability {
-    /// Beside a fit: what ranks at random numbers do not show and the fit does, is open.
-    pub(crate) fn beside(self, fit: Option<&Fit>) -> Identifiability {
-        let shows = |name: &String| {
-            fit.is_some_and(|fit| fit.estimates.iter().any(|e| e.name == *name && e.error.is_finite()))
-        };
-        match &self {
-            Identifiability::Hidden { combinations, order } => {
-                let shown = combinations.iter().find(|names| names.iter().all(shows));
-                let open = |names: &Vec<String>| {
-                    let names = names.join(" with ");
-                    Identifiability::Open(format!("derivatives to order {order} do not show {names}, and these films do"))
-                };
-                shown.map(open).unwrap_or(self)
-            }
-            _ => self,
-        }
-    }
-
     /// In words.
     pub fn words(&self) -> String {
         match self {
@@ -100,7 +82,11 @@ pub(crate) fn identifiability(scene: &Scene, choice: &Choice, parts: &[Part], un
                 return Ok(Identifiability::Proved { with_priors });
             }
             if orders == all && all < jets.states + few {
-                return Err(format!("series are cut at order {}, where {} would be needed", all - 1, jets.states + few - 1));
+                return Err(format!(
+                    "series are cut at order {}, where {} would be needed",
+                    all - 1,
+                    jets.states + few - 1
+                ));
             }
             if orders == all {
                 let names = |of: &Vec<usize>| of.iter().map(|&i| unknowns[i].label()).collect();

@@ -1,6 +1,8 @@
 //! What is known of a formulation before its fit: where its search may begin, and which family contains which.
 
-use deltaq::{Answer, CHETAEV, Choice, Contradicted, Pairing, VAKONOMIC, costate_names, costates_of, membership, multipliers_of};
+use deltaq::{
+    Answer, CHETAEV, Choice, Contradicted, Pairing, VAKONOMIC, costate_names, costates_of, membership, multipliers_of,
+};
 use scene::Scene;
 
 use crate::question::is_constant;

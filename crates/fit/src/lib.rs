@@ -53,6 +53,7 @@ mod quantity;
 mod question;
 mod residual_tests;
 mod search;
+mod settled;
 mod unknown;
 mod verdict;
 

@@ -27,6 +27,8 @@ pub struct Problem {
     pub(crate) first: usize,
     /// Starts that are known before, beside the first one.
     pub(crate) known: Vec<Vec<f64>>,
+    /// Samples of a beginning by which another formulation excludes this one, and the significance.
+    pub(crate) excluded_by: Option<(usize, f64)>,
     robust: Option<f64>,
     /// `(θ − mean)/deviation` of unknowns that are held.
     held: Vec<f64>,
@@ -74,7 +76,8 @@ impl Problem {
         let value = |unknown: &Unknown| unknown.start.unwrap_or_else(|| value_of(scene, &unknown.name));
         let start = unknowns.iter().map(value).collect();
         let parameters = unknowns.iter().map(|unknown| is_parameter(scene, &unknown.name)).collect();
-        Ok(Problem { parts, unknowns, start, parameters, first: 0, known: Vec::new(), robust: None, held: Vec::new() })
+        let (known, held) = (Vec::new(), Vec::new());
+        Ok(Problem { parts, unknowns, start, parameters, first: 0, known, excluded_by: None, robust: None, held })
     }
 
     /// Residuals above this size count linearly (Huber); 1.345 costs 5 % where errors are normal.

@@ -148,7 +148,7 @@ fn refined(
 }
 
 /// Whether χ² is that of noise, and no test on residuals objects.
-fn fits(problem: &Problem, found: &Minimum) -> bool {
+pub(crate) fn fits(problem: &Problem, found: &Minimum) -> bool {
     let unknowns = problem.unknowns().len();
     let films: Vec<_> = problem.films().collect();
     let content = |residuals: Vec<Residual>| {
@@ -288,6 +288,12 @@ fn within(problem: &Problem, origin: &[f64], theta: &[f64]) -> Vec<f64> {
         origin.iter().zip(theta).map(|(o, x)| o + part * (x - o)).collect()
     };
     (0..HALVINGS).map(at).find(|theta| problem.weighed(theta, false).is_ok()).unwrap_or_else(|| origin.to_vec())
+}
+
+/// The minimum near a start, coarsely.
+pub(crate) fn least_near(problem: &Problem, start: &[f64]) -> Option<Minimum> {
+    let (scale, _) = scales(&mut problem.clone());
+    least(&problem.limited(start, NEAR_STEPS), start, &scale, Stage::Rough).ok()
 }
 
 /// What is fitted.

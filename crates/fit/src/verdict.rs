@@ -102,6 +102,20 @@ pub struct Row {
     pub notes: Vec<String>,
 }
 
+/// What is shown, beside a fit: what ranks at random numbers do not show and the fit does, is open.
+pub(crate) fn beside(shown: Identifiability, fit: Option<&Fit>) -> Identifiability {
+    let Identifiability::Hidden { combinations, order } = &shown else { return shown };
+    let is_shown =
+        |name: &String| fit.is_some_and(|fit| fit.estimates.iter().any(|e| e.name == *name && e.error.is_finite()));
+    match combinations.iter().find(|names| names.iter().all(is_shown)) {
+        None => shown,
+        Some(names) => {
+            let names = names.join(" with ");
+            Identifiability::Open(format!("derivatives to order {order} do not show {names}, and these films do"))
+        }
+    }
+}
+
 /// How far a fit's χ² is above the least, and how many unknowns the other has more.
 pub(crate) fn above(fit: &Fit, least: &Fit) -> (f64, usize) {
     (fit.chi_squared - least.chi_squared, fit.freedom.saturating_sub(least.freedom).max(1))

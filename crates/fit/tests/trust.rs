@@ -174,7 +174,8 @@ fn what_is_cut_is_open() {
     let names = |s: &str| (1..=n).map(|i| s.replace('#', &i.to_string())).collect::<Vec<_>>();
     let coordinates = names("x# = { start = 0 }").join("\n");
     let kinetic = names("x#'^2/2").join(" + ");
-    let springs: Vec<String> = (1..n).map(|i| format!("{}*(x{} - x{i})^2/2", if i == n - 1 { "k" } else { "2" }, i + 1)).collect();
+    let springs: Vec<String> =
+        (1..n).map(|i| format!("{}*(x{} - x{i})^2/2", if i == n - 1 { "k" } else { "2" }, i + 1)).collect();
     let starts = (1..n).map(|i| format!("\"x{i}'\" = {}", if i == 1 { 1 } else { 0 })).collect::<Vec<_>>().join("\n");
     let text = format!(
         "title = \"chain\"\n[parameters]\nk = 3.5\n[coordinates]\n{coordinates}\n[system]\nlagrangian = \"{kinetic} - {}\"\n\

@@ -153,9 +153,8 @@ pub fn judge(scene: &Scene, samples: &Samples, tolerance: f64) -> Result<Judgeme
     let coordinates: Vec<String> = scene.system.coordinates.iter().map(|c| c.name.clone()).collect();
     let mut misfits = misfits(&fine, &balance.parameters, &coordinates);
     let as_little = misfits.first().map_or(0.0, |least| MUCH * least.residual.max(noise));
-    misfits.retain(|m| {
-        numbers.balance > NOISES * noise && MUCH * m.residual < numbers.balance && m.residual <= as_little
-    });
+    misfits
+        .retain(|m| numbers.balance > NOISES * noise && MUCH * m.residual < numbers.balance && m.residual <= as_little);
     let of_the_law = |number: Option<Number>, without: f64| {
         let is_noise = numbers.balance <= NOISES * noise;
         let is_number = |n: &Number| {

@@ -159,7 +159,10 @@ fn a_number_that_is_off_is_named_and_gives_no_number_of_a_law() {
         let Ok(mut motion) = solve_choice(&made, &chosen(&made, CHETAEV), &Settings::default()) else { continue };
         let Ok(found) = judge(&plain, &samples(&mut motion, 4.0), 0.01) else { continue };
         asked += 1;
-        println!("{name} {number}: {:?}, misfits {:?}, ε {:?}, drag {:?}", found.fitting, found.misfits, found.epsilon, found.drag);
+        println!(
+            "{name} {number}: {:?}, misfits {:?}, ε {:?}, drag {:?}",
+            found.fitting, found.misfits, found.epsilon, found.drag
+        );
         for n in [found.epsilon, found.drag].into_iter().flatten() {
             assert!(n.value.abs() <= 3.0 * n.error + 1e-9, "{name} {number}: {n:?}");
         }

@@ -39,7 +39,9 @@ impl SecondVariation {
             SecondVariation::Minimum => "a local minimum of the action, by its conjugate times",
             SecondVariation::Maximum => "a local maximum of the action, by its conjugate times",
             SecondVariation::Conjugate => "no minimum of the action, and no maximum",
-            SecondVariation::Indefinite => "no minimum of the action, and no maximum: Legendre's condition does not hold",
+            SecondVariation::Indefinite => {
+                "no minimum of the action, and no maximum: Legendre's condition does not hold"
+            }
             SecondVariation::AtTheEnd => "conjugate first at its end: whether a minimum is not known",
             SecondVariation::Abnormal => {
                 "an abnormal curve, one for several values of the constants: no statement on a minimum"
@@ -74,7 +76,8 @@ pub(super) fn second_variation(
         return Ok(SecondVariation::Unknown);
     }
     let (start, end) = (motion.start(), motion.end());
-    let near = |time: &ConjugateTime| (AT_THE_END * (end - start)).max(if time.error.is_finite() { time.error } else { 0.0 });
+    let near =
+        |time: &ConjugateTime| (AT_THE_END * (end - start)).max(if time.error.is_finite() { time.error } else { 0.0 });
     let before = times.iter().any(|time| end - time.t > near(time));
     Ok(match (before, times.is_empty() && is_isolated) {
         (true, _) => SecondVariation::Conjugate,
@@ -110,7 +113,8 @@ fn signs(system: &System, motion: &mut Motion) -> Result<[bool; 2], SolveError> 
         // AᵀA has the kernel of A, and all its directions
         let held = (a.transpose() * &a).symmetric_eigen();
         let largest = held.eigenvalues.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
-        let free: Vec<usize> = (0..n).filter(|&i| held.eigenvalues[i] <= NONE * largest.max(f64::MIN_POSITIVE)).collect();
+        let free: Vec<usize> =
+            (0..n).filter(|&i| held.eigenvalues[i] <= NONE * largest.max(f64::MIN_POSITIVE)).collect();
         let basis = held.eigenvectors.select_columns(&free);
         let restricted = basis.transpose() * w * &basis;
         let values = restricted.symmetric_eigenvalues();
