@@ -1,7 +1,7 @@
 //! `deltaq connect`: motions between two points.
 
 use anyhow::Result;
-use deltaq::{Aim, Connection, Connections, Settings, connect};
+use deltaq::{Aim, Connection, Connections, SecondVariation, Settings, connect};
 use scene::Scene;
 use serde_json::{Map, Value, json};
 
@@ -26,7 +26,7 @@ pub(crate) fn run(arguments: &ConnectArguments) -> Result<Answer> {
     };
     let found = connect(&scene, &choice, &aim, &settings)?;
     let name = choice.formulation.name;
-    let complaint = found.found.is_empty().then(|| {
+    let complaint = (found.found.is_empty() && found.none.is_none()).then(|| {
         format!("no {name} motion found from {} starts: try more --starts, another --at or a first guess", aim.starts)
     });
     let text = match arguments.format {
@@ -59,10 +59,17 @@ fn text(scene: &Scene, formulation: &str, aim: &Aim, found: &Connections) -> Str
         found.runs[0],
         found.runs[1]
     );
+    if let Some(none) = &found.none {
+        return text + &format!("there is none: {none}\n");
+    }
+    if found.every_constant {
+        text += "the constraints are integrable: every mu0 gives the same motions\n";
+    }
     for (reason, starts) in &found.failures {
         text += &format!("{starts} led nowhere: {reason}\n");
     }
-    if !found.found.is_empty() && found.found.iter().all(|motion| motion.is_minimum == Some(false)) {
+    let is_neither = |motion: &Connection| motion.is_minimum == Some(false);
+    if !found.found.is_empty() && found.found.iter().all(is_neither) {
         text += "none of them is a local minimum of the action: if there is one, it was not found\n";
     }
     for (motion, number) in found.found.iter().zip(1..).take(PRINTED) {
@@ -79,17 +86,15 @@ fn one(number: usize, motion: &Connection, found: &Connections, aim: &Aim) -> St
     let [action, error] = motion.action;
     let starts = if motion.starts == 1 { "1 start".into() } else { format!("{} starts", motion.starts) };
     let mut text = format!("{number}. action {action:.9} (quadrature {error:.0e}), from {starts}: ");
-    text += match (motion.is_minimum, &motion.conjugate) {
-        (Some(true), _) => "a local minimum of the action, by its conjugate times\n",
-        (Some(false), Some(times)) if times.is_empty() => "whether a minimum is not known\n",
-        (Some(false), _) => "no minimum of the action\n",
-        (None, _) => "no statement on a minimum\n",
-    };
+    text += &format!("{}\n", motion.second_variation.words());
     for ((name, x), error) in found.unknowns.iter().zip(&motion.unknowns).zip(&motion.errors) {
         text += &format!("   {name:<8} {x:>18.12}  ± {error:.0e}\n");
     }
     let misses = aim.to.iter().zip(&motion.residuals).map(|((name, _), r)| format!("{name} {r:.0e}"));
     text += &format!("   misses the end by {}\n", misses.collect::<Vec<_>>().join(", "));
+    if motion.second_variation == SecondVariation::Abnormal {
+        return text;
+    }
     if !motion.is_isolated() {
         text += &format!(
             "   not isolated: condition number of the end by the unknowns {:.0e}; it may be one of a family\n",
@@ -137,6 +142,7 @@ fn json_of(scene: &Scene, formulation: &str, aim: &Aim, found: &Connections) -> 
             "isolated": motion.is_isolated(),
             "conjugate_times": times,
             "minimum": motion.is_minimum,
+            "second_variation": motion.second_variation.words(),
             "starts": motion.starts,
         })
     };
@@ -150,6 +156,8 @@ fn json_of(scene: &Scene, formulation: &str, aim: &Aim, found: &Connections) -> 
         "starts": aim.starts,
         "motions": found.found.iter().map(motion).collect::<Vec<_>>(),
         "failures": found.failures.iter().map(|(why, starts)| json!({ "why": why, "starts": starts })).collect::<Vec<_>>(),
+        "every_constant": found.every_constant,
+        "none": found.none,
         "runs": found.runs[0],
         "with_derivatives": found.runs[1],
     })

@@ -2,11 +2,11 @@
 
 use std::fmt::Write;
 
-use anyhow::{Context, Result, bail};
+use anyhow::{Context, Error, Result, bail};
 use deltaq::Settings;
 use fit::{
-    Deviations, Estimate, Film, Fit, Question, ROBUST, Row, Verdict, fit_formulations, fit_value, formulations,
-    quantity,
+    Deviations, Estimate, Film, Fit, FitError, Question, ROBUST, Row, Verdict, fit_formulations, fit_value,
+    formulations, quantity,
 };
 use program::{Answer, TextOrJson, parallel, pretty, write_all};
 use scene::table_text;
@@ -40,7 +40,7 @@ pub fn run(arguments: &FitArguments) -> Result<Answer> {
     };
     question.settings.check()?;
     let wanted = formulations(&arguments.formulations)?;
-    let rows = fit_formulations(&scene, &films, &question, &wanted)?;
+    let rows = fit_formulations(&scene, &mut films, &question, &wanted).map_err(plain)?;
     if rows.is_empty() {
         bail!("the scene has none of these formulations");
     }
@@ -54,6 +54,14 @@ pub fn run(arguments: &FitArguments) -> Result<Answer> {
         TextOrJson::Json => pretty("fit", &fit_value(&scene, &films, &rows)),
     };
     Ok(Answer { text, complaint })
+}
+
+/// A contradiction has an exit code of its own.
+fn plain(error: FitError) -> Error {
+    match error {
+        FitError::Contradicted(found) => found.into(),
+        error => error.into(),
+    }
 }
 
 /// `psi'@2=6`: the film from 0, name and value.
@@ -80,9 +88,18 @@ fn text(films: &[Film], rows: &[Row]) -> String {
         let left_out = film.left_out.join(", ");
         let left_out = if left_out.is_empty() { left_out } else { format!("; not looked at: {left_out}") };
         let _ = writeln!(text, "{}: {} samples, {} numbers{gaps}{left_out}", film.name, film.t.len(), film.count());
+        let estimated = film.columns.iter().filter(|column| column.estimated);
+        let estimated: Vec<String> = estimated.map(|c| format!("{} ± {:.2e}", c.name, c.sigma)).collect();
+        if !estimated.is_empty() {
+            let estimated = estimated.join(", ");
+            let _ = writeln!(text, "  {estimated}, as the best formulation leaves: χ² does not test it");
+        }
     }
     for row in rows {
         let _ = writeln!(text, "\n{}: {}", row.choice.label, row.verdict.words());
+        for note in &row.notes {
+            let _ = writeln!(text, "  {note}");
+        }
         if let Some(shown) = &row.shown {
             let _ = writeln!(text, "  {}", shown.words());
         }

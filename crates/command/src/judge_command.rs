@@ -84,7 +84,21 @@ fn table(file: &str, j: &Judgement) -> String {
     for (name, what, number) in numbers(j) {
         let _ = match number {
             Some(Number { value, error }) => writeln!(text, "  {name:<14} {value:>13.6e} ± {error:.1e}  ({what})"),
-            None => writeln!(text, "  {name:<14} is not seen in this motion  ({what})"),
+            None => writeln!(text, "  {name:<14} is no number that this motion shows  ({what})"),
+        };
+    }
+    for misfit in &j.misfits {
+        let Number { value, error } = misfit.by;
+        let (name, left) = (&misfit.name, misfit.residual / j.scale);
+        let _ = match name.starts_with("force") {
+            true => writeln!(text, "  misfit: with a {name} of {value:.4e} ± {error:.1e} chetaev leaves {left:.3e}"),
+            false => {
+                let (part, error) = (1.0 + value, error);
+                writeln!(
+                    text,
+                    "  misfit: with {part:.6} ± {error:.1e} times the scene's {name} chetaev leaves {left:.3e}"
+                )
+            }
         };
     }
     for (i, (largest, rms, parts)) in j.constraints.iter().enumerate() {
@@ -107,6 +121,9 @@ fn value(file: &str, j: &Judgement) -> Value {
         "file": file, "samples": j.samples, "step": j.step,
         "law": j.law().map(|l| l.name()), "fitting": j.fitting.iter().map(|l| l.name()).collect::<Vec<_>>(),
         "laws": laws.collect::<Vec<_>>(), "scale": j.scale, "noise": j.noise, "numbers": found,
+        "misfits": j.misfits.iter().map(|m| {
+            json!({ "name": m.name, "value": m.by.value, "error": m.by.error, "residual": m.residual })
+        }).collect::<Vec<_>>(),
         "constraints": constraints.collect::<Vec<_>>(), "drifts": drifts.collect::<Vec<_>>(),
     })
 }

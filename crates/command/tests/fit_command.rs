@@ -15,7 +15,7 @@ fn run(arguments: &[&str]) -> Output {
 
 #[test]
 fn a_sledge_is_chetaevs() {
-    let fit = ["fit", "sledge", FILM, "--free", FREE, "--sigma", "1mm"];
+    let fit = ["fit", "sledge", FILM, "--free", FREE, "--sigma", "1e-3"];
     let found = run(&[&fit[..], &["--law", "eps", "--format", "json"]].concat());
     assert_eq!(found.status.code(), Some(0), "{}", String::from_utf8_lossy(&found.stderr));
     let answer: Value = serde_json::from_slice(&found.stdout).unwrap();
@@ -31,10 +31,15 @@ fn a_sledge_is_chetaevs() {
     for said in ["Chetaev: supported", "vakonomic: excluded at", "residuals are those of noise", "one minimum"] {
         assert!(text.contains(said), "{text}");
     }
-    // ten times the deviation that the film has
-    let found = run(&["fit", "sledge", FILM, "--free", FREE, "--sigma", "1cm", "--starts", "1"]);
+    // a third of the deviation that the film has
+    let found = run(&["fit", "sledge", FILM, "--free", FREE, "--sigma", "3e-4", "--starts", "1"]);
     assert_eq!(found.status.code(), Some(3));
     assert!(String::from_utf8_lossy(&found.stderr).contains("no verdict"));
+    // one that is too large makes an exclusion weaker, and one that is not known is estimated
+    let text = String::from_utf8(run(&["fit", "sledge", FILM, "--free", FREE, "--sigma", "2e-3"]).stdout).unwrap();
+    assert!(text.contains("Chetaev: supported") && text.contains("vakonomic: excluded at over 100 σ"), "{text}");
+    let text = String::from_utf8(run(&["fit", "sledge", FILM, "--free", FREE, "--sigma", "free"]).stdout).unwrap();
+    assert!(text.contains("as the best formulation leaves") && text.contains("Chetaev: supported"), "{text}");
 }
 
 #[test]

@@ -55,7 +55,7 @@ fn a_million_rows_are_answered_or_refused_in_two_gigabytes() {
     assert!(code == Some(0) && written > 300_000_000, "{code:?}, {written}: {stderr}");
     let (code, _, stderr) = limited("judge sledge motion.csv");
     assert!(code == Some(2) && stderr.contains("there are 1000000 samples, and of this scene at most"), "{stderr}");
-    let (code, _, stderr) = limited("fit sledge motion.csv --free x,y --sigma 1mm");
+    let (code, _, stderr) = limited("fit sledge motion.csv --free x,y --sigma 1e-3");
     let said = "the films have 6000000 numbers, and at most 300000 are fitted";
     assert!(code == Some(2) && stderr.contains(said), "{stderr}");
     let members = "ensemble sledge -f chetaev --quiet --set duration=0.01 --times 0:0.01:1000 --vary g=1:2:";

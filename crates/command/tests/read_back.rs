@@ -42,7 +42,8 @@ fn a_motion_is_read_as_it_was_written() {
         let judged: Value = serde_json::from_str(&told.0).expect("JSON");
         assert_eq!(judged["motions"][0]["samples"], 35);
         // multipliers, errors and derivatives are no film; the rest is
-        let fit = ["fit", &own, &motion, "--free", "g", "--sigma", "1mm", "--starts", "1", "--formulations", "chetaev"];
+        let fit =
+            ["fit", &own, &motion, "--free", "g", "--sigma", "1e-3", "--starts", "1", "--formulations", "chetaev"];
         let (told, _) = answer(&fit, 3);
         let numbers = 41 * (6 + NAMES.len());
         assert!(told.contains(&format!("41 samples, {numbers} numbers; not looked at: ")), "{told}");

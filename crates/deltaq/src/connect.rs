@@ -14,13 +14,20 @@
 //! motions, of different action; what was found is all that is known.
 //!
 //! A time t is conjugate to t₀ if `det ∂q(t)/∂x = 0`: neighbouring motions from q(t₀) meet there to first
-//! order. A vakonomic motion without one before t₁ or at it is a local minimum of the action for L convex in
-//! the velocities that the constraints allow (Jacobi); with one before t₁ it is none. Many a motion has
-//! several.
+//! order. With `W = ∂²(L + μ·f)/∂v²` positive on ker A along a vakonomic motion (Legendre) and none up to t₁ it is
+//! a local minimum of the action (Jacobi), with W negative a maximum; with one before t₁, or W indefinite, it is
+//! neither; with the first at t₁ nothing is said. Nothing is said of a curve that is a motion for several μ₀: it has
+//! an abnormal lift.
+//!
+//! Where the constraints are integrable every μ₀ gives the same motion, and none is unknown: the coordinates that
+//! belong to v_free are aimed at, the others follow, or the end is on another leaf, which no motion reaches.
 
 mod action;
 mod conjugate;
+mod curves;
 mod guesses;
+mod leaf;
+mod second_variation;
 mod two_point;
 mod velocities;
 
@@ -32,10 +39,13 @@ use scene::Scene;
 
 use crate::carried::{Carried, Which};
 use crate::constants::constant_names;
-use crate::{Choice, Metric, Motion, Settings, SolveError, TIGHTER, VAKONOMIC, over_threads, solve_choice};
+use crate::{Choice, Motion, Settings, SolveError, TIGHTER, VAKONOMIC, over_threads, solve_choice};
 use action::action;
 pub use conjugate::{ConjugateTime, samples, times};
+use curves::{Exact, one_per_curve};
 pub use guesses::spread;
+pub use second_variation::SecondVariation;
+use second_variation::second_variation;
 use two_point::TwoPoint;
 
 /// Where a motion is to end.
@@ -64,6 +74,10 @@ pub struct Connections {
     pub failures: Vec<(String, usize)>,
     /// Motions integrated in the search, and how many of them with derivatives.
     pub runs: [usize; 2],
+    /// Whether every constant gives the same motion.
+    pub every_constant: bool,
+    /// Why there is no motion at all.
+    pub none: Option<String>,
 }
 
 /// A motion from `q(t₀)` to `q(t₁)`.
@@ -84,8 +98,9 @@ pub struct Connection {
     pub residuals: Vec<f64>,
     /// The times conjugate to t₀, rising; `None` where `det ∂q(t)/∂x` vanishes at all times.
     pub conjugate: Option<Vec<ConjugateTime>>,
-    /// Whether the action has a local minimum, as far as conjugate times tell; `None` where the action is not
-    /// stationary, or L not convex.
+    /// What the second variation of the action says.
+    pub second_variation: SecondVariation,
+    /// Whether the action has a local minimum; `None` where that is not known.
     pub is_minimum: Option<bool>,
     /// How many starts led here.
     pub starts: usize,
@@ -100,6 +115,8 @@ impl Connection {
 
 /// Condition number above which a motion counts as not isolated.
 const ISOLATED: f64 = 1e8;
+/// Constants move the end by less than this part of what all unknowns do where a curve has them all.
+const ABNORMAL: f64 = 1e-8;
 /// Tolerance of the runs of a search, and of what it misses; the latter also of the final one, over its
 /// tolerance.
 const SEARCH: f64 = 1e-8;
@@ -140,6 +157,15 @@ const ONE: [f64; 2] = [1e-4, 1e-6];
 /// time or value that makes no sense; [`SolveError::Interrupted`]; as [`crate::Varying::new`].
 pub fn connect(scene: &Scene, choice: &Choice, aim: &Aim, settings: &Settings) -> Result<Connections, SolveError> {
     let problem = TwoPoint::new(scene, choice, aim, settings)?;
+    let every_constant = problem.every_constant;
+    let all = [&problem.goal[..], &problem.others].concat();
+    if all.len() == scene.system.dimension() {
+        let end: Vec<f64> = (0..all.len()).filter_map(|i| all.iter().find(|(j, _)| *j == i)).map(|(_, q)| *q).collect();
+        if let none @ Some(_) = leaf::other_leaf(&scene.system, &scene.start, &end)? {
+            let (found, failures) = (Vec::new(), Vec::new());
+            return Ok(Connections { unknowns: problem.names, found, failures, runs: [0, 0], every_constant, none });
+        }
+    }
     let coarse = Settings { tolerance: SEARCH / TIGHTER, max_steps: STEPS.min(settings.max_steps), ..settings.clone() };
     let guesses = guesses::guesses(&problem, aim.starts)?;
     let problem = Mutex::new(problem.scaled(&guesses.units, &guesses.sizes));
@@ -175,11 +201,18 @@ pub fn connect(scene: &Scene, choice: &Choice, aim: &Aim, settings: &Settings) -
         }
     }
     let mut problem = problem.into_inner().unwrap_or_else(PoisonError::into_inner);
-    let completed = exact.iter().map(|(x, starts)| complete(&mut problem, (scene, choice), x, *starts, settings));
-    let mut found = completed.collect::<Result<Vec<_>, _>>()?;
+    let exact = one_per_curve(exact, &mut problem);
+    let completed = exact.iter().map(|exact| complete(&mut problem, (scene, choice), exact, settings));
+    let (mut found, others): (Vec<Connection>, Vec<Connection>) = completed
+        .collect::<Result<Vec<_>, _>>()?
+        .into_iter()
+        .partition(|motion| !every_constant || motion.residuals.iter().all(|r| r.abs() < ONE[0]));
+    for other in others {
+        count(&mut failures, "the motion ends at another place of the leaf".into(), other.starts);
+    }
     found.sort_by(|a, b| a.action[0].total_cmp(&b.action[0]));
     failures.sort_by(|a, b| b.1.cmp(&a.1).then_with(|| a.0.cmp(&b.0)));
-    Ok(Connections { unknowns: problem.names, found, failures, runs })
+    Ok(Connections { unknowns: problem.names, found, failures, runs, every_constant, none: None })
 }
 
 /// What a guess leads to, with the runs that it took.
@@ -266,8 +299,7 @@ fn reason(error: &BoundaryError) -> String {
 fn complete(
     problem: &mut TwoPoint,
     (scene, choice): (&Scene, &Choice),
-    unknowns: &[f64],
-    starts: usize,
+    (unknowns, starts, several): &Exact,
     settings: &Settings,
 ) -> Result<Connection, SolveError> {
     let x = problem.in_units(unknowns);
@@ -277,7 +309,13 @@ fn complete(
     let given = Choice { constants: ConstantsRule::Given(constants), ..choice.clone() };
     let mut motion = solve_choice(&own, &given, &Settings { times: None, ..settings.clone() })?;
     let reached = motion.at(motion.end())?.coordinates;
-    let residuals: Vec<f64> = problem.goal.iter().map(|&(i, q)| reached[i] - q).collect();
+    let aimed = [&problem.goal[..], &problem.others].concat();
+    let miss = |name: &String| {
+        let place = scene.system.coordinates.iter().position(|c| c.name == *name);
+        let goal = aimed.iter().find(|(i, _)| Some(*i) == place);
+        goal.map_or(f64::NAN, |&(i, q)| reached[i] - q)
+    };
+    let residuals: Vec<f64> = problem.aim.to.iter().map(|(name, _)| miss(name)).collect();
     problem.settings = settings.clone();
     problem.set(&x)?;
     let along = problem.directions(&x)?;
@@ -287,7 +325,10 @@ fn complete(
         let prepared = problem.varying.prepared_mut();
         let mut carried = Carried::run(prepared, &along, end, &options, which)?;
         let samples = conjugate::samples(start.t, end, &carried.step_times());
-        let times = conjugate::times(&mut |t| problem.matrix_at(&mut carried, t), &samples)?;
+        let times = match several {
+            true => None,
+            false => conjugate::times(&mut |t| problem.matrix_at(&mut carried, t), &samples)?,
+        };
         let (outputs, derivatives) = carried.at(problem.varying.prepared_mut(), end)?;
         both.push((times, outputs, problem.matrix(&derivatives)));
     }
@@ -296,9 +337,8 @@ fn complete(
     let misses: Vec<f64> = problem
         .goal
         .iter()
-        .zip(&residuals)
         .zip(&problem.sizes)
-        .map(|((&(i, _), r), size)| ((kept.coordinates[i] - looser.coordinates[i]).abs() + r.abs()) / size)
+        .map(|(&(i, q), size)| ((kept.coordinates[i] - looser.coordinates[i]).abs() + (reached[i] - q).abs()) / size)
         .collect();
     let condition = conjugate::condition(matrix);
     let inverse = matrix.clone().try_inverse();
@@ -311,9 +351,16 @@ fn complete(
     });
     let is_stationary =
         (choice.formulation == VAKONOMIC || scene.system.constraints.is_empty()) && !scene.system.has_forces();
-    let is_convex = !Metric::new(&scene.system)?.inertia(start.t, &start.q, &start.v).1;
-    let is_minimum =
-        conjugate.as_ref().filter(|_| is_stationary && is_convex).map(|times| times.is_empty() && condition < ISOLATED);
+    let kernel_of_constants = || {
+        let free = problem.velocities.free.len();
+        let columns = (free..x.len()).filter(|&j| matrix.column(j).norm() <= ABNORMAL * matrix.norm()).count();
+        conjugate.is_none() && columns > 0
+    };
+    let second_variation = match is_stationary {
+        false => SecondVariation::Unknown,
+        true if *several || kernel_of_constants() => SecondVariation::Abnormal,
+        true => second_variation(&scene.system, &mut motion, conjugate.as_deref(), condition < ISOLATED)?,
+    };
     Ok(Connection {
         errors: errors.collect(),
         condition,
@@ -321,8 +368,9 @@ fn complete(
         motion,
         residuals,
         conjugate,
-        is_minimum,
-        starts,
+        second_variation,
+        is_minimum: second_variation.is_minimum(),
+        starts: *starts,
         unknowns: x,
         start,
     })

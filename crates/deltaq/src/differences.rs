@@ -25,7 +25,8 @@ const ORDER_6: [f64; 4] = [3.0 / 4.0, -3.0 / 20.0, 1.0 / 60.0, 0.0];
 /// Weights of a kink.
 const KINK: [f64; 4] = [14.0 / 5.0, -7.0 / 5.0, 2.0 / 5.0, -1.0 / 20.0];
 /// Distances over the size of the number.
-const DISTANCES: [f64; 5] = [0.0625, 0.015625, 0.00390625, 0.0009765625, 0.000244140625];
+const DISTANCES: [f64; 7] =
+    [0.0625, 0.015625, 0.00390625, 0.0009765625, 0.000244140625, 0.00006103515625, 0.0000152587890625];
 /// Error of a derivative over the largest one that is accepted.
 const LIMIT: f64 = 1e-10;
 /// With an error like this, of what is linear, no other distance is tried.

@@ -132,7 +132,7 @@ pub use choice::{
 };
 pub use code::code;
 pub use comparison::{Comparison, Extent, compare, compare_unfitted};
-pub use connect::{Aim, CONNECT_STARTS, ConjugateTime, Connection, Connections, connect};
+pub use connect::{Aim, CONNECT_STARTS, ConjugateTime, Connection, Connections, SecondVariation, connect};
 pub use constants::{constant_names, prepare};
 pub use contradiction::{Contradicted, Contradiction, holds_beside_numbers};
 pub use costates::{costate_names, given_costates, is_costate};

@@ -196,6 +196,18 @@ impl<'a> Pairing<'a> {
         is_exact.then_some("the constraints are integrable")
     }
 
+    /// The constants of least mismatch of accelerations up to `end`, in floating point: those that give the
+    /// motion, if any do, or else a first guess at those of the motion nearest to it.
+    ///
+    /// # Errors
+    /// [`SolveError::Decision`] where the motion cannot be followed.
+    pub fn nearest(&self, end: f64) -> Result<Vec<f64>, SolveError> {
+        let (system, start) = (&self.scene.system, &self.scene.start);
+        let flow = Question::new(system, &self.curve, &self.constants, &self.family)?.flow(system, start, end);
+        let settings = DecisionSettings { refuted: true, ..DecisionSettings::default() };
+        Ok(decide_flow(&self.family, &flow, &settings)?.set.point)
+    }
+
     /// The certificate that no constants do from the scene's start, or from one drawn at random and so from
     /// almost every one, for others to check; the reason in words where there is none.
     ///

@@ -2,7 +2,9 @@
 
 use crate::collocation::{Rates, flow, two_points};
 use crate::support::{built_in, choice};
-use deltaq::{Aim, CHETAEV, Choice, Connections, REMOVED_CONSTRAINT, Settings, SolveError, VAKONOMIC, connect};
+use deltaq::{
+    Aim, CHETAEV, Choice, Connections, REMOVED_CONSTRAINT, SecondVariation, Settings, SolveError, VAKONOMIC, connect,
+};
 use equations::Formulation;
 use integrate::Interrupt;
 use mechanics::ConstantsRule;
@@ -96,7 +98,8 @@ fn one_of_a_family_is_said_to_be_one() {
     let circle = all.found.iter().find(|motion| (motion.unknowns[2] * t - std::f64::consts::TAU).abs() < 1e-3);
     let circle = circle.expect("a circle");
     assert!(!circle.is_isolated(), "{:e}", circle.condition);
-    assert_eq!(circle.is_minimum, Some(false));
+    // conjugate at its end, not before it
+    assert_eq!((circle.second_variation, circle.is_minimum), (SecondVariation::AtTheEnd, None));
 }
 
 /// `x, y, φ` and their momenta: μ = p_y cos φ − p_x sin φ, speed u = p_x cos φ + p_y sin φ, ṗ_φ = −μu.
@@ -257,14 +260,66 @@ fn what_makes_no_sense_is_refused() {
     assert!(matches!(refused(&aim(&whole, 8.0, 4), &settings), SolveError::Interrupted { .. }));
 }
 
-/// Where constraints can be integrated multipliers move nothing, and the end is no matter of choice.
+/// Where constraints can be integrated multipliers move nothing, and ends beside the leaf are not reached.
 #[test]
-fn what_does_not_determine_the_end_finds_nothing_and_says_why() {
+fn an_end_on_another_leaf_is_said_to_have_no_motion() {
     let text = "title = \"Bead\"\n[coordinates]\nx = { start = 0 }\ny = { start = 0 }\n[system]\n\
                 lagrangian = \"(x'^2 + y'^2)/2\"\nconstraints = [\"y' - x'\"]\n[start.velocities]\n\"x'\" = 1\n[run]\nduration = 1\n";
     let scene = Scene::parse("bead", text).expect("a scene");
     let goal = aim(&[("x", 1.0), ("y", 2.0)], 1.0, 4);
     let all = connect(&scene, &choice(&scene, VAKONOMIC), &goal, &Settings::default()).expect("a search");
     assert!(all.found.is_empty());
-    assert_eq!(all.failures, [("the unknowns do not determine the end".to_string(), 4)]);
+    // y − x is another by one
+    assert!(all.none.as_deref().is_some_and(|why| why.contains("1.000000")), "{:?}", all.none);
+}
+
+fn found_in(text: &str, aim: &Aim) -> deltaq::Connections {
+    let scene = Scene::parse("scene", text).unwrap_or_else(|error| panic!("{error}"));
+    let choice = choice(&scene, VAKONOMIC);
+    connect(&scene, &choice, aim, &Settings::default()).unwrap_or_else(|error| panic!("{error}"))
+}
+
+const MARTINET: &str = "title = \"Martinet\"\n[coordinates]\nx = { start = 0 }\ny = { start = 0 }\nz = { start = 0 }\n\
+    [system]\nlagrangian = \"(x'^2 + y'^2)/2\"\nconstraints = [\"z' - x^2*y'/2\"]\n[start.velocities]\n\"x'\" = 0.5\n\
+    \"y'\" = 0.2\n[run]\nduration = 2\n";
+
+/// The straight line on x = 0 of the flat Martinet plane is a motion for every μ₀, and the shortest: it is one
+/// curve, and conjugate times say nothing of it.
+#[test]
+fn an_abnormal_curve_is_one_and_has_no_statement() {
+    let all = found_in(MARTINET, &aim(&[("x", 0.0), ("y", 1.0), ("z", 0.0)], 2.0, 8));
+    let lines: Vec<_> = all.found.iter().filter(|motion| (motion.action[0] - 0.25).abs() < 1e-6).collect();
+    let [line] = &lines[..] else { panic!("{} lines", lines.len()) };
+    assert_eq!((line.second_variation, line.is_minimum), (SecondVariation::Abnormal, None));
+    assert!(line.conjugate.is_none() && line.starts >= 2, "{}", line.starts);
+}
+
+/// A chain that hangs: f = v² − c², and `∂²(L + μ f)/∂v² = 1 + 2μ` along it is negative: the action, its
+/// potential energy turned round, has a maximum.
+#[test]
+fn a_hanging_chain_is_a_maximum() {
+    let text = "title = \"Chain\"\n[parameters]\ng = 1.0\nc = 1.5\n[coordinates]\nx = { start = 0 }\ny = { start = 0 }\n\
+        [system]\nlagrangian = \"(x'^2+y'^2)/2 - g*y\"\nconstraints = [\"x'^2+y'^2-c^2\"]\n[start]\n\
+        guess = { \"y'\" = -1 }\n[start.velocities]\n\"x'\" = 1.0\n[run]\nduration = 1\n";
+    let all = found_in(text, &aim(&[("x", 1.0), ("y", 0.0)], 1.0, 60));
+    let [chain] = &all.found[..] else { panic!("{} motions", all.found.len()) };
+    assert_eq!((chain.second_variation, chain.is_minimum), (SecondVariation::Maximum, Some(false)));
+    // y = a cosh((x − 1/2)/a) + const of length c: 2 a sinh(1/(2a)) = c, and x' = c/cosh at the start
+    let a = root(|a: f64| 2.0 * a * (0.5 / a).sinh() - 1.5, [0.2, 1.0]);
+    assert!((chain.unknowns[0] - 1.5 / (0.5 / a).cosh()).abs() < 1e-10, "{}", chain.unknowns[0]);
+}
+
+/// A pendulum by a velocity constraint, x x' + y y' = 0: on its circle every μ₀ does, off it there is no motion.
+#[test]
+fn ends_are_on_the_leaf_of_the_start_or_there_is_no_motion() {
+    let text = "title = \"Pendulum\"\n[coordinates]\nx = { start = 0 }\ny = { start = -1 }\n[system]\n\
+        lagrangian = \"(x'^2+y'^2)/2 - y\"\nconstraints = [\"x*x'+y*y'\"]\n[start.velocities]\n\"x'\" = 0.5\n[run]\n\
+        duration = 2\n";
+    let on = found_in(text, &aim(&[("x", 0.8), ("y", -0.6)], 1.0, 12));
+    let [motion] = &on.found[..] else { panic!("{} motions", on.found.len()) };
+    assert!(on.every_constant && on.unknowns == ["x'"] && motion.residuals.iter().all(|r| r.abs() < 1e-10));
+    assert_eq!(motion.is_minimum, Some(true));
+    let off = found_in(text, &aim(&[("x", 0.5), ("y", 0.5)], 1.0, 12));
+    // (x² + y²)/2 is 1/2 at the start and 1/4 there
+    assert!(off.found.is_empty() && off.none.as_deref().is_some_and(|why| why.contains("-0.250000")), "{:?}", off.none);
 }

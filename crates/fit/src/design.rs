@@ -17,7 +17,8 @@ use deltaq::{CHETAEV, Choice, choices_among};
 use equations::Formulation;
 use scene::Scene;
 
-use crate::question::{LAW, is_constant, is_of_a_law, problem_of};
+use crate::known::beside_chetaev;
+use crate::question::{LAW, has_constants, is_constant, is_of_a_law, problem_of};
 use crate::search::search;
 use crate::{EXCLUDED, Film, FitError, Problem, Question, Unknown, quantity, standard_errors};
 
@@ -66,7 +67,10 @@ pub enum Aim {
 #[derive(Clone)]
 pub struct Design {
     aim: Aim,
-    /// Labels of the formulations.
+    scene: Scene,
+    /// The formulations.
+    choices: Vec<Choice>,
+    /// Their labels.
     labels: Vec<String>,
     truth: Side,
     /// The wrong formulation, which the films have to exclude.
@@ -229,8 +233,20 @@ impl Design {
         });
         let ends = films.iter().filter_map(|film| film.t.last());
         let length = ends.fold(0.0, |length: f64, end| length.max(end - scene.start.t));
-        let labels = choices.into_iter().map(|choice| choice.label).collect();
-        Ok(Design { aim: aim.clone(), labels, truth, rival, unknown, chosen, starts: question.starts, length })
+        let labels = choices.iter().map(|choice| choice.label.clone()).collect();
+        let scene = scene.clone();
+        Ok(Design {
+            aim: aim.clone(),
+            scene,
+            choices,
+            labels,
+            truth,
+            rival,
+            unknown,
+            chosen,
+            starts: question.starts,
+            length,
+        })
     }
 
     /// What films are to show.
@@ -275,6 +291,14 @@ impl Design {
         let films = films.map_err(|reason| FitError::NoMotion { starts: 1, reason })?;
         let mut problem = rival.at(d).of_films(films)?;
         near.into_iter().for_each(|near| problem.begin_at(near));
+        if let [truth, rival] = &self.choices[..]
+            && *truth.formulation == *CHETAEV
+            && has_constants(rival)
+        {
+            let labels = self.truth.problem.unknowns().iter().map(Unknown::label);
+            let numbers = labels.zip(self.truth.theta(d)).collect();
+            problem.known = beside_chetaev(&self.scene, rival, &problem, (&self.truth.problem, truth, &numbers));
+        }
         let spread = |name: &str| is_constant(name) || is_of_a_law(name);
         let found = search(&problem, &spread, starts, false)?;
         let labels = problem.unknowns().iter().map(Unknown::label);

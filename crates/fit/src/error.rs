@@ -1,6 +1,6 @@
 //! Why there is no fit.
 
-use deltaq::SolveError;
+use deltaq::{Contradicted, SolveError};
 use scene::TableError;
 use symbolic::CompileError;
 
@@ -45,6 +45,12 @@ pub enum FitError {
     /// A quantity cannot be read.
     #[error("`{text}` is no number with a unit; units are {units}")]
     Quantity { text: String, units: String },
+    /// A unit and the label of the scene are of different kinds.
+    #[error(
+        "`{column}` is said to be in {unit}, and the scene says {label}: give the numbers in the units of the scene, \
+         without a unit, or a standard deviation of its own"
+    )]
+    Unit { column: String, unit: String, label: String },
     /// An unknown cannot be read.
     #[error("`{text}` is no unknown: {reason}")]
     Unknown { text: String, reason: String },
@@ -69,6 +75,12 @@ pub enum FitError {
     /// The two formulations to be told apart are the same.
     #[error("films are to tell two formulations apart, and both are {0}")]
     ToldFromItself(&'static str),
+    /// A standard deviation is estimated from a film that is made already.
+    #[error("a film that is not yet made has no standard deviations that could be estimated: give `{0}` one")]
+    NothingToEstimate(String),
+    /// Proof and fits contradict each other.
+    #[error(transparent)]
+    Contradicted(#[from] Contradicted),
     /// All unknowns change nothing.
     #[error("the films show none of the unknowns")]
     ShowsNothing,

@@ -4,7 +4,7 @@ use scene::{Scene, Table};
 use symbolic::Expr;
 
 use crate::FitError;
-use crate::quantity::{quantity, unit};
+use crate::quantity::{split, unit_of};
 
 /// A column of a film.
 #[derive(Clone, Debug, PartialEq)]
@@ -13,6 +13,8 @@ pub struct Column {
     pub name: String,
     /// Standard deviation of its errors, positive.
     pub sigma: f64,
+    /// Whether that is estimated from what the best formulation leaves: then it is a first guess here.
+    pub estimated: bool,
 }
 
 /// A film of one motion of a scene.
@@ -41,28 +43,55 @@ pub struct Deviations {
     pub by_name: Vec<(String, f64)>,
     /// Of the others.
     pub others: Option<f64>,
+    /// Those that are written with a unit, `1mm`, by the name of a column or of all others.
+    pub with_units: Vec<(Option<String>, String)>,
+    /// Whether columns that have none are estimated.
+    pub free: bool,
 }
 
+/// What stands for a standard deviation that is estimated.
+const FREE: &str = "free";
+
 impl Deviations {
-    /// From `0.5mm` of all columns that have no other, `x=0.5mm` of one.
+    /// From `0.5mm` of all columns that have no other, `x=0.5mm` of one; `free` for those to be estimated.
     ///
     /// # Errors
     /// [`FitError::Quantity`].
     pub fn written(list: &[String]) -> Result<Deviations, FitError> {
         let mut deviations = Deviations::default();
         for text in list {
-            match text.split_once('=') {
-                Some((name, sigma)) => deviations.by_name.push((name.trim().into(), quantity(sigma)?)),
-                None => deviations.others = Some(quantity(text)?),
+            let (name, sigma) =
+                text.split_once('=').map_or((None, &text[..]), |(name, sigma)| (Some(name.trim()), sigma));
+            if name.is_none() && sigma.trim() == FREE {
+                deviations.free = true;
+                continue;
+            }
+            match (split(sigma)?, name) {
+                ((_, Some(_)), _) => deviations.with_units.push((name.map(str::to_owned), sigma.trim().into())),
+                ((value, None), Some(name)) => deviations.by_name.push((name.into(), value)),
+                ((value, None), None) => deviations.others = Some(value),
             }
         }
         Ok(deviations)
     }
 
-    fn of(&self, name: &str, written: Option<f64>) -> Result<f64, FitError> {
+    /// That of a column, in the units of the scene; none where it is to be estimated.
+    fn of(&self, scene: &Scene, name: &str, written: Option<f64>) -> Result<Option<f64>, FitError> {
+        let with_unit = |of: Option<&str>| -> Result<Option<f64>, FitError> {
+            let Some((_, text)) = self.with_units.iter().find(|(known, _)| known.as_deref() == of) else {
+                return Ok(None);
+            };
+            let (value, unit) = split(text)?;
+            Ok(Some(value * unit.map_or(Ok(1.0), |unit| unit_of(scene, name, unit))?))
+        };
         let named = self.by_name.iter().find(|(known, _)| known == name).map(|(_, sigma)| *sigma);
-        let found = named.or(written).or(self.others).ok_or_else(|| FitError::NoDeviation(name.into()))?;
-        positive(name, found)
+        let named = named.map_or_else(|| with_unit(Some(name)), |sigma| Ok(Some(sigma)))?.or(written).or(self.others);
+        let found = named.map_or_else(|| with_unit(None), |sigma| Ok(Some(sigma)))?;
+        match found {
+            None if self.free => Ok(None),
+            None => Err(FitError::NoDeviation(name.into())),
+            Some(found) => positive(name, found).map(Some),
+        }
     }
 }
 
@@ -114,7 +143,22 @@ impl Film {
                 film.lines.push(table.lines[row]);
             }
         }
+        film.guess_deviations();
         Ok(film)
+    }
+
+    /// First guesses of standard deviations that are estimated: by third differences of neighbours, of which
+    /// a smooth motion leaves little.
+    fn guess_deviations(&mut self) {
+        for (c, column) in self.columns.iter_mut().enumerate().filter(|(_, column)| column.estimated) {
+            let seen: Vec<f64> = self.rows.iter().filter_map(|row| row[c]).collect();
+            let third = |w: &[f64]| (w[3] - 3.0 * w[2] + 3.0 * w[1] - w[0]).powi(2) / 20.0;
+            let squares: Vec<f64> = seen.windows(4).map(third).collect();
+            let size = seen.iter().fold(0.0, |a: f64, x| a.max(x.abs()));
+            let least = 1e-9 * if size > 0.0 { size } else { 1.0 };
+            let mean = squares.iter().sum::<f64>() / squares.len().max(1) as f64;
+            column.sigma = if squares.is_empty() { 1e-2 * least / 1e-9 } else { mean.sqrt().max(least) };
+        }
     }
 
     /// Times of a film that is this many times as long, further ones at the mean distance; no rows.
@@ -142,7 +186,7 @@ impl Film {
 /// The name and the unit of a cell of the header.
 fn head<'t>(scene: &Scene, cell: &'t str) -> Result<(&'t str, f64), FitError> {
     match cell.strip_suffix(']').and_then(|cell| cell.rsplit_once('[')) {
-        Some((name, of)) if named(scene, cell).is_none() => Ok((name.trim(), unit(of.trim())?)),
+        Some((name, of)) if named(scene, cell).is_none() => Ok((name.trim(), unit_of(scene, name.trim(), of.trim())?)),
         _ => Ok((cell, 1.0)),
     }
 }
@@ -156,7 +200,8 @@ fn is_added(name: &str) -> bool {
 pub(crate) fn column(scene: &Scene, name: &str, deviations: &Deviations) -> Result<Column, FitError> {
     expression(scene, name)?;
     let written = scene.film.iter().find(|filmed| filmed.name == name).and_then(|filmed| filmed.sigma);
-    Ok(Column { name: name.into(), sigma: deviations.of(name, written)? })
+    let sigma = deviations.of(scene, name, written)?;
+    Ok(Column { name: name.into(), sigma: sigma.unwrap_or(1.0), estimated: sigma.is_none() })
 }
 
 /// What has this name in `[film]` or among what is watched.

@@ -78,6 +78,12 @@ impl Fit {
     pub fn objections(&self) -> impl Iterator<Item = &ResidualTest> {
         self.tests.iter().filter(|test| test.objects)
     }
+
+    /// Those of the objections after which nothing is excluded. That χ² is too small is none: standard
+    /// deviations that are too large make every exclusion weaker.
+    pub fn faults(&self) -> impl Iterator<Item = &ResidualTest> {
+        self.objections().filter(|test| !test.is_too_small())
+    }
 }
 
 /// What films show of the unknowns to first order.
@@ -171,6 +177,8 @@ fn combination(problem: &Problem, along: &DVector<f64>, lengths: &[f64]) -> Stri
 /// [`FitError::NoMotion`], and [`FitError::ShowsNothing`] where all unknowns change nothing.
 pub fn fit(problem: &Problem, spread: &dyn Fn(&str) -> bool, starts: usize, known: bool) -> Result<Fit, FitError> {
     let Found { best, minima, starts } = search(problem, spread, starts, known)?;
+    let best = off_stationary(problem, best);
+    let whole = best.clone();
     let (held, less, best) = without_hidden(problem, &best)?;
     let no_motion = |reason| FitError::NoMotion { starts, reason };
     let (_, jacobian) = less.clone().weighed(&best.theta, true).map_err(no_motion)?;
@@ -181,7 +189,7 @@ pub fn fit(problem: &Problem, spread: &dyn Fn(&str) -> bool, starts: usize, know
     let fitted = unknowns - hidden.len();
     let tests = residual_tests(&films, &residuals, fitted.saturating_sub(priors(problem)), problem.is_robust());
     // what does not fit has no intervals to look for
-    let profiles = !tests.iter().any(|test| test.objects);
+    let profiles = !tests.iter().any(|test| test.objects && !test.is_too_small());
     let near = less.limited(&best.theta, PROFILE_STEPS);
     let profile = |i| Profile::new(&near, &jacobian, &best, &errors, i);
     let mut estimates: Vec<Estimate> =
@@ -189,8 +197,14 @@ pub fn fit(problem: &Problem, spread: &dyn Fn(&str) -> bool, starts: usize, know
     let mut names = Vec::new();
     for i in held {
         let unknown = &problem.unknowns()[i];
-        names.push(unknown.label());
-        estimates.insert(i, Estimate::hidden(unknown, problem.start()[i]));
+        let estimate = match moving(problem, &whole, i).filter(|_| profiles) {
+            Some(step) => stationary(problem, &whole, i, step),
+            None => {
+                names.push(unknown.label());
+                Estimate::hidden(unknown, problem.start()[i])
+            }
+        };
+        estimates.insert(i, estimate);
     }
     Ok(Fit {
         estimates,
@@ -204,6 +218,71 @@ pub fn fit(problem: &Problem, spread: &dyn Fn(&str) -> bool, starts: usize, know
         reached: best.reached,
         residuals,
     })
+}
+
+/// Parts of the size of an unknown by which it is moved for a second look.
+const LOOKS: [f64; 4] = [1e-2, 0.03, 0.1, 0.5];
+
+/// The least of these changes of an unknown, whose derivative is nothing, that moves residuals all the same: they
+/// are stationary there.
+fn moving(problem: &Problem, best: &Minimum, i: usize) -> Option<f64> {
+    let mut looked = problem.clone();
+    let (here, _) = looked.weighed(&best.theta, false).ok()?;
+    let size = if best.theta[i] == 0.0 { 1.0 } else { best.theta[i].abs() };
+    LOOKS.into_iter().map(|part| part * size).find(|step| {
+        let mut theta = best.theta.clone();
+        theta[i] += step;
+        let moved = looked.weighed(&theta, false);
+        moved.is_ok_and(|(there, _)| (there - &here).norm() > 1e3 * NOTHING)
+    })
+}
+
+/// The least minimum, where one begins beside unknowns at which residuals are stationary: no derivative leads away
+/// from there.
+fn off_stationary(problem: &Problem, best: Minimum) -> Minimum {
+    let Ok((_, jacobian)) = problem.clone().weighed(&best.theta, true) else { return best };
+    let lengths: Vec<f64> = jacobian.column_iter().map(|column| column.norm()).collect();
+    let mut least_known = best.clone();
+    for i in alone(problem, &best.theta, &lengths) {
+        let Some(step) = moving(problem, &best, i) else { continue };
+        let scale: Vec<f64> = lengths.iter().map(|l| if *l > 0.0 { l.recip() } else { step }).collect();
+        for side in [1.0, -1.0] {
+            let mut theta = best.theta.clone();
+            theta[i] += side * step;
+            let found = least(problem, &theta, &scale, Stage::Whole);
+            if let Some(found) =
+                found.ok().filter(|found| found.chi_squared < least_known.chi_squared - SAME_CHI_SQUARED)
+            {
+                least_known = Minimum { reached: best.reached, ..found };
+            }
+        }
+    }
+    least_known
+}
+
+/// An unknown at which residuals are stationary: its interval is by the profile alone, and no error is of first
+/// order.
+fn stationary(problem: &Problem, best: &Minimum, i: usize, step: f64) -> Estimate {
+    let unknown = &problem.unknowns()[i];
+    let bound = unknown.bound.unwrap_or(f64::NEG_INFINITY);
+    let Ok((_, jacobian)) = problem.clone().weighed(&best.theta, true) else {
+        return Estimate::hidden(unknown, best.theta[i]);
+    };
+    let lengths = jacobian.column_iter().map(|column| column.norm());
+    let mut errors: Vec<f64> = lengths.map(|l| if l > 0.0 { l.recip() } else { 1.0 }).collect();
+    errors[i] = step;
+    let near = problem.limited(&best.theta, PROFILE_STEPS);
+    let mut profile = Profile::new(&near, &jacobian, best, &errors, i);
+    let [low, high] = [-1.0, 1.0].map(|side| profile.end(side, RISE, bound));
+    let error = 0.5 * (high - low) / NORMAL;
+    Estimate {
+        name: unknown.label(),
+        value: best.theta[i],
+        error,
+        interval: [low, high],
+        profiled: true,
+        at_bound: None,
+    }
 }
 
 /// How χ² rises above its least where the unknown of this name has these values and the others are fitted
@@ -231,7 +310,7 @@ fn without_hidden(problem: &Problem, best: &Minimum) -> Result<(Vec<usize>, Prob
     let (_, jacobian) = problem.clone().weighed(&best.theta, true).map_err(no_motion)?;
     let lengths: Vec<f64> = jacobian.column_iter().map(|column| column.norm()).collect();
     let held = alone(problem, &best.theta, &lengths);
-    if held.len() == lengths.len() {
+    if held.len() == lengths.len() && held.iter().all(|&i| moving(problem, best, i).is_none()) {
         return Err(FitError::ShowsNothing);
     }
     let (mut shown, mut theta, mut scale) = (problem.clone(), best.theta.clone(), lengths);

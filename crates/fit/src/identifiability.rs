@@ -81,6 +81,13 @@ pub(crate) fn identifiability(scene: &Scene, choice: &Choice, parts: &[Part], un
                 let with_priors = unknowns.iter().any(|unknown| unknown.prior.is_some());
                 return Ok(Identifiability::Proved { with_priors });
             }
+            if orders == all && all < jets.states + few {
+                return Err(format!(
+                    "series are cut at order {}, where {} would be needed",
+                    all - 1,
+                    jets.states + few - 1
+                ));
+            }
             if orders == all {
                 let names = |of: &Vec<usize>| of.iter().map(|&i| unknowns[i].label()).collect();
                 let combinations = hidden.iter().map(names).collect();

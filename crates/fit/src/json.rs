@@ -3,14 +3,22 @@
 use scene::Scene;
 use serde_json::{Value, json};
 
-use crate::{Aim, Best, Design, Film, Fit, Identifiability, Point, Row, Verdict};
+use crate::{Aim, Best, Design, Film, Fit, Identifiability, Point, Row, Verdict, significance};
 
 impl Verdict {
     /// In words.
     pub fn words(&self) -> String {
         match self {
             Verdict::Supported => "supported".into(),
-            Verdict::Excluded { sigmas } => format!("excluded at {sigmas:.1} σ"),
+            Verdict::Excluded { sigmas } => format!("excluded at {}", significance(*sigmas)),
+            Verdict::Unsettled { sigmas } => {
+                let sigmas = significance(*sigmas);
+                format!("search not settled: excluded at {sigmas}, if the least χ² that was found is the least")
+            }
+            Verdict::Explained { with: None, from } => format!("these films cannot tell it from {}", from.join(", ")),
+            Verdict::Explained { with: Some(with), from } => {
+                format!("these films cannot tell it, with {with}, from {}; without, it is excluded", from.join(", "))
+            }
             Verdict::CannotTell { from, needs } => {
                 let each = from.iter().zip(needs).map(|(label, needs)| match needs {
                     Some(longer) => format!("{label} (if that is right, a film {longer} times as long can)"),
@@ -32,7 +40,7 @@ pub fn fit_value(scene: &Scene, films: &[Film], rows: &[Row]) -> Value {
 }
 
 fn columns(film: &Film) -> Vec<Value> {
-    film.columns.iter().map(|c| json!({ "name": c.name, "sigma": c.sigma })).collect()
+    film.columns.iter().map(|c| json!({ "name": c.name, "sigma": c.sigma, "estimated": c.estimated })).collect()
 }
 
 fn film(film: &Film) -> Value {
@@ -43,7 +51,8 @@ fn row(row: &Row) -> Value {
     let verdict = match &row.verdict {
         Verdict::Supported => "supported",
         Verdict::Excluded { .. } => "excluded",
-        Verdict::CannotTell { .. } => "cannot-tell",
+        Verdict::Unsettled { .. } => "not-settled",
+        Verdict::CannotTell { .. } | Verdict::Explained { .. } => "cannot-tell",
         Verdict::None => "none",
         Verdict::NotFitted(_) => "not-fitted",
     };
@@ -52,9 +61,10 @@ fn row(row: &Row) -> Value {
         "label": row.choice.label,
         "verdict": verdict,
         "words": row.verdict.words(),
-        "from": match &row.verdict { Verdict::CannotTell { from, .. } => from.clone(), _ => Vec::new() },
+        "from": match &row.verdict { Verdict::CannotTell { from, .. } | Verdict::Explained { from, .. } => from.clone(), _ => Vec::new() },
         "needs": match &row.verdict { Verdict::CannotTell { needs, .. } => needs.clone(), _ => Vec::new() },
-        "sigmas": match row.verdict { Verdict::Excluded { sigmas } => Some(sigmas), _ => None },
+        "sigmas": match row.verdict { Verdict::Excluded { sigmas } | Verdict::Unsettled { sigmas } => Some(sigmas), _ => None },
+        "notes": row.notes,
         "shown": row.shown.as_ref().map(shown),
         "fit": row.fit.as_ref().ok().map(fitted),
     })

@@ -5,6 +5,7 @@ use std::str::FromStr;
 use scene::Scene;
 
 use crate::film::column;
+use crate::quantity::unit_of;
 use crate::{Deviations, Film, FitError, quantity};
 
 /// When a film looks: `60Hz,0.5mm,10s` is 600 times in ten seconds, with a standard deviation of 0.5 mm where
@@ -21,7 +22,7 @@ pub struct Sampling {
     pub rate: f64,
     /// The length, above 0.
     pub seconds: f64,
-    /// Standard deviation of columns that have no other.
+    /// Standard deviation of columns that have no other, and the unit it is written in.
     pub sigma: Option<f64>,
 }
 
@@ -72,6 +73,10 @@ impl Film {
         times: Sampling,
         deviations: &Deviations,
     ) -> Result<Film, FitError> {
+        if times.sigma.is_some() {
+            // it was read in m, s, rad and kg
+            unit_of(scene, "σ of the film to be made", "m")?;
+        }
         let others = deviations.others.or(times.sigma);
         let deviations = Deviations { others, ..deviations.clone() };
         let names: Vec<String> = match (columns, &scene.film[..]) {
@@ -80,6 +85,9 @@ impl Film {
             (named, _) => named.to_vec(),
         };
         let columns = names.iter().map(|name| column(scene, name, &deviations)).collect::<Result<Vec<_>, _>>()?;
+        if let Some(column) = columns.iter().find(|column| column.estimated) {
+            return Err(FitError::NothingToEstimate(column.name.clone()));
+        }
         let samples = (times.rate * times.seconds).round() as usize;
         let t: Vec<f64> = (1..=samples).map(|k| scene.start.t + k as f64 / times.rate).collect();
         let rows = vec![vec![Some(0.0); columns.len()]; samples];

@@ -25,6 +25,10 @@ pub struct Problem {
     parameters: Vec<bool>,
     /// Number of the first start of a search.
     pub(crate) first: usize,
+    /// Starts that are known before, beside the first one.
+    pub(crate) known: Vec<Vec<f64>>,
+    /// Samples of a beginning by which another formulation excludes this one, and the significance.
+    pub(crate) excluded_by: Option<(usize, f64)>,
     robust: Option<f64>,
     /// `(θ − mean)/deviation` of unknowns that are held.
     held: Vec<f64>,
@@ -72,7 +76,8 @@ impl Problem {
         let value = |unknown: &Unknown| unknown.start.unwrap_or_else(|| value_of(scene, &unknown.name));
         let start = unknowns.iter().map(value).collect();
         let parameters = unknowns.iter().map(|unknown| is_parameter(scene, &unknown.name)).collect();
-        Ok(Problem { parts, unknowns, start, parameters, first: 0, robust: None, held: Vec::new() })
+        let (known, held) = (Vec::new(), Vec::new());
+        Ok(Problem { parts, unknowns, start, parameters, first: 0, known, excluded_by: None, robust: None, held })
     }
 
     /// Residuals above this size count linearly (Huber); 1.345 costs 5 % where errors are normal.
@@ -207,6 +212,9 @@ impl Problem {
         let prior = less.unknowns.remove(i).prior;
         less.held.extend(prior.map(|prior| (value - prior.mean) / prior.deviation));
         less.start.remove(i);
+        for known in &mut less.known {
+            known.remove(i);
+        }
         less.parameters.remove(i);
         for place in less.parts.iter_mut().flat_map(Part::all_places) {
             *place = match *place {
@@ -223,7 +231,8 @@ impl Problem {
         identifiability(scene, choice, &self.parts, &self.unknowns)
     }
 
-    /// How far the columns of the films go from their means, over σ, as the length of a vector.
+    /// How far the columns of the films go from their means, over σ, as the length of a vector; as far as noise
+    /// does at least.
     pub(crate) fn extent(&self) -> f64 {
         let mut sum = 0.0;
         for film in self.films() {
@@ -233,7 +242,7 @@ impl Problem {
                 sum += seen.iter().map(|x| ((x - mean) / column.sigma).powi(2)).sum::<f64>();
             }
         }
-        sum.sqrt()
+        sum.max(self.count() as f64).sqrt()
     }
 
     /// The number of residuals: those of films, then one per prior.

@@ -23,6 +23,10 @@ const GAINS: [f64; 5] = [1e-2, 1e-4, 1e-10, 1e-6, 1e-4];
 const ITERATIONS: [usize; 5] = [10, 20, 100, 12, 50];
 /// Starts for the whole film are up to this many times halfway to the first one.
 const NEARER: i32 = 8;
+/// A change of an unknown by its own size that moves the film by this part of its extent is round-off.
+const UNMOVED: f64 = 1e-9;
+/// Starts beside one that is known and fits.
+const FEW: usize = 4;
 /// Starts that are fitted to the whole film at once beside the first one.
 const SCREENED: usize = 2;
 /// Times the steps of the first motion that one may take.
@@ -55,7 +59,8 @@ pub struct Found {
 }
 
 /// The least minimum from several starts: the first is [`Problem::start`]; in the others unknowns for which
-/// `spread` says so are moved, by parts of their scales that no period fits. Beginnings are left out where
+/// `spread` says so are moved, by parts of their scales that no period fits; further ones are known before:
+/// each goes by way of beginnings and at once. Beginnings are left out where
 /// the first start is `known` to come close. Starts for the whole film at once are left out where beginnings
 /// of several lead to residuals of noise.
 ///
@@ -67,12 +72,20 @@ pub fn search(problem: &Problem, spread: &dyn Fn(&str) -> bool, starts: usize, k
     let problem = &problem.limited(problem.start(), STEPS);
     let short = problem.beginning(FIRST.max(2 * problem.unknowns().len()))?;
     let (scale, mut reason) = scales(&mut short.clone());
-    let (mut minima, mut tried) = (Vec::new(), 0);
+    let known_before: Vec<Minimum> = problem.known.iter().cloned().map(Minimum::unseen).collect();
+    // they count as starts once, by way of beginnings
+    let at_once = known_before.iter().map(|start| Minimum { reached: usize::from(known), ..start.clone() }).collect();
+    let mut minima = refined(problem, at_once, &scale, Stage::Rough, &mut reason);
+    let mut tried = known_before.len();
+    // beside what is known to fit others are few
+    let starts = if minima.first().is_some_and(|m| fits(problem, m)) { starts.min(FEW) } else { starts };
     if !known {
         let begun = (0..starts).map(|number| moved(problem, &scale, spread, problem.first + number));
-        tried += starts;
-        minima = followed(problem, short, &scale, begun.collect(), &mut reason)?;
-        minima = refined(problem, minima, &scale, Stage::Rough, &mut reason);
+        let begun: Vec<Minimum> = begun.chain(known_before).collect();
+        tried += begun.len();
+        let led = followed(problem, short, &scale, begun, &mut reason)?;
+        minima.extend(refined(problem, led, &scale, Stage::Rough, &mut reason));
+        distinct(&mut minima, &scale);
     }
     if starts == 1 || !minima.first().is_some_and(|least| fits(problem, least)) {
         let begun = screened(problem, spread, starts);
@@ -92,7 +105,8 @@ pub fn search(problem: &Problem, spread: &dyn Fn(&str) -> bool, starts: usize, k
         same
     });
     let no_motion = || FitError::NoMotion { starts: tried, reason: reason.unwrap_or_else(|| "no minimum".into()) };
-    let best = minima.first().cloned().ok_or_else(no_motion)?;
+    let mut best = minima.first().cloned().ok_or_else(no_motion)?;
+    best.reached = best.reached.max(1);
     Ok(Found { best, minima: minima.iter().map(|m| m.chi_squared).collect(), starts: tried })
 }
 
@@ -134,7 +148,7 @@ fn refined(
 }
 
 /// Whether χ² is that of noise, and no test on residuals objects.
-fn fits(problem: &Problem, found: &Minimum) -> bool {
+pub(crate) fn fits(problem: &Problem, found: &Minimum) -> bool {
     let unknowns = problem.unknowns().len();
     let films: Vec<_> = problem.films().collect();
     let content = |residuals: Vec<Residual>| {
@@ -210,7 +224,9 @@ fn scales(problem: &mut Problem) -> (Vec<f64>, Option<String>) {
             let extent = problem.extent();
             let scale = |i: usize| {
                 let length = jacobian.column(i).norm();
-                if length > 0.0 && length.is_finite() { extent / length } else { plain(i) }
+                // what only round-off moves has no scale of its own
+                let is_moved = length * plain(i) > UNMOVED * extent && length.is_finite();
+                if is_moved { extent / length } else { plain(i) }
             };
             ((0..start.len()).map(scale).collect(), None)
         }
@@ -272,6 +288,12 @@ fn within(problem: &Problem, origin: &[f64], theta: &[f64]) -> Vec<f64> {
         origin.iter().zip(theta).map(|(o, x)| o + part * (x - o)).collect()
     };
     (0..HALVINGS).map(at).find(|theta| problem.weighed(theta, false).is_ok()).unwrap_or_else(|| origin.to_vec())
+}
+
+/// The minimum near a start, coarsely.
+pub(crate) fn least_near(problem: &Problem, start: &[f64]) -> Option<Minimum> {
+    let (scale, _) = scales(&mut problem.clone());
+    least(&problem.limited(start, NEAR_STEPS), start, &scale, Stage::Rough).ok()
 }
 
 /// What is fitted.

@@ -3,20 +3,63 @@
 use deltaq::{CHETAEV, Choice};
 use equations::Formulation;
 
+use crate::distribution::{chi_squared_tail, normal_tails};
 use crate::question::is_law;
 use crate::{Fit, FitError, Identifiability, Problem};
 
-/// A formulation is excluded where its χ² is this much above the least.
+/// A formulation with one unknown less than that of the least χ², or with as many, is excluded where its χ² is
+/// this much above: by noise, where it is right, in one of 9,300 films.
 pub const EXCLUDED: f64 = 15.0;
+
+/// What χ² has to be above the least for an exclusion at the same level, where the other has `more ≥ 1`
+/// unknowns: noise lowers χ² by a χ² distribution with as many degrees of freedom.
+pub fn threshold(more: usize) -> f64 {
+    let (level, more) = (chi_squared_tail(EXCLUDED, 1.0), more.max(1) as f64);
+    let (mut low, mut high) = (0.0, 4.0 * (EXCLUDED + more));
+    for _ in 0..80 {
+        let middle = 0.5 * (low + high);
+        if chi_squared_tail(middle, more) > level { low = middle } else { high = middle }
+    }
+    if more > 1.0 { high } else { EXCLUDED }
+}
+
+/// Standard deviations of a normal distribution whose tails are as rare as χ² this far `above` with `more`
+/// unknowns; `√above` where that is rarer than numbers can say.
+pub(crate) fn sigmas(above: f64, more: usize) -> f64 {
+    let rare = chi_squared_tail(above, more.max(1) as f64);
+    if rare < 1e-280 {
+        return above.sqrt();
+    }
+    let (mut low, mut high) = (0.0, above.sqrt());
+    for _ in 0..60 {
+        let middle = 0.5 * (low + high);
+        if normal_tails(middle) > rare { low = middle } else { high = middle }
+    }
+    0.5 * (low + high)
+}
+
+/// The significance to one digit, downwards; beyond 100 nobody can tell.
+pub fn significance(sigmas: f64) -> String {
+    if sigmas >= 100.0 {
+        return "over 100 σ".into();
+    }
+    let unit = if sigmas >= 10.0 { 10.0 } else { 1.0 };
+    format!("over {} σ", (sigmas / unit).floor() * unit)
+}
 
 /// The verdict of films on a formulation.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Verdict {
     /// It fits, and all others are excluded, by the least χ² that was found of each.
     Supported,
-    /// Its χ² is above the least by the square of this.
+    /// Its χ² is above the least by this.
     Excluded {
-        /// `√(χ² − least χ²)`.
+        /// In standard deviations of a normal distribution.
+        sigmas: f64,
+    },
+    /// It would be excluded, if the least of its χ² that was found were its least: too few starts reach it.
+    Unsettled {
+        /// As of an exclusion.
         sigmas: f64,
     },
     /// It fits, and so do these, or they could not be fitted.
@@ -27,6 +70,13 @@ pub enum Verdict {
         /// right; `None` where up to 8 times the length do not suffice. See
         /// [`fit_formulations`](crate::fit_formulations).
         needs: Vec<Option<f64>>,
+    },
+    /// It fits with what is not modelled, or what it would exclude does.
+    Explained {
+        /// What it is with.
+        with: Option<String>,
+        /// What these films cannot tell it from.
+        from: Vec<String>,
     },
     /// Tests on residuals reject every formulation that is not excluded: something else is wrong.
     None,
@@ -48,18 +98,44 @@ pub struct Row {
     pub problem: Option<Problem>,
     /// The verdict.
     pub verdict: Verdict,
+    /// What else has to be known of the verdict, in words.
+    pub notes: Vec<String>,
+}
+
+/// What is shown, beside a fit: what ranks at random numbers do not show and the fit does, is open.
+pub(crate) fn beside(shown: Identifiability, fit: Option<&Fit>) -> Identifiability {
+    let Identifiability::Hidden { combinations, order } = &shown else { return shown };
+    let is_shown =
+        |name: &String| fit.is_some_and(|fit| fit.estimates.iter().any(|e| e.name == *name && e.error.is_finite()));
+    match combinations.iter().find(|names| names.iter().all(is_shown)) {
+        None => shown,
+        Some(names) => {
+            let names = names.join(" with ");
+            Identifiability::Open(format!("derivatives to order {order} do not show {names}, and these films do"))
+        }
+    }
+}
+
+/// How far a fit's χ² is above the least, and how many unknowns the other has more.
+pub(crate) fn above(fit: &Fit, least: &Fit) -> (f64, usize) {
+    (fit.chi_squared - least.chi_squared, fit.freedom.saturating_sub(least.freedom).max(1))
+}
+
+/// Whether a formulation of this fit is excluded beside that of the other.
+pub(crate) fn is_excluded(fit: &Fit, least: &Fit) -> bool {
+    let (above, more) = above(fit, least);
+    above >= threshold(more)
 }
 
 /// Verdicts on fits of formulations to the same films.
 pub fn verdicts(fits: Vec<(Choice, Result<Fit, FitError>)>) -> Vec<Row> {
     let fitted = || fits.iter().filter_map(|(_, fit)| fit.as_ref().ok());
-    let of = |fit: &Fit| (fit.chi_squared, fit.objections().next().is_some());
-    let least = fitted().map(of).min_by(|a, b| a.0.total_cmp(&b.0));
+    let least = fitted().min_by(|a, b| a.chi_squared.total_cmp(&b.chi_squared)).cloned();
     // one that fits, and that the least does not exclude
-    let fine = fitted().map(of).any(|(x, objects)| !objects && least.is_some_and(|(least, _)| x - least < EXCLUDED));
-    let least = least.map(|(least, _)| (least, !fine));
-    let is_open = |fit: &Result<Fit, FitError>| match (fit, least) {
-        (Ok(fit), Some((least, _))) => fit.chi_squared - least < EXCLUDED,
+    let fine = |fit: &Fit, least: &Fit| fit.faults().next().is_none() && !is_excluded(fit, least);
+    let fine = least.as_ref().is_some_and(|least| fitted().any(|fit| fine(fit, least)));
+    let is_open = |fit: &Result<Fit, FitError>| match (fit, &least) {
+        (Ok(fit), Some(least)) => !is_excluded(fit, least),
         _ => true,
     };
     let open: Vec<(String, &'static Formulation)> = fits
@@ -67,13 +143,12 @@ pub fn verdicts(fits: Vec<(Choice, Result<Fit, FitError>)>) -> Vec<Row> {
         .filter(|(_, fit)| is_open(fit))
         .map(|(choice, _)| (choice.label.clone(), choice.formulation))
         .collect();
-    let verdict = |(choice, fit): &(Choice, Result<Fit, FitError>)| match (fit, least) {
+    let verdict = |(choice, fit): &(Choice, Result<Fit, FitError>)| match (fit, &least) {
         (Err(error), _) => Verdict::NotFitted(error.clone()),
-        (_, Some((_, true)) | None) => Verdict::None,
-        (Ok(fit), Some((least, false))) => {
-            let above = fit.chi_squared - least;
-            if above >= EXCLUDED {
-                return Verdict::Excluded { sigmas: above.sqrt() };
+        (Ok(fit), Some(least)) if fine => {
+            if is_excluded(fit, least) {
+                let (above, more) = above(fit, least);
+                return Verdict::Excluded { sigmas: sigmas(above, more) };
             }
             let others = open.iter().filter(|(label, f)| *label != choice.label && !is_part(choice.formulation, f));
             let from: Vec<String> = others.map(|(label, _)| label.clone()).collect();
@@ -83,12 +158,11 @@ pub fn verdicts(fits: Vec<(Choice, Result<Fit, FitError>)>) -> Vec<Row> {
                 Verdict::CannotTell { needs: vec![None; from.len()], from }
             }
         }
+        _ => Verdict::None,
     };
     let verdicts: Vec<Verdict> = fits.iter().map(verdict).collect();
-    fits.into_iter()
-        .zip(verdicts)
-        .map(|((choice, fit), verdict)| Row { choice, fit, shown: None, problem: None, verdict })
-        .collect()
+    let row = |((choice, fit), verdict)| Row { choice, fit, shown: None, problem: None, verdict, notes: Vec::new() };
+    fits.into_iter().zip(verdicts).map(row).collect()
 }
 
 /// Whether one of two formulations is the other with more numbers, so that both can be right: Chetaev's law

@@ -30,6 +30,11 @@ pub fn fitted(scene: &Scene, films: &[Film], free: &[&str], law: &[&str]) -> Vec
     fitted_by(&[CHETAEV, VAKONOMIC], scene, films, free, law)
 }
 
+pub fn question(unknowns: &[Unknown]) -> Question<'_> {
+    let settings = Settings { tolerance: 1e-9, max_steps: 20_000, ..Settings::default() };
+    Question { unknowns, law: &[], starts: 16, robust: None, settings, threads: 0 }
+}
+
 pub fn fitted_by(
     wanted: &[&'static equations::Formulation],
     scene: &Scene,
@@ -38,10 +43,9 @@ pub fn fitted_by(
     law: &[&str],
 ) -> Vec<Row> {
     let parsed = |list: &[&str]| list.iter().map(|text| text.parse().unwrap()).collect::<Vec<Unknown>>();
-    let settings = Settings { tolerance: 1e-9, max_steps: 20_000, ..Settings::default() };
     let (unknowns, law) = (parsed(free), parsed(law));
-    let question = Question { unknowns: &unknowns, law: &law, starts: 16, robust: None, settings, threads: 0 };
-    let rows = fit_formulations(scene, films, &question, wanted);
+    let question = Question { law: &law, ..question(&unknowns) };
+    let rows = fit_formulations(scene, &mut films.to_vec(), &question, wanted);
     rows.unwrap_or_else(|error| panic!("{error}"))
 }
 
@@ -179,7 +183,7 @@ fn residuals_object_to_what_is_wrong_before_a_verdict_is_given() {
     let unknowns: Vec<Unknown> = SLEDGE.iter().map(|text| text.parse().unwrap()).collect();
     let settings = Settings { tolerance: 1e-9, ..Settings::default() };
     let question = Question { unknowns: &unknowns, law: &[], starts: 1, robust: Some(1.345), settings, threads: 0 };
-    let rows = fit_formulations(&scene, &[outlier], &question, &[CHETAEV]).unwrap();
+    let rows = fit_formulations(&scene, &mut [outlier], &question, &[CHETAEV]).unwrap();
     assert_eq!(rows[0].verdict, Verdict::Supported);
     covers(&rows[0], &[("y", 0.0), ("g", 9.81)]);
 }

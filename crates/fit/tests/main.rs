@@ -9,6 +9,7 @@ mod search;
 mod shown;
 mod statistics;
 mod tables;
+mod trust;
 mod verdicts;
 
 // a search allocates in all threads at once

@@ -85,7 +85,7 @@ fn rows_do_not_depend_on_those_beside_them() {
     let settings = Settings { tolerance: 1e-9, ..Settings::default() };
     let question = Question { unknowns: &unknowns, law: &[], starts: 4, robust: None, settings, threads: 0 };
     let rows = |wanted: &[&'static equations::Formulation]| -> Vec<Row> {
-        fit_formulations(&scene, std::slice::from_ref(&film), &question, wanted).unwrap()
+        fit_formulations(&scene, &mut [film.clone()], &question, wanted).unwrap()
     };
     let both = rows(&[CHETAEV, VAKONOMIC]);
     for (row, formulation) in both.iter().zip([CHETAEV, VAKONOMIC]) {

@@ -27,7 +27,7 @@ fn a_scene_says_what_columns_show() {
     let again = Scene::parse("sledge", &scene.to_toml()).unwrap_or_else(|error| panic!("{error}"));
     assert_eq!(again.film.iter().map(|f| f.sigma).collect::<Vec<_>>(), [Some(0.7 / 10.0), None]);
     let read = |by_name: &[(String, f64)]| {
-        let deviations = Deviations { by_name: by_name.to_vec(), others: Some(3.0) };
+        let deviations = Deviations { by_name: by_name.to_vec(), others: Some(3.0), ..Deviations::default() };
         Film::read(&scene, "film", "t,right,up\n0.1,1,2\n", &deviations).unwrap()
     };
     let sigmas = |film: &Film| film.columns.iter().map(|c| c.sigma).collect::<Vec<_>>();

@@ -33,6 +33,10 @@ pub struct Instant {
     pub driven: DVector<f64>,
     /// `√(Σⱼ (Aᵢⱼ vⱼ)²)`, h: how large the parts of each constraint are.
     pub parts: Vec<f64>,
+    /// `S⁻¹ p ∂(E − Q)/∂p`, n, for each parameter p that is not zero.
+    pub by_parameter: Vec<DVector<f64>>,
+    /// `S⁻¹`, n×n.
+    pub unit_forces: DMatrix<f64>,
 }
 
 /// The expressions of a scene, compiled.
@@ -40,6 +44,8 @@ pub struct Balance {
     program: Evaluator<f64>,
     n: usize,
     h: usize,
+    /// Parameters that are not zero.
+    pub parameters: Vec<(String, f64)>,
 }
 
 impl Balance {
@@ -71,7 +77,11 @@ impl Balance {
         }
         outputs.extend(&system.constraints);
         outputs.extend(g.total_derivatives(&system.constraints, &still));
-        Ok(Balance { program: system.evaluator(&inputs(system), &outputs)?, n, h })
+        let own: Vec<_> = system.parameters.iter().filter(|p| p.value != 0.0).collect();
+        let forces: Vec<Expr> = outputs[..n].to_vec();
+        outputs.extend(own.iter().flat_map(|p| forces.iter().map(|&e| g.derivative(e, p.symbol)).collect::<Vec<_>>()));
+        let parameters = own.iter().map(|p| (g.name(p.symbol), p.value)).collect();
+        Ok(Balance { program: system.evaluator(&inputs(system), &outputs)?, n, h, parameters })
     }
 
     /// The numbers at one sample.
@@ -91,6 +101,8 @@ impl Balance {
         let jacobian = DMatrix::from_row_slice(h, n, take(h * n));
         let curvature = DMatrix::from_column_slice(n, h, take(n * h));
         let [constraint, rest] = [0, 1].map(|_| DVector::from_column_slice(take(h)));
+        let by_parameter: Vec<DVector<f64>> =
+            self.parameters.iter().map(|(_, value)| DVector::from_column_slice(take(n)) * *value).collect();
         let [v, a] = [1, 2].map(|i| DVector::from_column_slice(&state[i]));
         let factor = mass.clone().cholesky().ok_or(JudgeError::MassMatrix { t })?.l();
         let divided = |m: DMatrix<f64>| factor.solve_lower_triangular(&m).ok_or(JudgeError::MassMatrix { t });
@@ -105,6 +117,8 @@ impl Balance {
             constraint,
             rest,
             driven: &jacobian * &a,
+            by_parameter: by_parameter.into_iter().map(column).collect::<Result<_, _>>()?,
+            unit_forces: divided(DMatrix::identity(n, n))?,
             parts: jacobian.row_iter().map(|row| row.transpose().component_mul(&v).norm()).collect(),
             state,
         };
@@ -133,16 +147,23 @@ impl Balance {
         if found < needed {
             return Err(JudgeError::TooFew { found, needed });
         }
-        let differentiated = |i: usize| match &samples.v {
+        (margin..found - margin).map(|i| self.instant(samples, i, reach)).collect()
+    }
+
+    /// The numbers at the first samples, before those that [`Balance::along`] has with this margin.
+    ///
+    /// # Errors
+    /// Those of [`Balance::at`].
+    pub fn before(&mut self, samples: &Samples, reach: usize, margin: usize) -> Result<Vec<Instant>, JudgeError> {
+        (0..margin).map(|i| self.instant(samples, i, reach)).collect()
+    }
+
+    fn instant(&mut self, samples: &Samples, i: usize, reach: usize) -> Result<Instant, JudgeError> {
+        let [v, a] = match &samples.v {
             Some(v) => [v[i].clone(), derivative(&samples.t, v, i, reach, 1)],
             None => [1, 2].map(|d| derivative(&samples.t, &samples.q, i, reach, d)),
         };
-        (margin..found - margin)
-            .map(|i| {
-                let [v, a] = differentiated(i);
-                self.at(samples.t[i], [samples.q[i].clone(), v, a])
-            })
-            .collect()
+        self.at(samples.t[i], [samples.q[i].clone(), v, a])
     }
 }
 

@@ -3,7 +3,7 @@
 use scene::Scene;
 
 use crate::balance::{Balance, Instant};
-use crate::laws::{FirstOrder, as_force, first_order, left_out, vakonomic};
+use crate::laws::{FirstOrder, Misfit, as_force, first_order, left_out, misfits, vakonomic};
 use crate::regression::{Number, rms};
 use crate::substituted::substituted;
 use crate::{JudgeError, Samples};
@@ -71,7 +71,11 @@ pub struct Judgement {
     /// The laws that leave no more than three times the least, or than three times the noise; none where
     /// the least is more than `tolerance` of the scale.
     pub fitting: Vec<Law>,
-    /// `ε`, in `T`.
+    /// What of the scene is another in the motion, where that leaves less by far than Chetaev's law with its
+    /// numbers: all that leave as little, the least first. They are said in the place of these.
+    pub misfits: Vec<Misfit>,
+    /// `ε`, in `T`; as slip and drag only where it is a number of the law: what is left is noise, or much more
+    /// would be left without it, or it is zero within its error.
     pub epsilon: Option<Number>,
     /// `1/N`, in `T [f]²/E`.
     pub slip: Option<Number>,
@@ -109,6 +113,8 @@ impl Judgement {
 
 /// Residuals up to this many times the least, or the noise, are not distinguished from it.
 const NOISES: f64 = 3.0;
+/// What explains a residual leaves this much less of it.
+const MUCH: f64 = 3.0;
 
 /// Which law does the program that computed these samples integrate?
 ///
@@ -117,7 +123,7 @@ const NOISES: f64 = 3.0;
 /// that is not positive definite.
 pub fn judge(scene: &Scene, samples: &Samples, tolerance: f64) -> Result<Judgement, JudgeError> {
     let (found, n, h) = (samples.t.len(), scene.system.dimension(), scene.system.constraints.len());
-    let limit = MEMORY / 2 / (8 * (6 * n + 2 * n * h + 4 * h) + 600);
+    let limit = MEMORY / 2 / (8 * (6 * n + 2 * n * h + 4 * h + n * (n + scene.system.parameters.len())) + 800);
     if found > limit {
         return Err(JudgeError::TooMany { found, limit });
     }
@@ -134,7 +140,8 @@ pub fn judge(scene: &Scene, samples: &Samples, tolerance: f64) -> Result<Judgeme
         return Err(JudgeError::Rest { scale, noise });
     }
     let [numbers, others] = [first_order(&fine), first_order(&coarse)];
-    let laws = laws(scene, &fine, &numbers)?;
+    let before = balance.before(samples, reach, reach)?;
+    let laws = laws(scene, &before, &fine, &numbers)?;
     let least = laws.iter().map(|l| l.residual).fold(f64::INFINITY, f64::min);
     let limit = NOISES * least.max(noise);
     let fits = |l: &&Left| l.residual <= limit && least <= tolerance * scale;
@@ -143,6 +150,18 @@ pub fn judge(scene: &Scene, samples: &Samples, tolerance: f64) -> Result<Judgeme
         let values = || fine.iter().map(move |i| i.constraint[c]);
         (values().fold(0.0, |m: f64, f| m.max(f.abs())), rms(values()), rms(fine.iter().map(|i| i.parts[c])))
     };
+    let coordinates: Vec<String> = scene.system.coordinates.iter().map(|c| c.name.clone()).collect();
+    let mut misfits = misfits(&fine, &balance.parameters, &coordinates);
+    let as_little = misfits.first().map_or(0.0, |least| MUCH * least.residual.max(noise));
+    misfits
+        .retain(|m| numbers.balance > NOISES * noise && MUCH * m.residual < numbers.balance && m.residual <= as_little);
+    let of_the_law = |number: Option<Number>, without: f64| {
+        let is_noise = numbers.balance <= NOISES * noise;
+        let is_number = |n: &Number| {
+            is_noise || misfits.is_empty() && without >= MUCH * numbers.balance || n.value.abs() <= NOISES * n.error
+        };
+        number.filter(is_number)
+    };
     let judgement = Judgement {
         step: samples.step(),
         samples: fine.len(),
@@ -150,9 +169,10 @@ pub fn judge(scene: &Scene, samples: &Samples, tolerance: f64) -> Result<Judgeme
         noise,
         laws,
         fitting,
-        epsilon: both(numbers.epsilon, others.epsilon),
+        epsilon: of_the_law(both(numbers.epsilon, others.epsilon), numbers.without[0]),
         slip: both(numbers.slip, others.slip),
-        drag: both(numbers.drag, others.drag),
+        drag: of_the_law(both(numbers.drag, others.drag), numbers.without[1]),
+        misfits,
         left_out: both(left_out(&fine), left_out(&coarse)),
         constraints: (0..h).map(constraint).collect(),
         drifts: drifts(scene, &fine)?,
@@ -172,7 +192,12 @@ fn both(fine: Option<Number>, coarse: Option<Number>) -> Option<Number> {
     Some(Number { value: fine.value, error: fine.error.hypot(fine.value - coarse.value) })
 }
 
-fn laws(scene: &Scene, instants: &[Instant], numbers: &FirstOrder) -> Result<Vec<Left>, JudgeError> {
+fn laws(
+    scene: &Scene,
+    before: &[Instant],
+    instants: &[Instant],
+    numbers: &FirstOrder,
+) -> Result<Vec<Left>, JudgeError> {
     let kept = rms(instants.iter().map(|i| as_force(i, &(&i.driven + &i.rest)).norm()));
     let driven = rms(instants.iter().map(|i| as_force(i, &i.driven).norm()));
     let of = |law, a: f64, b: f64, with: String| Left { law, residual: a.hypot(b), with };
@@ -180,7 +205,7 @@ fn laws(scene: &Scene, instants: &[Instant], numbers: &FirstOrder) -> Result<Vec
         of(Law::Chetaev, numbers.balance, numbers.constraint, String::new()),
         of(Law::MissingRate, numbers.balance, driven, String::new()),
     ];
-    if let Some((left, start)) = vakonomic(instants) {
+    if let Some((left, start)) = vakonomic(before, instants) {
         let start = start.iter().enumerate();
         let start = start.filter_map(|(i, n)| n.map(|n| format!("mu0_{} = {:.6e}", i + 1, n.value)));
         laws.push(of(Law::Vakonomic, left, kept, start.collect::<Vec<_>>().join(", ")));

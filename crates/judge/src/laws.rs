@@ -18,8 +18,9 @@ pub struct FirstOrder {
     pub slip: Option<Number>,
     /// `γ` of a drag `−γ M v`, in `1/T`; none where nothing moves.
     pub drag: Option<Number>,
-    /// Residual of the balance, rms, in `√E/T`.
+    /// Residual of the balance, rms, in `√E/T`; and without ε, without drag.
     pub balance: f64,
+    pub without: [f64; 2],
     /// Residual of `ḟ + λ̇/N`, as a force, rms.
     pub constraint: f64,
 }
@@ -47,6 +48,13 @@ pub fn as_force(instant: &Instant, c: &DVector<f64>) -> DVector<f64> {
 /// Fits `r = (Aᵀ − ε C) λ − γ M v` with λ free at each sample, by Gauss–Newton steps from `ε = 0`, and then
 /// `f = −λ/N`.
 pub fn first_order(instants: &[Instant]) -> FirstOrder {
+    let all = with_numbers(instants, [true, true]);
+    let without = [[false, true], [true, false]].map(|with| with_numbers(instants, with).balance);
+    FirstOrder { without, ..all }
+}
+
+/// The same with ε or drag zero.
+fn with_numbers(instants: &[Instant], with: [bool; 2]) -> FirstOrder {
     let mut guess = 0.0;
     let (mut numbers, mut left) = (vec![None; 2], f64::INFINITY);
     let mut reactions = Vec::new();
@@ -61,7 +69,8 @@ pub fn first_order(instants: &[Instant]) -> FirstOrder {
             let reaction = along + along_moved * drag;
             let (trace, _) = split(&basis, &(&i.curvature * &reaction));
             // rest = −(ε − guess) trace − γ moved
-            x.extend((0..rest.len()).map(|k| vec![-trace[k], -moved[k]]));
+            let of = |x: f64, i: usize| if with[i] { -x } else { 0.0 };
+            x.extend((0..rest.len()).map(|k| vec![of(trace[k], 0), of(moved[k], 1)]));
             y.extend(rest.iter().copied());
             forces.push(reaction);
         }
@@ -91,12 +100,56 @@ pub fn first_order(instants: &[Instant]) -> FirstOrder {
         let rate = DVector::from_vec(derivative(&t, &rows, k, REACH, 1));
         as_force(&instants[k], &(&instants[k].driven + &instants[k].rest + rate * creep)).norm()
     }));
-    FirstOrder { epsilon: numbers[0], slip, drag: numbers[1], balance: left, constraint }
+    FirstOrder { epsilon: numbers[0], slip, drag: numbers[1], balance: left, without: [left; 2], constraint }
+}
+
+/// A number of the scene that is another in the motion, or a force that the scene lacks.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Misfit {
+    /// `m`, a parameter, or `force along x`.
+    pub name: String,
+    /// Its part of the parameter, or the force.
+    pub by: Number,
+    /// What Chetaev's law leaves with it, rms, in `√E/T`.
+    pub residual: f64,
+}
+
+/// A parameter is off by no more than this part of itself.
+const OFF: f64 = 0.5;
+
+/// Each one alone beside Chetaev's law, by what it leaves; none for a parameter that would be off by more than half.
+pub fn misfits(instants: &[Instant], parameters: &[(String, f64)], coordinates: &[String]) -> Vec<Misfit> {
+    let count = parameters.len();
+    let column = |i: &Instant, j: usize| match j.checked_sub(count) {
+        None => -&i.by_parameter[j],
+        Some(k) => i.unit_forces.column(k).into_owned(),
+    };
+    let name = |j: usize| match j.checked_sub(count) {
+        None => parameters[j].0.clone(),
+        Some(k) => format!("force along {}", coordinates[k]),
+    };
+    let one = |j: usize| -> Option<Misfit> {
+        let (mut x, mut y) = (Vec::new(), Vec::new());
+        for i in instants {
+            x.extend(split(&i.along, &column(i, j)).0.iter().map(|x| vec![*x]));
+            y.extend(split(&i.along, &i.balance).0.iter().copied());
+        }
+        let by = fit(&x, &y)[0].filter(|by| j >= count || by.value.abs() < OFF)?;
+        let left = rms(x.iter().zip(&y).map(|(x, y)| y - x[0] * by.value));
+        let residual = left * (y.len() as f64 / instants.len() as f64).sqrt();
+        Some(Misfit { name: name(j), by, residual })
+    };
+    let mut found: Vec<Misfit> = (0..count + coordinates.len()).filter_map(one).collect();
+    found.sort_by(|a, b| a.residual.total_cmp(&b.residual));
+    found
 }
 
 /// What is left of the balance, rms, where `μ` moves by `Aᵀ μ̇ = C μ − (E − Q)` from the best `μ₀`, and that
-/// `μ₀`; none where such a `μ` grows beyond all numbers.
-pub fn vakonomic(instants: &[Instant]) -> Option<(f64, Vec<Option<Number>>)> {
+/// `μ₀`, at the first of the instants `before` the others, of which nothing else is asked; none where such a `μ`
+/// grows beyond all numbers.
+pub fn vakonomic(before: &[Instant], instants: &[Instant]) -> Option<(f64, Vec<Option<Number>>)> {
+    let (first, count) = (before.len(), instants.len());
+    let instants: Vec<&Instant> = before.iter().chain(instants).collect();
     let h = instants[0].constraint.len();
     let t: Vec<f64> = instants.iter().map(|i| i.t).collect();
     // μ̇ = B⁺C μ − B⁺r, B = S⁻¹Aᵀ: one row of (B⁺C, −B⁺r) a sample
@@ -126,9 +179,10 @@ pub fn vakonomic(instants: &[Instant]) -> Option<(f64, Vec<Option<Number>>)> {
     let (mut x, mut right) = (Vec::new(), Vec::new());
     for (k, i) in instants.iter().enumerate() {
         let of = |column: usize| split(&i.along, &(&i.curvature * y.column(column))).0;
+        let counts = k >= first;
         let columns: Vec<DVector<f64>> = (0..=h).map(of).collect();
         let (rest, _) = split(&i.along, &i.balance);
-        for r in 0..rest.len() {
+        for r in 0..if counts { rest.len() } else { 0 } {
             x.push((0..h).map(|c| columns[c][r]).collect::<Vec<f64>>());
             right.push(rest[r] - columns[h][r]);
         }
@@ -148,7 +202,7 @@ pub fn vakonomic(instants: &[Instant]) -> Option<(f64, Vec<Option<Number>>)> {
     let start = fit(&x, &right);
     let of = |row: &Vec<f64>| row.iter().zip(&start).map(|(x, n)| x * n.map_or(0.0, |n| n.value)).sum::<f64>();
     let left = rms(x.iter().zip(&right).map(|(x, y)| y - of(x)));
-    Some((left * (right.len() as f64 / instants.len() as f64).sqrt(), start)).filter(|(left, _)| left.is_finite())
+    Some((left * (right.len() as f64 / count as f64).sqrt(), start)).filter(|(left, _)| left.is_finite())
 }
 
 /// `s` of `A a = −(1 − s)(ḟ − A a)`: 0 where the constraint is differentiated as it is, 1 where the rate of

@@ -12,6 +12,8 @@ use crate::point::{COORDINATES, Point, VELOCITIES};
 const ITERATIONS: usize = 50;
 /// Singular values up to this part of the largest belong to directions in which motions stay steady.
 const FLAT: f64 = 1e-9;
+/// What is left of a velocity after so many halvings, over the last digit of what it was.
+const DIGITS: f64 = 64.0;
 /// Steps of Runge and Kutta along one displacement.
 const PARTS: usize = 100;
 
@@ -49,13 +51,27 @@ impl Point {
         let m = speeds.len();
         let mut last = f64::INFINITY;
         let mut iterations = 0;
+        let mut first: Option<Vec<f64>> = None;
+        let begun = self.y.clone();
         loop {
             let y = self.y.clone();
             let (rates, jacobian) = (self.rates(&y)?, self.jacobian(&y)?);
             let matrix = DMatrix::from_fn(kept.len(), kept.len(), |i, j| jacobian[(kept[i], kept[j])]);
             let residual = DVector::from_iterator(kept.len(), kept.iter().map(|&i| rates[i]));
             let (scales, moving) = moving(self, &kept, &matrix)?;
+            let terms = |row: usize| matrix.row(row).iter().zip(&scales).map(|(a, s)| a.abs() * s).sum::<f64>();
+            let sizes: Vec<f64> = (0..kept.len()).map(terms).collect();
+            let first = first.get_or_insert_with(|| sizes.clone());
             match moving {
+                // to rest, by steps that only halve what is left: nothing is left of what there was at first
+                Some(Moving { place, rate, .. })
+                    if iterations == ITERATIONS && rate.abs() <= f64::EPSILON * first[place] =>
+                {
+                    let is_rest = |&&i: &&usize| self.y[i].abs() <= DIGITS * f64::EPSILON * begun[i].abs();
+                    let rest: Vec<usize> = speeds.iter().filter(is_rest).copied().collect();
+                    rest.into_iter().for_each(|i| self.y[i] = 0.0);
+                    return self.state();
+                }
                 // on, as long as it becomes better
                 None if residual.norm() > 0.5 * last || residual.norm() == 0.0 => return self.state(),
                 Some(Moving { place, rate, limit }) if iterations == ITERATIONS => {
@@ -80,10 +96,7 @@ impl Point {
                 }
                 Some(k) => scale(speeds[k]).map_or(1.0, round),
             });
-            let sizes = DVector::from_fn(kept.len(), |i, _| {
-                let size: f64 = matrix.row(i).iter().zip(&scales).map(|(a, s)| a.abs() * s).sum();
-                if size > 0.0 { size } else { 1.0 }
-            });
+            let sizes = DVector::from_fn(kept.len(), |i, _| if sizes[i] > 0.0 { sizes[i] } else { 1.0 });
             let scaled = DMatrix::from_fn(kept.len(), 2 * m, |i, k| columns[(i, k)] * units[k] / sizes[i]);
             let svd = SingularValues::of(&scaled);
             let step = svd.solve(&-residual.component_div(&sizes), FLAT * svd.values.max()).component_mul(&units);

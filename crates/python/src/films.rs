@@ -149,14 +149,14 @@ impl System {
         let settings = settings(tolerance, max_steps)?;
         let interrupt = Interrupt::default();
         let robust = robust.then_some(ROBUST);
-        let own = films.clone();
         let work = move || {
+            let mut own = films;
             let question = Question { unknowns: &unknowns, law: &law, starts, robust, settings, threads: 0 };
-            let rows = fit_formulations(&scene, &own, &question, &wanted)?;
+            let rows = fit_formulations(&scene, &mut own, &question, &wanted)?;
             let answer = fit_value(&scene, &own, &rows).to_string();
-            Ok::<_, FitError>((rows, answer))
+            Ok::<_, FitError>((rows, answer, own))
         };
-        let (rows, answer) = background::run(py, &interrupt, work)?.map_err(refused)?;
+        let (rows, answer, films) = background::run(py, &interrupt, work)?.map_err(refused)?;
         let seen = |film: &Film| -> Seen {
             let column = |c: usize| film.rows.iter().map(|row| row[c].unwrap_or(f64::NAN)).collect();
             let columns = film.columns.iter().enumerate().map(|(c, own)| (own.name.clone(), own.sigma, column(c)));

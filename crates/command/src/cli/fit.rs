@@ -28,7 +28,8 @@ pub struct FitArguments {
     /// `--free`.
     #[arg(long, value_name = "NAME,…", value_delimiter = ',')]
     pub law: Vec<Unknown>,
-    /// Standard deviations of columns: `0.5mm` of all, `x=0.5mm` of one.
+    /// Standard deviations of columns: `0.5mm` of all, `x=0.5mm` of one; `free`: estimated from what the best
+    /// formulation leaves.
     #[arg(long, value_name = "σ,…", value_delimiter = ',', allow_hyphen_values = true)]
     pub sigma: Vec<String>,
     /// Numbers that are known and others in one film: `psi'@2=6`.

@@ -35,7 +35,7 @@ pub(super) fn guesses(problem: &TwoPoint, count: usize) -> Result<Guesses, Solve
         (0..n).map(velocity).collect()
     };
     let free = problem.velocities.free.clone();
-    let constants = problem.first_constants.clone();
+    let constants = if problem.every_constant { Vec::new() } else { problem.first_constants.clone() };
     let unknowns = |v: &[f64]| -> Vec<f64> { free.iter().map(|&i| v[i]).chain(constants.iter().copied()).collect() };
     let first = unknowns(&straight);
     let mut metric = Metric::new(&problem.system)?;

@@ -11,7 +11,7 @@ use crate::connect::velocities::Velocities;
 use crate::connect::{Aim, own_constant_names};
 use crate::differences::ORDER_8;
 use crate::direction::Direction;
-use crate::{Choice, Metric, Settings, SolveError, Varying};
+use crate::{Choice, Metric, Settings, SolveError, VAKONOMIC, Varying};
 
 /// `r_i(x) = (q_i(t₁; x) − q₁_i)/size_i`, x in units of the problem.
 #[derive(Clone)]
@@ -21,6 +21,10 @@ pub(super) struct TwoPoint {
     pub(super) aim: Aim,
     /// Coordinates with their values at the end.
     pub(super) goal: Vec<(usize, f64)>,
+    /// Others that follow, where constraints are integrable: what is found has to have them, too.
+    pub(super) others: Vec<(usize, f64)>,
+    /// Whether every constant gives the same motion, so that none is unknown.
+    pub(super) every_constant: bool,
     pub(super) names: Vec<String>,
     pub(super) varying: Varying,
     pub(super) velocities: Velocities,
@@ -70,7 +74,17 @@ impl TwoPoint {
         varying.set(&scene.start, &[], rule, false)?;
         let first_constants = varying.constants().to_vec();
         let mut names: Vec<String> = velocities.free.iter().map(|&i| format!("{}'", known[i])).collect();
-        names.extend(own_constant_names(&varying));
+        let integrable = || mechanics::integrability(&scene.system.clone(), &scene.start, aim.t);
+        let every_constant = choice.formulation == VAKONOMIC
+            && goal.len() == system.dimension()
+            && integrable().is_ok_and(|found| found.is_integrable());
+        let (goal, others) = match every_constant {
+            true => goal.into_iter().partition(|(i, _)| velocities.free.contains(i)),
+            false => (goal, Vec::new()),
+        };
+        if !every_constant {
+            names.extend(own_constant_names(&varying));
+        }
         if names.len() != goal.len() {
             return refused(format!(
                 "{} has {} unknowns ({}), and {} coordinates are given at the end: there have to be as many",
@@ -90,6 +104,8 @@ impl TwoPoint {
             scene_start,
             aim,
             goal,
+            others,
+            every_constant,
             names,
             varying,
             velocities,
@@ -115,6 +131,7 @@ impl TwoPoint {
     /// The start and the constants with these unknowns, in the units of the scene.
     pub(super) fn start(&mut self, x: &[f64]) -> Result<(State, Vec<f64>), SolveError> {
         let (free, constants) = x.split_at(self.velocities.free.len());
+        let constants = if self.every_constant { &self.first_constants } else { constants };
         Ok((self.velocities.start(free)?, constants.to_vec()))
     }
 
@@ -138,6 +155,23 @@ impl TwoPoint {
         let run = prepared.integrate(self.aim.t, &options).map_err(refused)?;
         run.solution.completed()?;
         Ok(run.at(&mut prepared.compiled, self.aim.t).map_err(refused)?.coordinates)
+    }
+
+    /// The coordinates aimed at, in units of the problem, at `count` times up to the end; none where the motion does
+    /// not come there.
+    pub(super) fn curve(&mut self, unknowns: &[f64], count: usize) -> Option<Vec<f64>> {
+        self.set(&self.in_units(unknowns)).ok()?;
+        let options = self.options(self.settings.tolerance);
+        let (start, end) = (self.scene_start.t, self.aim.t);
+        let prepared = self.varying.prepared_mut();
+        let run = prepared.integrate(end, &options).ok()?;
+        run.solution.completed().ok()?;
+        let mut curve = Vec::new();
+        for k in 1..=count {
+            let at = run.at(&mut prepared.compiled, start + (end - start) * k as f64 / count as f64).ok()?.coordinates;
+            curve.extend(self.goal.iter().zip(&self.sizes).map(|((i, _), size)| at[*i] / size));
+        }
+        Some(curve)
     }
 
     /// How the start moves with each unknown. With a velocity by a difference of order 8: the start is linear

@@ -1,0 +1,216 @@
+//! Exclusions that can be trusted: right formulations, nested ones, what is not modelled, estimated deviations, units,
+//! and the smallest films.
+
+use fit::{Deviations, Film, Identifiability, Unknown, Verdict, fit_formulations, significance, threshold};
+use scene::Scene;
+
+use crate::films::{SLEDGE, built_in, film, fitted, sledge, times};
+
+const DISC: &str = r#"
+title = "Upright disc"
+[parameters]
+m = 1.0
+R = 0.1
+[coordinates]
+x   = { unit = "m", start = 0 }
+y   = { unit = "m", start = 0 }
+psi = { unit = "rad", start = 0 }
+phi = { unit = "rad", start = 0.5 }
+[system]
+lagrangian  = "m*(x'^2 + y'^2)/2 + m*R^2*psi'^2/4 + m*R^2*phi'^2/8"
+constraints = ["x' - R*psi'*cos(phi)", "y' - R*psi'*sin(phi)"]
+[start.velocities]
+"psi'" = 10
+"phi'" = 0.8
+[run]
+duration = 3
+"#;
+
+/// A disc rolls on a circle; the vakonomic family has this motion for μ₀ = −m(x', y').
+#[test]
+fn a_family_that_contains_the_motion_is_not_excluded() {
+    let scene = Scene::parse("disc", DISC).unwrap();
+    for (seed, end, rate) in [(1, 2.0, 10.0), (2, 4.0, 6.0), (3, 3.0, 20.0)] {
+        let t: Vec<f64> = (1..=(end * rate) as usize).map(|k| k as f64 / rate).collect();
+        let at = |t: f64| {
+            let turn = 0.5 + 0.8 * t;
+            vec![1.25 * (turn.sin() - 0.5_f64.sin()), 1.25 * (0.5_f64.cos() - turn.cos())]
+        };
+        let rows = fitted(&scene, &[film(&scene, "x,y", 1e-3, seed, &t, at)], &["start"], &[]);
+        let fits: Vec<_> = rows.iter().map(|row| row.fit.as_ref().unwrap()).collect();
+        assert!(rows.iter().all(|row| matches!(row.verdict, Verdict::CannotTell { .. })), "{:?}", rows[1].verdict);
+        // it contains Chetaev's: its least χ² is not above
+        assert!(fits[1].chi_squared <= fits[0].chi_squared + 0.5, "{} {}", fits[1].chi_squared, fits[0].chi_squared);
+        assert!(rows[0].notes.iter().any(|note| note.starts_with("nested")), "{:?}", rows[0].notes);
+    }
+}
+
+/// Quantiles of the χ² distribution at the level of 15 with one degree of freedom, from tables.
+#[test]
+fn thresholds_go_with_the_unknowns_more() {
+    assert_eq!(threshold(1), 15.0);
+    for (more, expected) in [(2, 18.28), (16, 45.9)] {
+        assert!((threshold(more) - expected).abs() < 0.3, "{more}: {}", threshold(more));
+    }
+    assert_eq!([3.96, 12.3, 763.0].map(significance), ["over 3 σ", "over 10 σ", "over 100 σ"]);
+}
+
+/// Straight lines, sixteen films: both formulations are right, and one has sixteen numbers more.
+#[test]
+fn sixteen_straight_lines_exclude_nobody() {
+    let scene = built_in("heisenberg");
+    let t: Vec<f64> = (1..=20).map(|k| k as f64 / 20.0).collect();
+    let films: Vec<Film> = (0..16)
+        .map(|k| {
+            let (s, c) = (0.4 * k as f64).sin_cos();
+            film(&scene, "x,y", 1e-3, 70 + k, &t, |t| vec![0.5 + c * t, s * t])
+        })
+        .collect();
+    let rows = fitted(&scene, &films, &["x", "y", "x'", "y'"], &[]);
+    assert!(rows.iter().all(|row| matches!(row.verdict, Verdict::CannotTell { .. })), "{:?}", rows[0].verdict);
+}
+
+/// A straight line on a table that is tilted by 0.07°, which no scene says: an arc is as good as a parabola.
+#[test]
+fn a_tilt_is_named_before_anything_is_supported() {
+    let scene = built_in("heisenberg");
+    let push = 9.81 * 0.07_f64.to_radians().sin();
+    let (mut explained, t) = (0, times(2.0));
+    for seed in 0..6 {
+        let film = film(&scene, "x,y", 1e-3, 100 + seed, &t, |t| vec![0.5 + t, 0.5 * push * t * t]);
+        let rows = fitted(&scene, &[film], &["x", "y", "x'", "y'"], &[]);
+        assert_ne!(rows[1].verdict, Verdict::Supported, "{seed}");
+        assert!(!matches!(rows[0].verdict, Verdict::Excluded { .. }), "{:?}", rows[0].verdict);
+        if let Verdict::Explained { with: Some(with), from } = &rows[0].verdict {
+            explained += 1;
+            assert!(from == &["vakonomic"] && !with.is_empty(), "{with}");
+            assert!(rows[0].notes.iter().any(|note| note.contains("as of a tilt")), "{:?}", rows[0].notes);
+        }
+    }
+    assert!(explained >= 4, "{explained}");
+}
+
+/// Deviations that are too large make an exclusion weaker, not unsafe; estimated ones are those of the noise.
+#[test]
+fn deviations_may_be_too_large_or_unknown() {
+    let scene = built_in("sledge");
+    let table = |sigma: f64| {
+        let mut film = film(&scene, "x,y,phi", 1e-3, 5, &times(2.0), sledge);
+        film.columns.iter_mut().for_each(|column| column.sigma = sigma);
+        film
+    };
+    let rows = fitted(&scene, &[table(1.4e-3)], &SLEDGE, &[]);
+    assert_eq!(rows[0].verdict, Verdict::Supported);
+    assert!(matches!(rows[1].verdict, Verdict::Excluded { .. }), "{:?}", rows[1].verdict);
+    assert!(rows[0].fit.as_ref().unwrap().objections().all(|test| test.is_too_small()));
+
+    let deviations = Deviations::written(&["free".into()]).unwrap();
+    let seen = table(1e-3);
+    let mut text = "t,x,y,phi\n".to_string();
+    for (t, row) in seen.t.iter().zip(&seen.rows) {
+        let cells: Vec<String> = row.iter().flatten().map(f64::to_string).collect();
+        text += &format!("{t},{}\n", cells.join(","));
+    }
+    let mut films = [Film::read(&scene, "film", &text, &deviations).unwrap()];
+    let unknowns: Vec<Unknown> = SLEDGE.iter().map(|text| text.parse().unwrap()).collect();
+    let question = crate::films::question(&unknowns);
+    let rows = fit_formulations(&scene, &mut films, &question, &[deltaq::CHETAEV, deltaq::VAKONOMIC]).unwrap();
+    assert_eq!(rows[0].verdict, Verdict::Supported);
+    for column in &films[0].columns {
+        assert!((column.sigma / 1e-3 - 1.0).abs() < 0.2, "{column:?}");
+    }
+    assert!(rows[0].fit.as_ref().unwrap().tests.iter().all(|test| test.name != "chi squared"));
+}
+
+/// A scene in millimetres: what is said to be in millimetres is in its units, what is in metres is a thousand times.
+#[test]
+fn units_are_those_of_the_scene() {
+    let text = DISC.replace("unit = \"m\"", "unit = \"mm\"").replace("R = 0.1", "R = 100");
+    let scene = Scene::parse("disc", &text).unwrap();
+    let read = |header: &str, sigma: &str| {
+        let deviations = Deviations::written(&[sigma.to_string()]).unwrap();
+        Film::read(&scene, "film", &format!("t,{header}\n0.1,2\n0.2,3\n"), &deviations)
+    };
+    let of = |header: &str, sigma: &str| {
+        let film = read(header, sigma).unwrap_or_else(|error| panic!("{error}"));
+        (film.rows[0][0], film.columns[0].sigma)
+    };
+    assert_eq!(of("x [mm]", "1mm"), (Some(2.0), 1.0));
+    assert_eq!(of("x", "0.5"), (Some(2.0), 0.5));
+    let (value, sigma) = of("x [m]", "1cm");
+    assert!((value.unwrap() - 2000.0).abs() < 1e-9 && (sigma - 10.0).abs() < 1e-9);
+    for (header, sigma) in [("x [rad]", "1mm"), ("R*psi [m]", "1"), ("phi [mm]", "1"), ("phi", "1mm")] {
+        let error = read(header, sigma).unwrap_err().to_string();
+        assert!(error.contains("give the numbers in the units of the scene"), "{header}: {error}");
+    }
+}
+
+/// The smallest films: one unknown, one sample, a column at rest, a gap, a film that begins late.
+#[test]
+fn the_smallest_films_are_answered() {
+    let scene = built_in("sledge");
+    let all = film(&scene, "x,y,phi", 1e-3, 6, &times(1.0), sledge);
+    let part = |from: usize, to: usize| {
+        let (t, rows, lines) = (all.t[from..to].to_vec(), all.rows[from..to].to_vec(), all.lines[from..to].to_vec());
+        Film { t, rows, lines, ..all.clone() }
+    };
+    for film in [part(0, 1), part(0, 2), part(59, 60), part(40, 60), all.clone()] {
+        let rows = fitted(&scene, &[film.clone()], &["g~9"], &[]);
+        for row in rows {
+            let fit = row.fit.unwrap_or_else(|error| panic!("{} samples: {error}", film.t.len()));
+            assert!(fit.chi_squared.is_finite() && fit.estimates.iter().all(|e| e.value.is_finite()));
+        }
+    }
+    let mut rest = all.clone();
+    rest.rows.iter_mut().for_each(|row| *row = vec![Some(0.0), None, None]);
+    let rows = fitted(&scene, &[rest], &["g~9"], &[]);
+    assert!(rows[0].fit.is_ok() && rows[0].verdict != Verdict::Supported, "{:?}", rows[0].verdict);
+}
+
+/// A chain of 25 masses: series are cut before they reach the last spring, and that says nothing of it.
+#[test]
+fn what_is_cut_is_open() {
+    let n = 30;
+    let names = |s: &str| (1..=n).map(|i| s.replace('#', &i.to_string())).collect::<Vec<_>>();
+    let coordinates = names("x# = { start = 0 }").join("\n");
+    let kinetic = names("x#'^2/2").join(" + ");
+    let springs: Vec<String> =
+        (1..n).map(|i| format!("{}*(x{} - x{i})^2/2", if i == n - 1 { "k" } else { "2" }, i + 1)).collect();
+    let starts = (1..n).map(|i| format!("\"x{i}'\" = {}", if i == 1 { 1 } else { 0 })).collect::<Vec<_>>().join("\n");
+    let text = format!(
+        "title = \"chain\"\n[parameters]\nk = 3.5\n[coordinates]\n{coordinates}\n[system]\nlagrangian = \"{kinetic} - {}\"\n\
+         constraints = [\"x{n}' - 0.3*x{n}\"]\n[start.velocities]\n{starts}\n[run]\nduration = 1\n",
+        springs.join(" - ")
+    );
+    let scene = Scene::parse("chain", &text).unwrap_or_else(|error| panic!("{error}"));
+    let film = film(&scene, "x1", 1e-3, 8, &times(1.0), |t| vec![t]);
+    let unknowns = ["k".parse().unwrap()];
+    let choice = deltaq::choices(&scene).into_iter().find(|c| *c.formulation == *deltaq::CHETAEV).unwrap();
+    let problem = fit::Problem::new(&scene, &choice, &[film], &unknowns, &deltaq::Settings::default()).unwrap();
+    let shown = problem.identifiability(&scene, &choice);
+    assert!(matches!(&shown, Identifiability::Open(why) if why.contains("cut")), "{shown:?}");
+}
+
+/// A point on a line with the potential `e² x²/2`: at e = 0 the film is stationary in e, and shows it all the same.
+#[test]
+fn a_stationary_unknown_is_shown() {
+    let text = "title = \"Spring\"\n[parameters]\ne = 0\n[coordinates]\nx = { start = 1 }\ny = { start = 0 }\n[system]\n\
+        lagrangian = \"(x'^2 + y'^2)/2 - e^2*x^2/2\"\nconstraints = [\"y' - 0.5*y\"]\n[start.velocities]\n\"x'\" = 0\n[run]\n\
+        duration = 2\n";
+    let scene = Scene::parse("spring", text).unwrap_or_else(|error| panic!("{error}"));
+    let estimate = |truth: f64| {
+        let film = film(&scene, "x", 1e-2, 11, &times(2.0), |t| vec![(truth * t).cos()]);
+        let row = crate::films::fitted_by(&[deltaq::CHETAEV], &scene, &[film], &["e"], &[]).remove(0);
+        let fit = row.fit.unwrap_or_else(|error| panic!("{error}"));
+        assert!(fit.hidden.is_empty(), "{:?}", fit.hidden);
+        fit.estimates[0].clone()
+    };
+    // of cos(e t) the film sees e² to 2e-2/√(Σ t⁴/4)
+    let zero = estimate(0.0);
+    let squares = times(2.0).iter().map(|t| t.powi(4) / 4.0).sum::<f64>();
+    let end = (1.96 * 1e-2 / squares.sqrt()).sqrt();
+    assert!(zero.interval[0] < 0.0 && zero.interval[1] > 0.0, "{zero:?}");
+    assert!(zero.interval[1] > 0.3 * end && zero.interval[1] < 2.0 * end, "{zero:?} {end}");
+    let other = estimate(0.3);
+    assert!((other.value.abs() - 0.3).abs() < 4.0 * other.error && other.error < 0.01, "{other:?}");
+}
