@@ -17,6 +17,7 @@ use mechanics::ConstantsRule;
 
 use crate::choice::{derive_at, watch};
 use crate::later_chart::{Later, Names};
+use crate::lost_rank::watch_rank;
 use crate::table::as_derived;
 use crate::trajectory::{Legs, Trajectory, outputs_in};
 use crate::trial::{NotSuited, not_suited};
@@ -150,7 +151,9 @@ fn going_on(
     let (by, equations) = if here.equations.removal.is_some() {
         let mut equations = vakonomic::derive_from_momenta(system).ok()?;
         watch(&mut equations, system);
-        ("canonical momenta", equations.leave_out_unneeded())
+        let mut equations = equations.leave_out_unneeded();
+        watch_rank(&mut equations, system);
+        ("canonical momenta", equations)
     } else {
         let (label, formulation) = (String::new(), as_derived(here.equations.formulation)?);
         let choice = Choice { label, formulation, removal: None, constants: ConstantsRule::Zero };

@@ -7,7 +7,7 @@ use mechanics::{ConstantsRule, Recombination, Removal, RemovalError, State, Syst
 use scene::Scene;
 use symbolic::{Expr, Symbol};
 
-use crate::silent::silent;
+use crate::lost_rank::watch_rank;
 use crate::{FORMS, FORMULATIONS, SolveError};
 
 /// One formulation of the scene, with all choices made.
@@ -125,8 +125,8 @@ fn gives_constant_costates(equations: &Equations, values: &[f64]) -> bool {
 pub fn derive_at(system: &System, start: &State, choice: &Choice) -> Result<Equations, SolveError> {
     let mut equations = derive_combined(system, start, choice)?;
     equations.domains = domains_at(system, start, &equations)?;
-    equations.silent = in_variables_of(&equations, system, &silent(system));
-    equations.guards.extend(equations.domains.iter().chain(&equations.silent));
+    equations.guards.extend(&equations.domains);
+    watch_rank(&mut equations, system);
     Ok(equations)
 }
 
@@ -140,12 +140,17 @@ fn domains_at(system: &System, start: &State, equations: &Equations) -> Result<V
         let value = g.evaluate(*e, &values).unwrap_or(f64::NAN);
         return Err(SolveError::OutsideDomain { expression: g.plain(*e), value });
     }
-    Ok(in_variables_of(equations, system, &system.domains))
+    Ok(in_variables_of(equations, system, &system.domains, &HashSet::new()))
 }
 
 /// Expressions in a system's coordinates, velocities and time in the variables of its equations, as far as
-/// these tell them.
-fn in_variables_of(equations: &Equations, system: &System, es: &[Expr]) -> Vec<Expr> {
+/// these tell them, also by these unknowns.
+pub(crate) fn in_variables_of(
+    equations: &Equations,
+    system: &System,
+    es: &[Expr],
+    unknowns: &HashSet<Symbol>,
+) -> Vec<Expr> {
     let symbols = system.positions().into_iter().chain(system.velocities());
     let read = equations.coordinates.iter().chain(&equations.velocities).copied();
     let map: HashMap<Symbol, Expr> = symbols.zip(read).collect();
@@ -153,7 +158,8 @@ fn in_variables_of(equations: &Equations, system: &System, es: &[Expr]) -> Vec<E
     let known_there = equations.graph.adopt(&system.graph, es);
     let guards = known_there.into_iter().map(|e| equations.graph.substitute(e, &map));
     let defined = equations.definitions.iter().map(|d| d.0).chain(equations.parameters.keys().copied());
-    let known: HashSet<Symbol> = equations.known_symbols().into_iter().chain(defined).collect();
+    let known = equations.known_symbols().into_iter().chain(defined).chain(unknowns.iter().copied());
+    let known: HashSet<Symbol> = known.collect();
     guards.filter(|&e| equations.symbols_behind([e]).is_subset(&known)).collect()
 }
 

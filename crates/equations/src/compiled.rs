@@ -9,6 +9,7 @@ use crate::outputs::{Cost, Outputs, Sizes};
 use crate::plan::Plan;
 use crate::planned::Planned;
 use crate::projection::Projector;
+use crate::rows::Rows;
 use crate::series::Series;
 use crate::terms::Terms;
 
@@ -30,6 +31,7 @@ pub struct Compiled {
     pub(crate) gauges: Vec<fn(f64) -> f64>,
     pub(crate) highest_power: f64,
     pub(crate) divisors: Evaluator<f64>,
+    pub(crate) rows: Option<Rows>,
     /// Programs in terms, once these are asked for.
     pub(crate) terms: Option<Box<Terms>>,
     pub(crate) projector: Option<Projector>,
@@ -107,6 +109,7 @@ impl Compiled {
             steep: equations.evaluator(&known, &steep.iter().map(|steep| steep.argument).collect::<Vec<_>>())?,
             angles: equations.evaluator(&known, &equations.angles())?,
             divisors: equations.evaluator(&known, &equations.divisors())?,
+            rows: Rows::new(equations)?,
             terms: None,
             projector: equations.projection.as_ref().map(|p| Projector::new(equations, p, &known)).transpose()?,
             jacobian: None,
@@ -290,6 +293,26 @@ impl Compiled {
         if let Some(size) = values.get_mut(guards.len()) {
             *size = coefficients.iter().map(|x| x * x).sum();
         }
+    }
+
+    /// Rows and columns of [`Equations::rows`]; `(0, 0)` where there are none.
+    pub fn rank(&self) -> (usize, usize) {
+        self.rows.as_ref().map_or((0, 0), |rows| rows.shape)
+    }
+
+    /// The entries of [`Equations::rows`] at `(t, y)`, row-major.
+    ///
+    /// # Errors
+    /// As [`Compiled::rates`].
+    pub fn rows(&mut self, t: f64, y: &[f64], entries: &mut [f64]) -> Result<(), EvaluationFailure> {
+        self.load(t, y);
+        if self.rows.as_ref().is_some_and(|rows| rows.need_unknowns) {
+            self.solve_instant(t, y)?;
+        }
+        if let Some(rows) = &mut self.rows {
+            entries.copy_from_slice(rows.program.evaluate(&self.inputs[..rows.inputs]));
+        }
+        Ok(())
     }
 
     /// The matrices `∂R/∂z` of the blocks at `(t, y)`, row-major; of those that are not linear at the last

@@ -125,6 +125,15 @@ pub struct ConstraintProjection {
     pub metric: Matrix,
 }
 
+/// The constraint Jacobian `A = ∂f/∂v` along a motion.
+#[derive(Clone, Debug)]
+pub struct ConstraintRows {
+    /// `A` in `(t, y, z)`.
+    pub jacobian: Matrix,
+    /// Names of the coordinates, in the order of its columns.
+    pub coordinates: Vec<String>,
+}
+
 /// Equations of motion as a formulation hands them over.
 #[derive(Clone)]
 pub struct Equations {
@@ -169,8 +178,9 @@ pub struct Equations {
     pub guards: Vec<Expr>,
     /// Those of the guards at which formulas, as they were written, cease to have values.
     pub domains: Vec<Expr>,
-    /// Those of the guards at which a constraint does not restrict the velocities: its `∂f/∂v` vanishes.
-    pub silent: Vec<Expr>,
+    /// `A = ∂f/∂v` of the constraints of the system in `(t, y, z)`: where it loses rank along a motion, several
+    /// motions go on, or none. `None` where it is constant, or there is no constraint.
+    pub rows: Option<ConstraintRows>,
     /// By which pivots they were derived, where these may become small along a motion and others be taken;
     /// never where the outputs are other coordinates than those of the system.
     pub chart: Option<Chart>,
@@ -209,7 +219,7 @@ impl Equations {
             creeps: false,
             guards: Vec::new(),
             domains: Vec::new(),
-            silent: Vec::new(),
+            rows: None,
             chart: None,
             statements: Vec::new(),
             left_out: Vec::new(),

@@ -1,0 +1,37 @@
+//! The rows `A = ∂f/∂v` of the constraints as numbers.
+
+use symbolic::{CompileError, Evaluator};
+
+use crate::equations::Equations;
+
+/// [`Equations::rows`], compiled.
+#[derive(Clone)]
+pub(crate) struct Rows {
+    pub(crate) program: Evaluator<f64>,
+    pub(crate) shape: (usize, usize),
+    /// Whether they contain unknowns of the instant, and the number of inputs.
+    pub(crate) need_unknowns: bool,
+    pub(crate) inputs: usize,
+}
+
+impl Rows {
+    pub(crate) fn new(equations: &Equations) -> Result<Option<Self>, CompileError> {
+        let Some(rows) = &equations.rows else { return Ok(None) };
+        let mut inputs = equations.known_symbols();
+        let need_unknowns = equations.rows_need_unknowns();
+        if need_unknowns {
+            inputs.extend(equations.unknowns());
+        }
+        let program = equations.evaluator(&inputs, rows.jacobian.entries())?;
+        Ok(Some(Rows { program, shape: (rows.jacobian.rows(), rows.jacobian.columns()), need_unknowns, inputs: inputs.len() }))
+    }
+}
+
+impl Equations {
+    /// Whether [`Equations::rows`] contain unknowns of the instant.
+    pub(crate) fn rows_need_unknowns(&self) -> bool {
+        let entries = self.rows.iter().flat_map(|rows| rows.jacobian.entries().iter().copied());
+        let behind = self.symbols_behind(entries);
+        self.unknowns().iter().any(|z| behind.contains(z))
+    }
+}
