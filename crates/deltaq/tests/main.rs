@@ -25,6 +25,7 @@ mod known_stops;
 mod known_values;
 mod last_digits;
 mod long;
+mod lost_rank;
 mod lost_digits;
 mod metric;
 mod model;

@@ -256,18 +256,6 @@ impl Equations {
         }
     }
 
-    /// Guards against equations of the instant that become singular where `∂f/∂v` of constraints not linear
-    /// in the velocities loses rank.
-    ///
-    /// Not for a mass matrix that depends on velocities: under strong masses its determinant is round-off.
-    pub fn guard_rank(&mut self, system: &System) {
-        let (g, v) = (&system.graph, system.velocities());
-        let moves = |&a: &Expr| g.symbols_of(a).iter().any(|symbol| v.contains(symbol));
-        if system.constraint_jacobian().entries().iter().any(moves) {
-            self.guard_determinants(g, |role| role == Role::Velocity);
-        }
-    }
-
     /// Guards against singular equations of the instant where their matrix `∂R/∂z`, in the graph `g`, depends
     /// on such states: its determinant may change its sign along a motion, or touch zero, and a step that
     /// passes over that goes on in one of several motions.

@@ -29,13 +29,15 @@ use crate::system::{Failure, System};
 const ROOTS: f64 = 10.0;
 const LEAST: f64 = 1e-6;
 const MOST: f64 = 1e-2;
-const OTHERS: f64 = 100.0;
+const OTHERS: f64 = 4.0;
 /// Up to here where `p` does not turn, which is where its cosine is over this.
-const TOUCHES: f64 = 1e-9;
+const TOUCHES: f64 = 1e-7;
 const SAME: f64 = 0.9;
-/// A minimum has been passed where |p| is this many times as large again.
+/// A minimum is judged where |p| is this many times as large again, and forgotten where it is so many times.
 const PASSED: f64 = 2.0;
-/// A run that can go no farther has come to a loss of rank where |p| is down to this.
+const FORGOTTEN: f64 = 16.0;
+/// A run that can go no farther has come to a loss of rank where |p| would vanish, as it falls, within this part
+/// of the time so far.
 const NEAR: f64 = 1e-3;
 /// A minimum is seen against what |p| was within so many of the longest steps before it.
 const STEPS: f64 = 4.0;
@@ -115,17 +117,22 @@ struct Minors {
     basis: Vec<f64>,
     /// The longest step since the one remembered before.
     step: f64,
+    /// Whether it belongs to a minimum that is over.
+    judged: bool,
 }
 
 /// `p` at ends of steps, the last one among them.
 pub(crate) struct RankWatch {
     h: usize,
+    start: f64,
     relative: f64,
     /// Factors of the rows: of length 1 at the start.
     scale: Vec<f64>,
     passed: VecDeque<Minors>,
     end: Option<Minors>,
-    state: Vec<f64>,
+    /// Whether the minimum among those not judged is over.
+    over: bool,
+    dimension: usize,
 }
 
 /// Where rank is lost: in this part of the step, or at its begin or before.
@@ -138,8 +145,8 @@ impl RankWatch {
     pub(crate) fn new(system: &System, t: f64, y: &[f64], options: &Options) -> Result<Self, Failure> {
         let (h, n) = system.rank();
         let relative = options.relative_tolerance * if options.method == Method::Taylor { 1.0 } else { OTHERS };
-        let (passed, state) = (VecDeque::new(), vec![0.0; y.len()]);
-        let mut watch = RankWatch { h, relative, scale: vec![1.0; h], passed, end: None, state };
+        let (passed, dimension) = (VecDeque::new(), y.len());
+        let mut watch = RankWatch { h, start: t, relative, scale: vec![1.0; h], passed, end: None, over: false, dimension };
         if watch.is_on() {
             let mut b = vec![0.0; h * n];
             system.rows(t, y, &mut b)?;
@@ -163,7 +170,7 @@ impl RankWatch {
             row.iter_mut().for_each(|x| *x *= scale);
         }
         let size = orthonormal(&mut basis, self.h);
-        Ok(Minors { t, size, basis, step: 0.0 })
+        Ok(Minors { t, size, basis, step: 0.0, judged: false })
     }
 
     fn cosine(&self, a: &Minors, b: &Minors) -> f64 {
@@ -174,7 +181,7 @@ impl RankWatch {
     pub(crate) fn look(&mut self, system: &System, segment: &Segment, end: &[f64]) -> Result<Option<Lost>, Failure> {
         let Some(begin) = self.passed.back().filter(|_| self.is_on()) else { return Ok(None) };
         let now = self.minors(system, segment.end, end)?;
-        let mut state = std::mem::take(&mut self.state);
+        let mut state = vec![0.0; self.dimension];
         segment.state(0.5, &mut state);
         let middle = self.minors(system, segment.time(0.5), &state)?;
         let cosines = [self.cosine(begin, &middle), self.cosine(begin, &now)];
@@ -185,11 +192,11 @@ impl RankWatch {
                 found = Some(if theta > 0.0 { Lost::Inside(theta) } else { Lost::Before });
             }
         }
-        let before = self.passed.iter().min_by(|a, b| a.size.total_cmp(&b.size));
-        if found.is_none() && before.is_some_and(|before| self.is_loss(before, &now, segment.width)) {
+        let least = self.passed.iter().skip(1).filter(|at| !at.judged).min_by(|a, b| a.size.total_cmp(&b.size));
+        if found.is_none() && least.is_some_and(|least| self.is_loss(least, &now, segment.width)) {
             found = Some(Lost::Before);
         }
-        self.state = state;
+        self.over = least.is_some_and(|least| now.size >= FORGOTTEN * least.size);
         self.end = Some(now);
         Ok(found)
     }
@@ -197,6 +204,7 @@ impl RankWatch {
     /// The step has been taken.
     pub(crate) fn advance(&mut self) {
         let Some(mut end) = self.end.take() else { return };
+        self.passed.iter_mut().filter(|_| self.over).for_each(|at| at.judged = true);
         let Some(last) = self.passed.pop_back() else { return };
         end.step = (end.t - last.t).abs();
         let is_new = |before: &Minors| {
@@ -217,14 +225,18 @@ impl RankWatch {
     /// Whether rank is being lost where a run can go no farther.
     pub(crate) fn is_near(&self) -> bool {
         let Some(last) = self.passed.back() else { return false };
-        self.reference(last, 0.0).is_some_and(|reference| last.size < NEAR * reference.size)
+        let falls = |before: &&Minors| last.size < FALLS * before.size;
+        self.passed.iter().rev().find(falls).is_some_and(|before| {
+            let ahead = last.size * (last.t - before.t).abs() / (before.size - last.size);
+            ahead < NEAR * (last.t - self.start).abs()
+        })
     }
 
     /// Where |p| was largest within a step's length before `least`.
     fn reference(&self, least: &Minors, width: f64) -> Option<&Minors> {
-        let length = STEPS * self.passed.iter().map(|at| at.step).fold(width.abs(), f64::max);
-        let direction = width.signum();
-        let before = self.passed.iter().filter(|at| (least.t - at.t) * direction > 0.0 || width == 0.0);
+        let before = self.passed.iter().filter(|at| (least.t - at.t) * width > 0.0);
+        let own = if least.step > 0.0 { least.step } else { width.abs() };
+        let length = STEPS * before.clone().map(|at| at.step).fold(own, f64::max);
         let within = before.clone().filter(|at| (least.t - at.t).abs() <= length);
         within.max_by(|a, b| a.size.total_cmp(&b.size)).or_else(|| before.last())
     }
@@ -234,8 +246,10 @@ impl RankWatch {
             return false;
         }
         let Some(reference) = self.reference(least, width).or(self.passed.back()) else { return false };
-        let depth = least.size / reference.size;
-        depth < ROOTS && is_lost(depth, self.cosine(reference, now), self.relative)
+        let mut before = self.passed.iter().rev().skip_while(|at| (at.t - least.t) * width > 0.0);
+        // the place on the way in that mirrors the one on the way out
+        let mirror = before.find(|at| at.size >= now.size).unwrap_or(reference);
+        is_lost(least.size / reference.size, self.cosine(mirror, now), self.relative)
     }
 
     /// Where |p| is least within the step, and `p` there.
