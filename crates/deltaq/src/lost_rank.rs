@@ -6,26 +6,55 @@ use equations::{Compiled, ConstraintRows, Equations};
 use integrate::DenseOutput;
 use mechanics::{SingularValues, System};
 use nalgebra::DMatrix;
-use symbolic::{Matrix, Symbol};
+use symbolic::{Expr, Matrix, Symbol, Vanishing};
 
 use crate::Metric;
 use crate::choice::in_variables_of;
 use crate::words::{enumerate, short};
 
-/// `A = ∂f/∂v` of `system` becomes [`Equations::rows`], unless it is constant.
+/// The rows of `A = ∂f/∂v` of `system` that may lose rank become [`Equations::rows`].
 pub(crate) fn watch_rank(equations: &mut Equations, system: &System) {
     let jacobian = system.constraint_jacobian();
-    if jacobian.entries().iter().all(|&e| equations.is_constant(&system.graph, e)) {
-        return;
-    }
+    let numbers = rows_at_stake(system, &jacobian);
+    let at_stake: Vec<Expr> = numbers.iter().flat_map(|&i| jacobian.row(i).iter().copied()).collect();
     let unknowns: HashSet<Symbol> = equations.unknowns().into_iter().collect();
-    let entries = in_variables_of(equations, system, jacobian.entries(), &unknowns);
-    let (rows, columns) = (jacobian.rows(), jacobian.columns());
-    let complete = entries.len() == rows * columns;
-    equations.rows = complete.then(|| ConstraintRows {
+    let entries = in_variables_of(equations, system, &at_stake, &unknowns);
+    let (rows, columns) = (numbers.len(), jacobian.columns());
+    equations.rows = (rows > 0 && entries.len() == rows * columns).then(|| ConstraintRows {
         jacobian: Matrix::from_fn(rows, columns, |i, j| entries[i * columns + j]),
+        numbers: numbers.into_iter().map(|i| i + 1).collect(),
         coordinates: system.coordinates.iter().map(|c| c.name.clone()).collect(),
     });
+}
+
+/// The rows whose rank may fall along a motion. A row with a column of its own, in which it has a constant other
+/// than zero, adds one to the rank of the others everywhere; and a row of constant length has rank 1.
+fn rows_at_stake(system: &System, jacobian: &Matrix) -> Vec<usize> {
+    let (g, values) = (&system.graph, system.parameter_values());
+    let is_constant = |e: Expr| g.symbols_of(e).iter().all(|symbol| values.contains_key(symbol));
+    let is_nonzero = |e: Expr| is_constant(e) && matches!(g.vanishes(e, &values), Vanishing::No { .. });
+    let mut rows: Vec<usize> = (0..jacobian.rows()).collect();
+    loop {
+        let own = |&i: &usize| {
+            (0..jacobian.columns()).any(|j| {
+                is_nonzero(jacobian[(i, j)]) && rows.iter().all(|&other| other == i || g.is_zero(jacobian[(other, j)]))
+            })
+        };
+        let Some(place) = rows.iter().position(own) else { break };
+        rows.remove(place);
+    }
+    if rows.iter().all(|&i| jacobian.row(i).iter().all(|&e| is_constant(e))) {
+        return Vec::new();
+    }
+    if let [row] = rows[..] {
+        let squares: Vec<Expr> = jacobian.row(row).iter().map(|&e| g.mul(e, e)).collect();
+        let square = g.sum(&squares);
+        let mut moving = g.symbols_of(square).into_iter().filter(|symbol| !values.contains_key(symbol));
+        if moving.all(|symbol| g.vanishes_exactly(g.derivative(square, symbol))) {
+            return Vec::new();
+        }
+    }
+    rows
 }
 
 /// Factors by which the columns of `A` come into one unit: velocities over those of the same energy at
@@ -48,6 +77,7 @@ const PLACES: usize = 8;
 /// Which constraints say nothing of the velocities at the end of a run, and where that is.
 pub(crate) fn words(equations: &Equations, compiled: &mut Compiled, dense: &DenseOutput) -> String {
     let (h, n) = compiled.rank();
+    let numbers = equations.rows.as_ref().map_or(&[][..], |rows| &rows.numbers);
     let mut rows = |t: f64, y: &[f64]| {
         let mut entries = vec![f64::NAN; h * n];
         let known = compiled.rows(t, y, &mut entries).is_ok() && entries.iter().all(|x| x.is_finite());
@@ -61,9 +91,9 @@ pub(crate) fn words(equations: &Equations, compiled: &mut Compiled, dense: &Dens
             let square = SingularValues::of(&(&scaled * scaled.transpose()));
             let last = square.right.row(h - 1);
             let told = (0..h).filter(|&i| last[i].abs() > TOLD * last.amax());
-            told.map(|i| (i + 1).to_string()).collect()
+            told.map(|i| numbers[i].to_string()).collect()
         }
-        _ => (1..=h).map(|i| i.to_string()).collect(),
+        _ => numbers.iter().map(usize::to_string).collect(),
     };
     let which = match &silent[..] {
         [one] => format!("constraint {one}"),

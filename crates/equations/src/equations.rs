@@ -128,8 +128,10 @@ pub struct ConstraintProjection {
 /// The constraint Jacobian `A = ∂f/∂v` along a motion.
 #[derive(Clone, Debug)]
 pub struct ConstraintRows {
-    /// `A` in `(t, y, z)`.
+    /// Rows of `A` in `(t, y, z)`: those whose rank may fall.
     pub jacobian: Matrix,
+    /// Numbers of their constraints, from 1.
+    pub numbers: Vec<usize>,
     /// Names of the coordinates, in the order of its columns.
     pub coordinates: Vec<String>,
 }

@@ -56,13 +56,19 @@ pub(crate) fn orthonormal(b: &mut [f64], h: usize) -> f64 {
     for i in 0..h {
         let (above, rest) = b.split_at_mut(i * n);
         let row = &mut rest[..n];
+        let mut length = norm(row);
         for _ in 0..2 {
+            let before = length;
             for other in above.chunks_exact(n) {
-                let along: f64 = row.iter().zip(other).map(|(a, b)| a * b).sum();
+                let along = dot(row, other);
                 row.iter_mut().zip(other).for_each(|(a, b)| *a -= along * b);
             }
+            length = norm(row);
+            // once is enough unless digits were lost
+            if length > 0.5 * before {
+                break;
+            }
         }
-        let length = row.iter().map(|x| x * x).sum::<f64>().sqrt();
         if length > 0.0 {
             row.iter_mut().for_each(|x| *x /= length);
         }
@@ -71,36 +77,69 @@ pub(crate) fn orthonormal(b: &mut [f64], h: usize) -> f64 {
     size
 }
 
+#[inline(always)]
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    let mut sum = 0.0;
+    for (a, b) in a.iter().zip(b) {
+        sum += a * b;
+    }
+    sum
+}
+
+fn norm(x: &[f64]) -> f64 {
+    dot(x, x).sqrt()
+}
+
+/// `‖P − Q‖²`, about `2 − 2 cos` where that is small: under 1 the cosine is positive.
+fn apart(p: &[f64], q: &[f64]) -> f64 {
+    let mut sum = 0.0;
+    for (a, b) in p.iter().zip(q) {
+        sum += (a - b) * (a - b);
+    }
+    sum
+}
+
 /// `det(P Qᵀ)` of two matrices of `h` rows each.
-pub(crate) fn cosine(p: &[f64], q: &[f64], h: usize) -> f64 {
+fn cosine(p: &[f64], q: &[f64], h: usize) -> f64 {
     let n = p.len() / h;
-    let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
-    let mut m: Vec<f64> = p.chunks_exact(n).flat_map(|a| q.chunks_exact(n).map(move |b| dot(a, b))).collect();
+    let mut m = vec![0.0; h * h];
+    for (row, a) in m.chunks_exact_mut(h).zip(p.chunks_exact(n)) {
+        for (x, b) in row.iter_mut().zip(q.chunks_exact(n)) {
+            *x = dot(a, b);
+        }
+    }
     let mut determinant = 1.0;
     for k in 0..h {
-        let best = (k..h).max_by(|&i, &j| m[i * h + k].abs().total_cmp(&m[j * h + k].abs())).unwrap_or(k);
+        let mut best = k;
+        for i in k + 1..h {
+            if m[i * h + k].abs() > m[best * h + k].abs() {
+                best = i;
+            }
+        }
+        let (upper, lower) = m.split_at_mut((k + 1) * h);
+        let row = &mut upper[k * h..];
         if best != k {
-            (0..h).for_each(|j| m.swap(k * h + j, best * h + j));
+            row.swap_with_slice(&mut lower[(best - k - 1) * h..(best - k) * h]);
             determinant = -determinant;
         }
-        let pivot = m[k * h + k];
-        determinant *= pivot;
-        if pivot == 0.0 {
+        determinant *= row[k];
+        if row[k] == 0.0 {
             return 0.0;
         }
-        for i in k + 1..h {
-            let factor = m[i * h + k] / pivot;
-            (k + 1..h).for_each(|j| m[i * h + j] -= factor * m[k * h + j]);
+        for other in lower.chunks_exact_mut(h) {
+            let factor = other[k] / row[k];
+            for j in k + 1..h {
+                other[j] -= factor * row[j];
+            }
         }
     }
     determinant
 }
 
-/// Whether `p` may vanish in a step with these sizes and these cosines to its begin in the middle and at its
-/// end.
-pub(crate) fn may_lose([begin, middle, end]: [f64; 3], [to_middle, to_end]: [f64; 2]) -> bool {
-    may_vanish([begin, middle * to_middle, end * to_end])
-        || may_vanish([begin * begin, middle * middle, end * end])
+/// Whether `p` may vanish in a step at whose begin, in whose middle and at whose end it has these sizes and rows.
+pub(crate) fn may_lose(sizes: [f64; 3], rows: [&[f64]; 3], h: usize) -> bool {
+    let turns = |p: &[f64], q: &[f64]| apart(p, q) >= 1.0 && cosine(p, q, h) <= 0.0;
+    may_vanish(sizes.map(|size| size * size)) || turns(rows[0], rows[1]) || turns(rows[1], rows[2])
 }
 
 /// Whether the least |p|, at `depth` of what it was, is a loss of rank, where the cosine between before and
@@ -110,7 +149,7 @@ fn is_lost(depth: f64, turn: f64, relative: f64) -> bool {
 }
 
 /// `p` at an instant.
-#[derive(Clone)]
+#[derive(Clone, Default)]
 struct Minors {
     t: f64,
     size: f64,
@@ -121,6 +160,20 @@ struct Minors {
     judged: bool,
 }
 
+impl Minors {
+    /// Those of the rows at `(t, y)` times `scale`, where there is room for them.
+    fn set(&mut self, system: &System, (t, y): (f64, &[f64]), scale: &[f64]) -> Result<(), Failure> {
+        (self.t, self.step, self.judged) = (t, 0.0, false);
+        system.rows(t, y, &mut self.basis)?;
+        let n = self.basis.len() / scale.len();
+        for (row, scale) in self.basis.chunks_exact_mut(n).zip(scale) {
+            row.iter_mut().for_each(|x| *x *= scale);
+        }
+        self.size = orthonormal(&mut self.basis, scale.len());
+        Ok(())
+    }
+}
+
 /// `p` at ends of steps, the last one among them.
 pub(crate) struct RankWatch {
     h: usize,
@@ -129,10 +182,12 @@ pub(crate) struct RankWatch {
     /// Factors of the rows: of length 1 at the start.
     scale: Vec<f64>,
     passed: VecDeque<Minors>,
-    end: Option<Minors>,
+    /// At the end of the step, and in its middle.
+    end: Minors,
+    middle: Minors,
     /// Whether the minimum among those not judged is over.
     over: bool,
-    dimension: usize,
+    state: Vec<f64>,
 }
 
 /// Where rank is lost: in this part of the step, or at its begin or before.
@@ -145,14 +200,24 @@ impl RankWatch {
     pub(crate) fn new(system: &System, t: f64, y: &[f64], options: &Options) -> Result<Self, Failure> {
         let (h, n) = system.rank();
         let relative = options.relative_tolerance * if options.method == Method::Taylor { 1.0 } else { OTHERS };
-        let (passed, dimension) = (VecDeque::new(), y.len());
-        let mut watch = RankWatch { h, start: t, relative, scale: vec![1.0; h], passed, end: None, over: false, dimension };
+        let room = Minors { basis: vec![0.0; h * n], ..Minors::default() };
+        let mut watch = RankWatch {
+            h,
+            start: t,
+            relative,
+            scale: vec![1.0; h],
+            passed: VecDeque::new(),
+            end: room.clone(),
+            middle: room.clone(),
+            over: false,
+            state: vec![0.0; y.len()],
+        };
         if watch.is_on() {
-            let mut b = vec![0.0; h * n];
-            system.rows(t, y, &mut b)?;
-            let length = |row: &[f64]| row.iter().map(|x| x * x).sum::<f64>().sqrt();
-            watch.scale = b.chunks_exact(n).map(|row| if length(row) > 0.0 { length(row).recip() } else { 1.0 }).collect();
-            let start = watch.minors(system, t, y)?;
+            let mut start = room;
+            system.rows(t, y, &mut start.basis)?;
+            let factor = |length: f64| if length > 0.0 { length.recip() } else { 1.0 };
+            watch.scale = start.basis.chunks_exact(n).map(|row| factor(norm(row))).collect();
+            start.set(system, (t, y), &watch.scale)?;
             watch.passed.push_back(start);
         }
         Ok(watch)
@@ -162,64 +227,45 @@ impl RankWatch {
         self.h > 0
     }
 
-    fn minors(&self, system: &System, t: f64, y: &[f64]) -> Result<Minors, Failure> {
-        let mut basis = vec![0.0; self.h * system.rank().1];
-        system.rows(t, y, &mut basis)?;
-        let n = basis.len() / self.h;
-        for (row, scale) in basis.chunks_exact_mut(n).zip(&self.scale) {
-            row.iter_mut().for_each(|x| *x *= scale);
-        }
-        let size = orthonormal(&mut basis, self.h);
-        Ok(Minors { t, size, basis, step: 0.0, judged: false })
-    }
-
-    fn cosine(&self, a: &Minors, b: &Minors) -> f64 {
-        cosine(&a.basis, &b.basis, self.h)
-    }
-
     /// Whether rank has been lost by the end of a step to the state `end`.
     pub(crate) fn look(&mut self, system: &System, segment: &Segment, end: &[f64]) -> Result<Option<Lost>, Failure> {
         let Some(begin) = self.passed.back().filter(|_| self.is_on()) else { return Ok(None) };
-        let now = self.minors(system, segment.end, end)?;
-        let mut state = vec![0.0; self.dimension];
-        segment.state(0.5, &mut state);
-        let middle = self.minors(system, segment.time(0.5), &state)?;
-        let cosines = [self.cosine(begin, &middle), self.cosine(begin, &now)];
-        let mut found = None;
-        if may_lose([begin.size, middle.size, now.size], cosines) {
-            let (theta, least) = self.least(system, segment, &now, &mut state)?;
-            if self.is_loss(&least, &now, segment.width) {
-                found = Some(if theta > 0.0 { Lost::Inside(theta) } else { Lost::Before });
-            }
+        self.end.set(system, (segment.end, end), &self.scale)?;
+        segment.state(0.5, &mut self.state);
+        self.middle.set(system, (segment.time(0.5), &self.state), &self.scale)?;
+        let points = [begin, &self.middle, &self.end];
+        if may_lose(points.map(|p| p.size), points.map(|p| &p.basis[..]), self.h)
+            && let Some((theta, least)) = self.least(system, segment)?
+            && self.is_loss(&least, segment.width)
+        {
+            return Ok(Some(if theta > 0.0 { Lost::Inside(theta) } else { Lost::Before }));
         }
         let least = self.passed.iter().skip(1).filter(|at| !at.judged).min_by(|a, b| a.size.total_cmp(&b.size));
-        if found.is_none() && least.is_some_and(|least| self.is_loss(least, &now, segment.width)) {
-            found = Some(Lost::Before);
-        }
-        self.over = least.is_some_and(|least| now.size >= FORGOTTEN * least.size);
-        self.end = Some(now);
-        Ok(found)
+        self.over = least.is_some_and(|least| self.end.size >= FORGOTTEN * least.size);
+        Ok(least.is_some_and(|least| self.is_loss(least, segment.width)).then_some(Lost::Before))
     }
 
     /// The step has been taken.
     pub(crate) fn advance(&mut self) {
-        let Some(mut end) = self.end.take() else { return };
-        self.passed.iter_mut().filter(|_| self.over).for_each(|at| at.judged = true);
-        let Some(last) = self.passed.pop_back() else { return };
-        end.step = (end.t - last.t).abs();
+        if self.over {
+            self.passed.iter_mut().for_each(|at| at.judged = true);
+            self.over = false;
+        }
+        let Some(mut last) = self.passed.pop_back() else { return };
+        let step = (self.end.t - last.t).abs();
         let is_new = |before: &Minors| {
             let [low, high] = [before.size.min(last.size), before.size.max(last.size)];
-            low < FALLS * high || self.cosine(before, &last) < SAME
+            low < FALLS * high || apart(&before.basis, &last.basis) > 2.0 - 2.0 * SAME
         };
         if self.passed.back().is_none_or(is_new) {
+            let room = if self.passed.len() < REMEMBERED { None } else { self.passed.pop_front() };
             self.passed.push_back(last);
-        } else {
-            end.step = end.step.max(last.step);
+            last = room.unwrap_or_else(|| self.end.clone());
+            last.step = 0.0;
         }
-        self.passed.push_back(end);
-        if self.passed.len() > REMEMBERED {
-            self.passed.pop_front();
-        }
+        self.end.step = step.max(last.step);
+        std::mem::swap(&mut last, &mut self.end);
+        self.passed.push_back(last);
     }
 
     /// Whether rank is being lost where a run can go no farther.
@@ -241,7 +287,8 @@ impl RankWatch {
         within.max_by(|a, b| a.size.total_cmp(&b.size)).or_else(|| before.last())
     }
 
-    fn is_loss(&self, least: &Minors, now: &Minors, width: f64) -> bool {
+    fn is_loss(&self, least: &Minors, width: f64) -> bool {
+        let now = &self.end;
         if now.size < PASSED * least.size {
             return false;
         }
@@ -249,49 +296,36 @@ impl RankWatch {
         let mut before = self.passed.iter().rev().skip_while(|at| (at.t - least.t) * width > 0.0);
         // the place on the way in that mirrors the one on the way out
         let mirror = before.find(|at| at.size >= now.size).unwrap_or(reference);
-        is_lost(least.size / reference.size, self.cosine(mirror, now), self.relative)
+        is_lost(least.size / reference.size, cosine(&mirror.basis, &now.basis, self.h), self.relative)
     }
 
-    /// Where |p| is least within the step, and `p` there.
-    fn least(
-        &self,
-        system: &System,
-        segment: &Segment,
-        now: &Minors,
-        state: &mut [f64],
-    ) -> Result<(f64, Minors), Failure> {
+    /// Where |p| is least within the step, and `p` there, if it may vanish in it.
+    fn least(&self, system: &System, segment: &Segment) -> Result<Option<(f64, Minors)>, Failure> {
+        let mut state = self.state.clone();
         let mut at = |theta: f64| {
-            segment.state(theta, state);
-            self.minors(system, segment.time(theta), state)
+            segment.state(theta, &mut state);
+            let mut found = Minors { basis: self.end.basis.clone(), ..Minors::default() };
+            found.set(system, (segment.time(theta), &state), &self.scale).map(|()| found)
         };
+        let place = |part: usize| part as f64 / PARTS as f64;
         let mut points: Vec<Minors> = self.passed.back().cloned().into_iter().collect();
         for part in 1..PARTS {
-            points.push(at(part as f64 / PARTS as f64)?);
+            points.push(at(place(part))?);
         }
-        points.push(now.clone());
-        let place = |part: usize| part.min(PARTS) as f64 / PARTS as f64;
-        let mut brackets = Vec::new();
-        for part in 0..PARTS {
-            if self.cosine(&points[part], &points[part + 1]) < 0.0 {
-                brackets.push([place(part), place(part + 1)]);
-            }
-        }
-        for part in 0..=PARTS {
-            let size = points[part].size;
-            if (part == 0 || size <= points[part - 1].size) && (part == PARTS || size <= points[part + 1].size) {
-                brackets.push([place(part.saturating_sub(1)), place(part + 1)]);
-            }
-        }
-        let first = points.into_iter().zip(0..).min_by(|a, b| a.0.size.total_cmp(&b.0.size));
-        let mut least = first.map_or((1.0, now.clone()), |(at, part)| (place(part), at));
-        for [mut low, mut high] in brackets {
+        points.push(self.end.clone());
+        let may_vanish = |&part: &usize| {
+            let three = [0, 1, 2].map(|i| &points[part + i]);
+            may_lose(three.map(|p| p.size), three.map(|p| &p.basis[..]), self.h)
+        };
+        let mut least: Option<(f64, Minors)> = None;
+        for [mut low, mut high] in (0..PARTS - 1).filter(may_vanish).map(|part| [place(part), place(part + 2)]) {
             for _ in 0..SECTIONS {
                 let inner = [high - GOLDEN * (high - low), low + GOLDEN * (high - low)];
                 let [left, right] = [at(inner[0])?, at(inner[1])?];
-                if left.size <= right.size { high = inner[1] } else { low = inner[0] }
                 let (theta, nearer) = if left.size <= right.size { (inner[0], left) } else { (inner[1], right) };
-                if nearer.size < least.1.size {
-                    least = (theta, nearer);
+                if theta == inner[0] { high = inner[1] } else { low = inner[0] }
+                if least.as_ref().is_none_or(|(_, least)| nearer.size < least.size) {
+                    least = Some((theta, nearer));
                 }
             }
         }

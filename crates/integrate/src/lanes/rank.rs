@@ -2,9 +2,8 @@
 
 use std::array::from_fn;
 
-use super::{LANES, LaneProblem, Lanes};
-use crate::rank::{cosine, may_lose, orthonormal};
-use super::Lane;
+use super::{LANES, Lane, LaneProblem, Lanes};
+use crate::rank::{may_lose, orthonormal};
 
 /// A lane in which the minors have come under this part of the largest ones is left to a single motion.
 const LOW: f64 = 0.05;
@@ -81,8 +80,8 @@ impl<P: LaneProblem> Lanes<'_, P> {
             middle.set(entries, l, *h);
             let (Minors(begin, basis), Minors(size, last)) = (&reached[l], &end[l]);
             suspected[l] = basis.len() == last.len() && {
-                let cosines = [cosine(basis, &middle.1, *h), cosine(basis, last, *h)];
-                !(*size >= LOW * largest[l]) || may_lose([*begin, middle.0, *size], cosines)
+                let is_low = size.is_nan() || *size < LOW * largest[l];
+                is_low || may_lose([*begin, middle.0, *size], [&basis[..], &middle.1, last], *h)
             };
         }
     }
