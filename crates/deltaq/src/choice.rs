@@ -2,7 +2,7 @@
 
 use std::collections::{HashMap, HashSet};
 
-use equations::{Derivation, Equations, Formulation, Named, Needs};
+use equations::{Derivation, Equations, Formulation, LeftOut, Named, Needs};
 use mechanics::{ConstantsRule, Recombination, Removal, RemovalError, State, System, check_reactions};
 use scene::Scene;
 use symbolic::{Expr, Symbol};
@@ -127,6 +127,11 @@ pub fn derive_at(system: &System, start: &State, choice: &Choice) -> Result<Equa
     equations.domains = domains_at(system, start, &equations)?;
     equations.guards.extend(&equations.domains);
     watch_rank(&mut equations, system);
+    let redundant = |(number, _): &(usize, Expr)| LeftOut {
+        variables: Vec::new(),
+        words: format!("constraint {number}: it follows from the others; its multiplier is zero"),
+    };
+    equations.left_out.extend(system.redundant.iter().map(redundant));
     Ok(equations)
 }
 

@@ -78,6 +78,9 @@ pub struct System {
     pub lagrangian: Expr,
     /// `f(q, v, t)`, each to be zero along a motion.
     pub constraints: Vec<Expr>,
+    /// Constraints that follow from the others, with the numbers that they were given: no equation depends on
+    /// them.
+    pub redundant: Vec<(usize, Expr)>,
     /// `Q(q, v, t)`, one per coordinate; the number 0 where no force was given.
     pub forces: Vec<Expr>,
     /// `w(q, v, t)`, none, or as many as constraints: displacements with `∂w/∂v δq = 0` are virtual, where
@@ -125,6 +128,7 @@ impl System {
             parameters: Vec::new(),
             lagrangian: graph.zero(),
             constraints: Vec::new(),
+            redundant: Vec::new(),
             forces: vec![graph.zero(); coordinates.len()],
             virtual_conditions: Vec::new(),
             domains: Vec::new(),

@@ -10,7 +10,7 @@ use toml::de::DeTable;
 use super::context::Context;
 use super::overrides::Overrides;
 use super::section::{Entry, Section, Source};
-use super::{constants, film, removal, start, system, view};
+use super::{constants, film, redundant, removal, start, system, view};
 use crate::{Number, Scene, SceneError, SceneErrorKind, format};
 
 /// Size of the largest scene file that is read, in bytes.
@@ -192,11 +192,13 @@ fn read(name: &str, source: Source, overrides: Overrides) -> Result<Scene, Scene
         if faults_so_far(source) { Some(Vec::new()) } else { source.note(constants::multipliers(&context)) };
     source.no_fault()?;
     start::check_positions(&context)?;
+    let mut multipliers = multipliers.unwrap_or_default();
+    redundant::leave_out(&mut context, &mut multipliers)?;
     let removals = removal::read_all(&context)?;
     let (state, completion) = start::complete(&context, &removals)?;
     source.note(view::check(&context, &view, &state));
     context.overrides.check_used(source)?;
-    let (Some(title), Some(duration), Some(multipliers)) = (title, duration, multipliers) else {
+    let (Some(title), Some(duration)) = (title, duration) else {
         unreachable!("what could not be read was noted")
     };
     source.no_fault()?;
