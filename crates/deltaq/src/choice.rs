@@ -132,6 +132,12 @@ pub fn derive_at(system: &System, start: &State, choice: &Choice) -> Result<Equa
         words: format!("constraint {number}: it follows from the others; its multiplier is zero"),
     };
     equations.left_out.extend(system.redundant.iter().map(redundant));
+    if let Some((stem, _)) = equations.multipliers.first().and_then(|m| m.name.rsplit_once('_')) {
+        let stem = stem.to_owned();
+        let zero = equations.graph.zero();
+        let own = |number: usize| Named { name: format!("{stem}_{number}"), expression: zero };
+        equations.multipliers.extend(system.redundant.iter().map(|(number, _)| own(*number)));
+    }
     Ok(equations)
 }
 

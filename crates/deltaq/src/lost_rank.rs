@@ -20,9 +20,11 @@ pub(crate) fn watch_rank(equations: &mut Equations, system: &System) {
     let unknowns: HashSet<Symbol> = equations.unknowns().into_iter().collect();
     let entries = in_variables_of(equations, system, &at_stake, &unknowns);
     let (rows, columns) = (numbers.len(), jacobian.columns());
+    let given = system.constraint_numbers();
     equations.rows = (rows > 0 && entries.len() == rows * columns).then(|| ConstraintRows {
         jacobian: Matrix::from_fn(rows, columns, |i, j| entries[i * columns + j]),
-        numbers: numbers.into_iter().map(|i| i + 1).collect(),
+        numbers: numbers.into_iter().map(|i| given[i]).collect(),
+        replaceable: !system.redundant.is_empty(),
         coordinates: system.coordinates.iter().map(|c| c.name.clone()).collect(),
     });
 }

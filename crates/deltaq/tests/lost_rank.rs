@@ -209,3 +209,77 @@ fn no_member_changes_branches_silently() {
         }
     }
 }
+
+/// A robot with two drive wheels and a castor; the constraints as they are written for each wheel, or five of them
+/// that are independent at every heading.
+fn robot(constraints: &str, duration: f64) -> Scene {
+    let text = format!(
+        "title = \"robot\"\n[parameters]\nb = 0.17\nr = 0.08\na = 0.22\ne = 0.04\nrc = 0.03\n[coordinates]\n\
+         x = {{ start = 0 }}\ny = {{ start = 0 }}\nphi = {{ start = 0.1 }}\nright = {{ start = 0 }}\n\
+         left = {{ start = 0 }}\ncastor = {{ start = 2.5 }}\nroll = {{ start = 0 }}\n[definitions]\n\
+         CR = \"[x + b*sin(phi), y - b*cos(phi), 0]\"\nCL = \"[x - b*sin(phi), y + b*cos(phi), 0]\"\n\
+         CC = \"[x + a*cos(phi) - e*cos(phi + castor), y + a*sin(phi) - e*sin(phi + castor), 0]\"\n\
+         c = \"[cos(phi), sin(phi), 0]\"\nk = \"[cos(phi + castor), sin(phi + castor), 0]\"\n\
+         n = \"[-sin(phi), cos(phi), 0]\"\n[system]\n\
+         lagrangian = \"4*dot(CR' + CL', CR' + CL')/4 + 0.4*phi'^2 + 0.01*(right'^2 + left'^2) + \
+         0.05*dot(CC', CC') + 1e-3*(phi' + castor')^2 + 1e-4*roll'^2\"\nconstraints = [{constraints}]\n\
+         forces = {{ right = \"0.05 - 0.01*right'\", left = \"0.025 - 0.01*left'\" }}\n[start.velocities]\n\
+         \"right'\" = 3\n\"left'\" = 2.5\n[run]\nduration = {duration:?}\n"
+    );
+    Scene::parse("robot", &text).unwrap_or_else(|e| panic!("{text}: {e}"))
+}
+
+const EACH_WHEEL: &str = "\"CR' - r*right'*c\", \"CL' - r*left'*c\", \"CC' - rc*roll'*k\"";
+const INDEPENDENT: &str = "\"dot(CR', c) - r*right'\", \"dot(CR', n)\", \"dot(CL', c) - r*left'\", \"(CC' - rc*roll'*k).x\", \
+                           \"(CC' - rc*roll'*k).y\"";
+
+/// Two wheels on one axle cannot both slip: one of the four rows follows from the others, and which one may be left
+/// out changes with the heading. The judge is the same robot by rows that are independent everywhere.
+#[test]
+fn dependent_rows_of_constant_rank_are_changed_on_the_way() {
+    let (written, judge) = (robot(EACH_WHEEL, 40.0), robot(INDEPENDENT, 40.0));
+    assert_eq!((written.system.constraints.len(), written.system.redundant.len()), (5, 1));
+    for formulation in [deltaq::CHETAEV, deltaq::VAKONOMIC] {
+        let of = |scene: &Scene| choices(scene).into_iter().find(|c| c.formulation == formulation).expect("a choice");
+        for method in [None, Some(Method::Radau5)] {
+            let duration = if formulation == deltaq::CHETAEV { 40.0 } else { 4.0 };
+            let end = |scene: &Scene| {
+                let setting = Setting { end: duration, ..setting(scene) };
+                let settings = Settings { method, ..Settings::default() };
+                let mut motion = deltaq::solve_from(setting, &of(scene), &settings).expect("a motion");
+                assert_eq!(motion.ending, Ending::Completed);
+                let turned = !motion.charts.is_empty();
+                (motion.at(duration).expect("its end").coordinates, turned)
+            };
+            let ((one, turned), (two, _)) = (end(&written), end(&judge));
+            let off = one.iter().zip(&two).map(|(a, b)| (a - b).abs() / b.abs().max(1.0)).fold(0.0, f64::max);
+            assert!(off < 1e-7, "{}, {method:?}: {one:?} {two:?}", formulation.name);
+            assert!(turned || duration < 40.0, "no other rows were taken");
+        }
+    }
+}
+
+/// Three cranks on one coupler: the coupler stays level, and its end is a pendulum.
+#[test]
+fn redundant_positions_leave_a_degree_of_freedom() {
+    let constraints = "\"dot(c, c) - 1\", \"dot(c + e - [1, 0], c + e - [1, 0]) - 1\", \
+                       \"dot(c + 2*e - [2, 0], c + 2*e - [2, 0]) - 1\", \"x*x' + y*y'\"";
+    let text = format!(
+        "title = \"cranks\"\n[coordinates]\nx = {{ start = 0 }}\ny = {{ start = 1 }}\na = {{ start = 0 }}\n[definitions]\n\
+         c = \"[x, y]\"\ne = \"[cos(a), sin(a)]\"\n[system]\nlagrangian = \"(x'^2 + y'^2)/2 + a'^2/24 - 9.81*y\"\n\
+         constraints = [{constraints}]\n[start.velocities]\n\"x'\" = 1\n[run]\nduration = 0.4\n"
+    );
+    let scene = Scene::parse("cranks", &text).unwrap_or_else(|e| panic!("{e}"));
+    assert_eq!((scene.system.constraints.len(), scene.system.redundant.len()), (2, 2));
+    // θ'' = g sin θ from the top at θ' = 1, by its energy
+    let theta = advance(0.0, 0.4, |theta| (1.0 + 2.0 * 9.81 * (1.0 - theta.cos())).sqrt());
+    let mut motion = solve_choice(&scene, &chetaev(&scene), &Settings::default()).expect("a motion");
+    let end = motion.at(0.4).expect("its end");
+    let off = [theta.sin() - end.coordinates[0], theta.cos() - end.coordinates[1], end.coordinates[2]];
+    assert!(off.iter().all(|x| x.abs() < 1e-10), "{off:?}");
+    let left_out: Vec<&str> = motion.equations.left_out.iter().map(|left| &left.words[..]).collect();
+    assert!(left_out.iter().filter(|words| words.contains("follows from the others")).count() == 2, "{left_out:?}");
+    // and where rows depend at the start only, they do not follow from one another
+    let text = text.replace("y = { start = 1 }", "y = { start = 0 }").replace("x = { start = 0 }", "x = { start = 1 }");
+    Scene::parse("cranks", &text).expect_err("a place where the rank falls");
+}

@@ -280,11 +280,11 @@ impl Compiled {
 
     /// Whether other pivots might be taken ([`Equations::chart`]).
     pub fn has_chart(&self) -> bool {
-        self.guards.values().len() > self.guards()
+        self.guards.values().len() > self.guards() || self.rows.as_ref().is_some_and(|rows| rows.replaceable)
     }
 
     /// Values of the guards, whose zeros are singularities; where there is room for one more, after them the
-    /// sum of the squares of the chart's coefficients.
+    /// sum of the squares of the chart's coefficients, which those of redundant rows are, too.
     pub fn guard_values(&mut self, t: f64, y: &[f64], values: &mut [f64]) {
         self.load(t, y);
         let found = self.guards.evaluate(&self.inputs[..self.sizes.known()]);
@@ -292,6 +292,9 @@ impl Compiled {
         values[..guards.len()].copy_from_slice(guards);
         if let Some(size) = values.get_mut(guards.len()) {
             *size = coefficients.iter().map(|x| x * x).sum();
+            if let Some(rows) = self.rows.as_mut().filter(|rows| rows.replaceable) {
+                *size += rows.dependence(&self.inputs);
+            }
         }
     }
 

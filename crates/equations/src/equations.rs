@@ -132,6 +132,8 @@ pub struct ConstraintRows {
     pub jacobian: Matrix,
     /// Numbers of their constraints, from 1.
     pub numbers: Vec<usize>,
+    /// Whether there are others that follow from these, and could be taken instead where these lose rank.
+    pub replaceable: bool,
     /// Names of the coordinates, in the order of its columns.
     pub coordinates: Vec<String>,
 }

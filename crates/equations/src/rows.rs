@@ -1,5 +1,6 @@
 //! The rows `A = ∂f/∂v` of the constraints as numbers.
 
+use nalgebra::DMatrix;
 use symbolic::{CompileError, Evaluator};
 
 use crate::equations::Equations;
@@ -12,6 +13,8 @@ pub(crate) struct Rows {
     /// Whether they contain unknowns of the instant, and the number of inputs.
     pub(crate) need_unknowns: bool,
     pub(crate) inputs: usize,
+    /// [`crate::ConstraintRows::replaceable`].
+    pub(crate) replaceable: bool,
 }
 
 impl Rows {
@@ -23,7 +26,18 @@ impl Rows {
             inputs.extend(equations.unknowns());
         }
         let program = equations.evaluator(&inputs, rows.jacobian.entries())?;
-        Ok(Some(Rows { program, shape: (rows.jacobian.rows(), rows.jacobian.columns()), need_unknowns, inputs: inputs.len() }))
+        let shape = (rows.jacobian.rows(), rows.jacobian.columns());
+        let replaceable = rows.replaceable && !need_unknowns;
+        Ok(Some(Rows { program, shape, need_unknowns, inputs: inputs.len(), replaceable }))
+    }
+
+    /// `1/det(N Nᵀ)` of the rows `N`, made of length 1: 1 where they are orthogonal, and large where they nearly
+    /// depend.
+    pub(crate) fn dependence(&mut self, inputs: &[f64]) -> f64 {
+        let (h, n) = self.shape;
+        let entries = DMatrix::from_row_slice(h, n, self.program.evaluate(&inputs[..self.inputs]));
+        let lengths: f64 = entries.row_iter().map(|row| row.norm_squared()).product();
+        lengths / (&entries * entries.transpose()).determinant()
     }
 }
 

@@ -48,6 +48,27 @@ impl System {
     }
 }
 
+impl System {
+    /// All constraints in the order in which they were given, those that follow from the others among them.
+    pub fn all_constraints(&self) -> System {
+        let own = self.constraint_numbers().into_iter().zip(self.constraints.iter().copied());
+        let mut all: Vec<(usize, Expr)> = own.chain(self.redundant.iter().copied()).collect();
+        all.sort_by_key(|(number, _)| *number);
+        System { constraints: all.into_iter().map(|(_, f)| f).collect(), redundant: Vec::new(), ..self.clone() }
+    }
+
+    /// The system with these of its constraints, by their indices, and the others as those that follow.
+    pub fn keeping(&self, kept: &[usize]) -> System {
+        let (own, rest): (Vec<_>, Vec<_>) =
+            self.constraints.iter().copied().enumerate().partition(|(i, _)| kept.contains(i));
+        System {
+            constraints: own.into_iter().map(|(_, f)| f).collect(),
+            redundant: rest.into_iter().map(|(i, f)| (i + 1, f)).collect(),
+            ..self.clone()
+        }
+    }
+}
+
 fn rank(svd: &SingularValues, limit: f64) -> usize {
     let largest = svd.values.iter().copied().next().unwrap_or(0.0);
     svd.values.iter().filter(|s| **s > limit * largest).count()

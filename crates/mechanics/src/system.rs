@@ -212,9 +212,17 @@ impl System {
         momenta.iter().enumerate().map(|(i, &p)| g.sub(g.total_derivative(p, flow), on(i))).collect()
     }
 
-    /// New symbols, one per constraint: `stem_1`, `stem_2`, …, each with these primes.
+    /// New symbols, one per constraint: `stem_1`, `stem_2`, …, by [`System::constraint_numbers`], each with these
+    /// primes.
     pub fn multipliers(&self, stem: &str, primes: &str) -> Vec<Symbol> {
-        (1..=self.constraints.len()).map(|i| fresh_symbol(&self.graph, &format!("{stem}_{i}{primes}"))).collect()
+        let numbers = self.constraint_numbers().into_iter();
+        numbers.map(|i| fresh_symbol(&self.graph, &format!("{stem}_{i}{primes}"))).collect()
+    }
+
+    /// The number that each constraint was given: 1, 2, … but those of [`System::redundant`].
+    pub fn constraint_numbers(&self) -> Vec<usize> {
+        let is_free = |number: &usize| self.redundant.iter().all(|(other, _)| other != number);
+        (1..).filter(is_free).take(self.constraints.len()).collect()
     }
 
     /// Constraint Jacobian `A = ∂f/∂v`, h×n.

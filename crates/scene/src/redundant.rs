@@ -18,9 +18,7 @@ pub(super) fn leave_out(context: &mut Context, multipliers: &mut Vec<f64>) -> Re
             let kind = SceneErrorKind::RedundantMultiplier { number: i + 1, value };
             return Err(SceneError::outside(context.source.file, kind));
         }
-        let is_kept = |i: &usize| kept.contains(i);
-        system.redundant = (0..system.constraints.len()).filter(|i| !is_kept(i)).map(|i| (i + 1, system.constraints[i])).collect();
-        system.constraints = kept.iter().map(|&i| system.constraints[i]).collect();
+        *system = system.keeping(&kept);
         context.places = kept.iter().map(|&i| context.places[i].clone()).collect();
         *multipliers = kept.iter().map(|&i| multipliers[i]).collect();
     }
