@@ -187,18 +187,19 @@ fn read(name: &str, source: Source, overrides: Overrides) -> Result<Scene, Scene
     });
     let view = source.note(view::read(&context)).unwrap_or_default();
     let film = source.note(film::read(&context)).unwrap_or_default();
+    if !faults_so_far(source) {
+        source.note(redundant::leave_out(&mut context));
+    }
     // constraints that could not be read would be missed
     let multipliers =
         if faults_so_far(source) { Some(Vec::new()) } else { source.note(constants::multipliers(&context)) };
     source.no_fault()?;
     start::check_positions(&context)?;
-    let mut multipliers = multipliers.unwrap_or_default();
-    redundant::leave_out(&mut context, &mut multipliers)?;
     let removals = removal::read_all(&context)?;
     let (state, completion) = start::complete(&context, &removals)?;
     source.note(view::check(&context, &view, &state));
     context.overrides.check_used(source)?;
-    let (Some(title), Some(duration)) = (title, duration) else {
+    let (Some(title), Some(duration), Some(multipliers)) = (title, duration, multipliers) else {
         unreachable!("what could not be read was noted")
     };
     source.no_fault()?;
