@@ -115,6 +115,7 @@ mod sweep;
 mod table;
 mod trajectory;
 mod trial;
+mod variables;
 mod varying;
 mod wanted;
 mod watch;

@@ -9,7 +9,7 @@ use nalgebra::DMatrix;
 use symbolic::{Expr, Matrix, Symbol, Vanishing};
 
 use crate::Metric;
-use crate::choice::in_variables_of;
+use crate::variables::in_variables_of;
 use crate::words::{enumerate, short};
 
 /// The rows of `A = ∂f/∂v` of `system` that may lose rank become [`Equations::rows`].

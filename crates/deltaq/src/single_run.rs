@@ -232,7 +232,9 @@ impl Problem for Runner<'_> {
     }
     fn rows(&mut self, t: f64, y: &[f64], entries: &mut [f64]) -> Result<(), integrate::EvaluationError> {
         self.compiled.rows(t, &y[..self.compiled.dimension()], entries).map_err(refused)?;
-        entries.chunks_mut(self.columns.len()).for_each(|row| row.iter_mut().zip(&self.columns).for_each(|(x, c)| *x *= c));
+        entries
+            .chunks_mut(self.columns.len())
+            .for_each(|row| row.iter_mut().zip(&self.columns).for_each(|(x, c)| *x *= c));
         Ok(())
     }
     fn events(&self) -> usize {

@@ -59,10 +59,7 @@ const MECHANISMS: [Mechanism; 3] = [
     Mechanism {
         coordinates: ["x", "y", ""],
         lagrangian: "(x'^2 + y'^2)/2",
-        constraints: [
-            &["(x^2 + y^2)^2 - x^2 + y^2"],
-            &["(4*x*(x^2 + y^2) - 2*x)*x' + (4*y*(x^2 + y^2) + 2*y)*y'"],
-        ],
+        constraints: [&["(x^2 + y^2)^2 - x^2 + y^2"], &["(4*x*(x^2 + y^2) - 2*x)*x' + (4*y*(x^2 + y^2) + 2*y)*y'"]],
         truth: lemniscate,
         phases: [0.0, 0.7],
         duration: 2.0,
@@ -95,7 +92,8 @@ impl Mechanism {
     fn scene(&self, rates: bool, phase: f64) -> Scene {
         let (q, v) = (self.truth)(phase, 0.0);
         let names = self.coordinates.iter().take(q.len());
-        let coordinates: String = names.clone().zip(&q).map(|(name, x)| format!("{name} = {{ start = {x:?} }}\n")).collect();
+        let coordinates: String =
+            names.clone().zip(&q).map(|(name, x)| format!("{name} = {{ start = {x:?} }}\n")).collect();
         let velocities: String = names.zip(&v).map(|(name, x)| format!("\"{name}'\" = {x:?}\n")).collect();
         let text = format!(
             "title = \"branches\"\n[coordinates]\n{coordinates}[system]\nlagrangian = \"{}\"\nconstraints = {:?}\n\
@@ -143,7 +141,12 @@ fn alone(mechanism: &Mechanism, rates: bool, phase: f64, settings: &Settings, co
         }
     };
     count[place] += 1;
-    assert!(place < 2, "{}, rates {rates}, phase {phase}, {:e}: silently wrong", mechanism.lagrangian, settings.tolerance);
+    assert!(
+        place < 2,
+        "{}, rates {rates}, phase {phase}, {:e}: silently wrong",
+        mechanism.lagrangian,
+        settings.tolerance
+    );
 }
 
 #[test]

@@ -25,8 +25,8 @@ use crate::time_loop::HALVINGS;
 use events::Events;
 use inside::finite;
 use poles::Poles;
-use rank::Ranks;
 pub use problem::{LANES, Lane, LaneProblem, LaneRun, LaneStart, Left};
+use rank::Ranks;
 
 /// Takes a member and what became of it.
 type Done<'a> = &'a mut dyn FnMut(usize, Result<LaneRun, Left>);

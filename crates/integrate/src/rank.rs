@@ -323,7 +323,11 @@ impl RankWatch {
                 let inner = [high - GOLDEN * (high - low), low + GOLDEN * (high - low)];
                 let [left, right] = [at(inner[0])?, at(inner[1])?];
                 let (theta, nearer) = if left.size <= right.size { (inner[0], left) } else { (inner[1], right) };
-                if theta == inner[0] { high = inner[1] } else { low = inner[0] }
+                if theta == inner[0] {
+                    high = inner[1]
+                } else {
+                    low = inner[0]
+                }
                 if least.as_ref().is_none_or(|(_, least)| nearer.size < least.size) {
                     least = Some((theta, nearer));
                 }

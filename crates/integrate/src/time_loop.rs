@@ -18,6 +18,8 @@ pub(crate) const HALVINGS: usize = 60;
 /// After this many consecutive steps refused for the move of their projection, a move that is over half the
 /// last one is allowed.
 const PERSISTENT: usize = 6;
+/// No move is allowed that is over this part of a state: it leads to another branch of the manifold.
+const JUMP: f64 = 0.05;
 
 /// Integrates `system` from `start` to `end` with `stepper`, or reports that it could not be set up.
 pub fn drive<S: Stepper>(
@@ -193,6 +195,9 @@ impl Record<'_, '_> {
             }
         }
         let Moves { allowed, last, shorter } = &mut self.moves;
+        if worst * DEFECT * relative > JUMP {
+            return Err(Failure::OffConstraint { component });
+        }
         if worst <= *allowed || self.options.method.is_multistep() {
             *shorter = 0;
             return Ok(());
