@@ -151,8 +151,6 @@ fn balance(formulation: &'static str, system: &System, rows: &Matrix) -> Equatio
     }];
     if prescribed {
         equations.guard_regular(g);
-    } else {
-        equations.guard_rank(&system);
     }
     equations.coordinates = g.variables(&q);
     equations.velocities = g.variables(&v);

@@ -13,10 +13,12 @@
 //! Both runs of a motion change at the time of the kept one, each from its own state.
 
 use integrate::{Options, ProjectionReport, Solution, Work};
-use mechanics::ConstantsRule;
+use mechanics::{ConstantsRule, SingularValues, System};
+use nalgebra::{DMatrix, DVector};
 
 use crate::choice::{derive_at, watch};
-use crate::later_chart::{Later, Names};
+use crate::later_chart::{Later, Names, Point, Quantity};
+use crate::lost_rank::watch_rank;
 use crate::table::as_derived;
 use crate::trajectory::{Legs, Trajectory, outputs_in};
 use crate::trial::{NotSuited, not_suited};
@@ -142,19 +144,25 @@ fn going_on(
     runs: [&SingleRun; 2],
     settings: &Settings,
 ) -> Option<(&'static str, Prepared)> {
-    let (system, t) = (setting.system, runs[0].end());
+    let t = runs[0].end();
     let own = Names::of(&here.equations);
     let [kept, looser] = runs.map(|run| run.at(&mut here.compiled, t));
-    let points = [kept.ok()?, looser.ok()?].map(|outputs| own.handed_over(t, outputs));
+    let mut points = [kept.ok()?, looser.ok()?].map(|outputs| own.handed_over(t, outputs));
+    let chosen = other_rows(setting.system, &mut points);
+    let system = chosen.as_ref().unwrap_or(setting.system);
+    let setting = Setting { system, ..setting };
     let (start, named) = &points[0];
     let (by, equations) = if here.equations.removal.is_some() {
         let mut equations = vakonomic::derive_from_momenta(system).ok()?;
         watch(&mut equations, system);
-        ("canonical momenta", equations.leave_out_unneeded())
+        let mut equations = equations.leave_out_unneeded();
+        watch_rank(&mut equations, system);
+        ("canonical momenta", equations)
     } else {
         let (label, formulation) = (String::new(), as_derived(here.equations.formulation)?);
         let choice = Choice { label, formulation, removal: None, constants: ConstantsRule::Zero };
-        ("multipliers", derive_at(system, start, &choice).ok()?)
+        let by = if chosen.is_some() { "other constraints of those that depend" } else { "multipliers" };
+        (by, derive_at(system, start, &choice).ok()?)
     };
     let names = Names::of(&equations);
     if !names.give(&own) {
@@ -164,4 +172,40 @@ fn going_on(
     let mut next = next.ok()?;
     next.enter(system, &points);
     Some((by, next))
+}
+
+/// The system with the constraints that are well apart at these points, of those that depend; and multipliers that
+/// give the same momenta with them.
+fn other_rows(system: &System, points: &mut [Point; 2]) -> Option<System> {
+    if system.redundant.is_empty() {
+        return None;
+    }
+    let all = system.all_constraints();
+    let start = &points[0].0;
+    let chosen = all.keeping(&all.independent_constraints(start.t, &start.q)?);
+    let numbers = chosen.constraint_numbers();
+    let jacobian = all.constraint_jacobian();
+    let (h, n) = (jacobian.rows(), jacobian.columns());
+    for (state, named) in points {
+        let mut values = system.parameter_values();
+        values.extend(system.values_at(state));
+        let entries: Option<Vec<f64>> =
+            jacobian.entries().iter().map(|&e| system.graph.evaluate(e, &values).ok()).collect();
+        let rows = DMatrix::from_row_slice(h, n, &entries?);
+        let name = |stem: &str, number: usize| Quantity::Derived(format!("{stem}_{number}"));
+        for stem in ["mu", "lambda"] {
+            let value = |number: usize| named.get(&name(stem, number)).copied();
+            if (1..=h).all(|number| value(number).is_none()) {
+                continue;
+            }
+            let multipliers = DVector::from_fn(h, |i, _| value(i + 1).unwrap_or(0.0));
+            let momenta = rows.transpose() * multipliers;
+            let own = DMatrix::from_fn(n, numbers.len(), |j, i| rows[(numbers[i] - 1, j)]);
+            let svd = SingularValues::of(&own);
+            let found = svd.solve(&momenta, f64::EPSILON * svd.values[0]);
+            named.extend((1..=h).map(|number| (name(stem, number), 0.0)));
+            named.extend(numbers.iter().zip(&found).map(|(&number, &x)| (name(stem, number), x)));
+        }
+    }
+    Some(chosen)
 }

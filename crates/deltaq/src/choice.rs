@@ -2,12 +2,13 @@
 
 use std::collections::{HashMap, HashSet};
 
-use equations::{Derivation, Equations, Formulation, Named, Needs};
+use equations::{Derivation, Equations, Formulation, LeftOut, Named, Needs};
 use mechanics::{ConstantsRule, Recombination, Removal, RemovalError, State, System, check_reactions};
 use scene::Scene;
 use symbolic::{Expr, Symbol, question};
 
-use crate::silent::silent;
+use crate::lost_rank::watch_rank;
+use crate::variables::in_variables_of;
 use crate::{FORMS, FORMULATIONS, SolveError};
 
 /// One formulation of the scene, with all choices made.
@@ -125,8 +126,19 @@ fn gives_constant_costates(equations: &Equations, values: &[f64]) -> bool {
 pub fn derive_at(system: &System, start: &State, choice: &Choice) -> Result<Equations, SolveError> {
     let mut equations = derive_combined(system, start, choice)?;
     equations.domains = domains_at(system, start, &equations)?;
-    equations.silent = in_variables_of(&equations, system, &silent(system));
-    equations.guards.extend(equations.domains.iter().chain(&equations.silent));
+    equations.guards.extend(&equations.domains);
+    watch_rank(&mut equations, system);
+    let redundant = |(number, _): &(usize, Expr)| LeftOut {
+        variables: Vec::new(),
+        words: format!("constraint {number}: it follows from the others; its multiplier is zero"),
+    };
+    equations.left_out.extend(system.redundant.iter().map(redundant));
+    if let Some((stem, _)) = equations.multipliers.first().and_then(|m| m.name.rsplit_once('_')) {
+        let stem = stem.to_owned();
+        let zero = equations.graph.zero();
+        let own = |number: usize| Named { name: format!("{stem}_{number}"), expression: zero };
+        equations.multipliers.extend(system.redundant.iter().map(|(number, _)| own(*number)));
+    }
     Ok(equations)
 }
 
@@ -140,21 +152,7 @@ fn domains_at(system: &System, start: &State, equations: &Equations) -> Result<V
         let value = g.evaluate(*e, &values).unwrap_or(f64::NAN);
         return Err(SolveError::OutsideDomain { expression: g.plain(*e), value });
     }
-    Ok(in_variables_of(equations, system, &system.domains))
-}
-
-/// Expressions in a system's coordinates, velocities and time in the variables of its equations, as far as
-/// these tell them.
-fn in_variables_of(equations: &Equations, system: &System, es: &[Expr]) -> Vec<Expr> {
-    let symbols = system.positions().into_iter().chain(system.velocities());
-    let read = equations.coordinates.iter().chain(&equations.velocities).copied();
-    let map: HashMap<Symbol, Expr> = symbols.zip(read).collect();
-    // they may be younger than the equations' graph
-    let known_there = equations.graph.adopt(&system.graph, es);
-    let guards = known_there.into_iter().map(|e| equations.graph.substitute(e, &map));
-    let defined = equations.definitions.iter().map(|d| d.0).chain(equations.parameters.keys().copied());
-    let known: HashSet<Symbol> = equations.known_symbols().into_iter().chain(defined).collect();
-    guards.filter(|&e| equations.symbols_behind([e]).is_subset(&known)).collect()
+    Ok(in_variables_of(equations, system, &system.domains, &HashSet::new()))
 }
 
 fn derive_combined(system: &System, start: &State, choice: &Choice) -> Result<Equations, SolveError> {

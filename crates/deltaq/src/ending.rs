@@ -8,6 +8,8 @@ use mechanics::SingularValues;
 use nalgebra::{DMatrix, DVector};
 use symbolic::Expr;
 
+use crate::lost_rank;
+
 /// What helps where steps became too short and no divisor of the equations vanishes.
 const HELP: &str = "where something is switched, its times as `breakpoints` help, else a larger --max-steps";
 
@@ -50,6 +52,10 @@ impl Ending {
             StopCause::Event { index } if *index == equations.guards.len() => return Ending::Completed,
             StopCause::Event { index } => {
                 let cause = vanishing_guard(equations, *index);
+                return Ending::Stopped { t: *t, cause };
+            }
+            StopCause::LosesRank => {
+                let cause = lost_rank::words(equations, compiled, &run.dense);
                 return Ending::Stopped { t: *t, cause };
             }
             StopCause::NotFinite { component } => {
@@ -102,11 +108,6 @@ pub(crate) fn vanishing_guard(equations: &Equations, index: usize) -> String {
     let (guard, e) = (guard_words(equations, index), equations.guards[index]);
     if equations.domains.contains(&e) {
         format!("{guard} vanishes: a root or logarithm of it, as written, has no value beyond")
-    } else if equations.silent.contains(&e) {
-        format!(
-            "{guard} vanishes, a factor of a constraint or of a combination of constraints, which then says nothing of the \
-             velocities"
-        )
     } else {
         format!("{guard} vanishes, by which the equations divide")
     }

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use equations::{Compiled, EvaluationFailure, Outputs, Tangents};
 use integrate::{Gauge, Options, Problem, Solution, Start, Status, StopCause};
 
+use crate::lost_rank::column_factors;
 use crate::sizes::sizes;
 use crate::{Metric, SolveError};
 
@@ -49,7 +50,8 @@ impl SingleRun {
         }
         let before = compiled.fallbacks();
         let wanted = options.wanted.clone();
-        let mut runner = Runner { compiled, tangents, anchors, judged: 1, wanted, largest };
+        let columns = column_factors(compiled, metric, start.t, own);
+        let mut runner = Runner { compiled, tangents, anchors, judged: 1, wanted, largest, columns };
         let solution = integrate::integrate(&mut runner, start, end, &options)?;
         let anchors = runner.anchors;
         let at_guard = |status: &Status| match status {
@@ -125,6 +127,8 @@ struct Runner<'a> {
     wanted: Option<Arc<[f64]>>,
     /// Size of the chart at which the run ends, where it may.
     largest: Option<f64>,
+    /// Factors of the columns of the constraints' rows.
+    columns: Vec<f64>,
 }
 
 /// Number of new anchors after which those without a wanted time beside them are dropped.
@@ -221,6 +225,16 @@ impl Problem for Runner<'_> {
         let own = self.compiled.dimension();
         terms.fill(0.0);
         terms[..own].copy_from_slice(&self.compiled.terms_of_rates(t, &y[..own]).map_err(refused)?);
+        Ok(())
+    }
+    fn rank(&self) -> (usize, usize) {
+        self.compiled.rank()
+    }
+    fn rows(&mut self, t: f64, y: &[f64], entries: &mut [f64]) -> Result<(), integrate::EvaluationError> {
+        self.compiled.rows(t, &y[..self.compiled.dimension()], entries).map_err(refused)?;
+        entries
+            .chunks_mut(self.columns.len())
+            .for_each(|row| row.iter_mut().zip(&self.columns).for_each(|(x, c)| *x *= c));
         Ok(())
     }
     fn events(&self) -> usize {

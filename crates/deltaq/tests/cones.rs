@@ -50,7 +50,10 @@ fn chetaevs_motion_ends_at_the_tip_of_a_cone() {
         }
         for (by, end) in ends(&past, &chetaev) {
             let Err(cause) = end else { panic!("{constraint}, {by}: goes on to {end:?}") };
-            assert!(cause.ends_with("vanishes, by which the equations divide"), "{constraint}, {by}: {cause}");
+            assert!(
+                cause.contains("constraint 1 says nothing of the velocities at x ="),
+                "{constraint}, {by}: {cause}"
+            );
             let t = cause.strip_prefix("stopped at t = ").and_then(|rest| rest.split(':').next());
             let t: f64 = t.and_then(|t| t.parse().ok()).unwrap_or_else(|| panic!("{cause}"));
             assert!((t - tip).abs() < 1e-6 * tip, "{constraint}, {by}: {cause}");

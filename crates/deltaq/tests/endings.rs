@@ -19,13 +19,12 @@ fn cause(formulation: &str, system: &str, [x, y, z]: [f64; 3]) -> String {
     }
 }
 
-/// The determinant vanishes at the tip of a cone, and a divisor of the constraint is far from that.
+/// ∂f/∂v vanishes at the tip of a cone, and a divisor of the constraint is far from that.
 #[test]
-fn of_two_guards_the_one_that_is_nearly_zero_is_named() {
+fn of_a_divisor_and_a_rank_the_one_that_is_lost_is_named() {
     let system = "lagrangian = \"(x'^2 + y'^2 + z'^2)/2 - z\"\nconstraints = [\"(x'^2 - z'^2/4)/(5 + y)\"]";
     let cause = cause("vakonomic", system, [0.5, 0.0, 1.0]);
-    let near = cause.split("a singularity is near; ").nth(1).unwrap_or_else(|| panic!("{cause}"));
-    assert!(near.contains("x'^2") && near.contains("by which the equations divide, is down to "), "{cause}");
+    assert!(cause.starts_with("constraint 1 says nothing of the velocities at x = 1.31, y = 1, z = 0.625"), "{cause}");
 }
 
 /// A mass that vanishes with its coordinate, beside one that is coupled to it.

@@ -27,6 +27,7 @@ mod known_values;
 mod last_digits;
 mod long;
 mod lost_digits;
+mod lost_rank;
 mod metric;
 mod model;
 mod natural;

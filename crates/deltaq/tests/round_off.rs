@@ -100,3 +100,46 @@ fn a_pendulum_leaves_its_top() {
     let estimated = estimate.coordinates[0];
     assert!(error < 1e-2 * truth.abs() && error < estimated && estimated < 0.1 * truth.abs(), "{error}, {estimated}");
 }
+
+/// A force that is a difference of large terms for a short time, wherever that is: an estimate knows it, or there is
+/// none. The judge is the same force without the difference, `2/ε² (1 − cos(ε x)) = x²` up to 1e-16 of it.
+#[test]
+fn a_brief_cancellation_is_seen_wherever_it_is() {
+    let mut doubted = 0;
+    for width in [16.0, 64.0, 256.0] {
+        for place in 0..8 {
+            let middle = (f64::from(place) + 0.4375) / 8.0;
+            for duration in [1.0, 3.0] {
+                let scene = |force: &str| {
+                    let text = format!(
+                        "title = \"brief\"\n[coordinates]\nx = {{ start = 0.5 }}\ny = {{ start = 0.25 }}\nz = {{ start = 0 }}\n\
+                         [system]\nlagrangian = \"(x'^2 + y'^2 + z'^2)/2\"\nconstraints = [\"z' - y*x'\"]\n\
+                         forces = {{ x = \"-{force}*exp(-({width:?}*(t - {middle:?}))^2)\" }}\n[start.velocities]\n\
+                         \"x'\" = 0.25\n\"y'\" = 0.5\n[run]\nduration = {duration:?}\n"
+                    );
+                    scene::Scene::parse("brief", &text).unwrap_or_else(|e| panic!("{text}: {e}"))
+                };
+                let solved = |scene: &scene::Scene| {
+                    let choice = deltaq::choices(scene).into_iter().find(|c| c.formulation == deltaq::CHETAEV);
+                    let mut motion =
+                        deltaq::solve_choice(scene, &choice.expect("there is one"), &deltaq::Settings::default())
+                            .expect("a motion");
+                    let estimate = deltaq::error_estimate(&mut motion, deltaq::setting(scene)).expect("an estimate");
+                    let end = motion.at(motion.end()).expect("its end").coordinates;
+                    (end, estimate.coordinates.clone(), estimate.status(&motion).0)
+                };
+                let (end, estimate, status) = solved(&scene("20000000000000000*(1 - cos(x/100000000))"));
+                let (truth, _, judge) = solved(&scene("x^2"));
+                assert_eq!(judge, "completed");
+                doubted += usize::from(status != "completed");
+                let known = (0..3).all(|i| (end[i] - truth[i]).abs() <= 10.0 * estimate[i] + 1e-12);
+                assert!(
+                    known || status != "completed",
+                    "{width}, {middle}, {duration}: {end:?} {truth:?} {estimate:?}"
+                );
+            }
+        }
+    }
+    println!("{doubted} of 48 are doubted");
+    assert!(doubted > 24, "{doubted}");
+}

@@ -20,7 +20,8 @@ const UNNOTICED: f64 = 2e-17;
 /// Iterations of one step.
 const ITERATIONS: usize = 40;
 
-/// A correction over this part of the last one, and over [`FAR`], is refused: it may lead to another root.
+/// A correction over this part of the last one that moves the rates, by itself or by the impulses of its
+/// multipliers, by over [`FAR`] is refused: it may lead to another root.
 const CONTRACTION: f64 = 0.5;
 
 /// What corrections under this part of the unknowns lead to is near.
@@ -82,6 +83,7 @@ impl Iteration {
             self.correction.copy_from_slice(residuals);
             self.factors.solve(&mut self.correction);
             check_finite("a correction", t, &self.correction)?;
+            let impulses = impulses(jacobian, &self.inputs[first..], &self.correction, self.rates);
             let unknowns = &mut self.inputs[first..];
             for (z, change) in unknowns.iter_mut().zip(&self.correction) {
                 *z -= change;
@@ -96,7 +98,7 @@ impl Iteration {
             if !shrinks && found <= ROUND_OFF {
                 return Ok(());
             }
-            if !shrinks && found > FAR {
+            if !shrinks && self.of_rates(first).max(impulses) > FAR {
                 return Err(DiscreteError::NotConverged { t, iterations, found, limit: SOLVED });
             }
             before = found;
@@ -105,11 +107,24 @@ impl Iteration {
     }
 
     fn relative_correction(&self, first: usize) -> f64 {
-        let (z_rates, z_multipliers) = self.inputs[first..].split_at(self.rates);
-        let (d_rates, d_multipliers) = self.correction.split_at(self.rates);
-        let ratio = |d: &[f64], z: &[f64], floor: f64| largest(d) / largest(z).max(floor);
-        ratio(d_rates, z_rates, self.floor[0]).max(ratio(d_multipliers, z_multipliers, self.floor[1]))
+        let multipliers = largest(&self.inputs[first + self.rates..]).max(self.floor[1]);
+        self.of_rates(first).max(largest(&self.correction[self.rates..]) / multipliers)
     }
+
+    fn of_rates(&self, first: usize) -> f64 {
+        let rates = largest(&self.inputs[first..first + self.rates]).max(self.floor[0]);
+        largest(&self.correction[..self.rates]) / rates
+    }
+}
+
+/// What the correction of the multipliers does to the equations of the rates, over what these make of them: of
+/// a short step the multipliers may change by much and move nothing.
+fn impulses(jacobian: &[f64], z: &[f64], correction: &[f64], rates: usize) -> f64 {
+    let rows = || jacobian.chunks_exact(z.len()).take(rates);
+    let sum = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>().abs();
+    let impulse = rows().map(|row| sum(&row[rates..], &correction[rates..])).fold(0.0, f64::max);
+    let size = rows().map(|row| sum(&row[..rates], &z[..rates])).fold(0.0, f64::max);
+    if impulse > 0.0 { impulse / size } else { 0.0 }
 }
 
 pub(crate) fn check_finite(what: &'static str, t: f64, values: &[f64]) -> Result<(), DiscreteError> {

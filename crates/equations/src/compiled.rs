@@ -9,6 +9,7 @@ use crate::outputs::{Cost, Outputs, Sizes};
 use crate::plan::Plan;
 use crate::planned::Planned;
 use crate::projection::Projector;
+use crate::rows::Rows;
 use crate::series::Series;
 use crate::terms::Terms;
 
@@ -30,6 +31,7 @@ pub struct Compiled {
     pub(crate) gauges: Vec<fn(f64) -> f64>,
     pub(crate) highest_power: f64,
     pub(crate) divisors: Evaluator<f64>,
+    pub(crate) rows: Option<Rows>,
     /// Programs in terms, once these are asked for.
     pub(crate) terms: Option<Box<Terms>>,
     pub(crate) projector: Option<Projector>,
@@ -107,6 +109,7 @@ impl Compiled {
             steep: equations.evaluator(&known, &steep.iter().map(|steep| steep.argument).collect::<Vec<_>>())?,
             angles: equations.evaluator(&known, &equations.angles())?,
             divisors: equations.evaluator(&known, &equations.divisors())?,
+            rows: Rows::new(equations)?,
             terms: None,
             projector: equations.projection.as_ref().map(|p| Projector::new(equations, p, &known)).transpose()?,
             jacobian: None,
@@ -277,11 +280,11 @@ impl Compiled {
 
     /// Whether other pivots might be taken ([`Equations::chart`]).
     pub fn has_chart(&self) -> bool {
-        self.guards.values().len() > self.guards()
+        self.guards.values().len() > self.guards() || self.rows.as_ref().is_some_and(|rows| rows.replaceable)
     }
 
     /// Values of the guards, whose zeros are singularities; where there is room for one more, after them the
-    /// sum of the squares of the chart's coefficients.
+    /// sum of the squares of the chart's coefficients, which those of redundant rows are, too.
     pub fn guard_values(&mut self, t: f64, y: &[f64], values: &mut [f64]) {
         self.load(t, y);
         let found = self.guards.evaluate(&self.inputs[..self.sizes.known()]);
@@ -289,7 +292,30 @@ impl Compiled {
         values[..guards.len()].copy_from_slice(guards);
         if let Some(size) = values.get_mut(guards.len()) {
             *size = coefficients.iter().map(|x| x * x).sum();
+            if let Some(rows) = self.rows.as_mut().filter(|rows| rows.replaceable) {
+                *size += rows.dependence(&self.inputs);
+            }
         }
+    }
+
+    /// Rows and columns of [`Equations::rows`]; `(0, 0)` where there are none.
+    pub fn rank(&self) -> (usize, usize) {
+        self.rows.as_ref().map_or((0, 0), |rows| rows.shape)
+    }
+
+    /// The entries of [`Equations::rows`] at `(t, y)`, row-major.
+    ///
+    /// # Errors
+    /// As [`Compiled::rates`].
+    pub fn rows(&mut self, t: f64, y: &[f64], entries: &mut [f64]) -> Result<(), EvaluationFailure> {
+        self.load(t, y);
+        if self.rows.as_ref().is_some_and(|rows| rows.need_unknowns) {
+            self.solve_instant(t, y)?;
+        }
+        if let Some(rows) = &mut self.rows {
+            entries.copy_from_slice(rows.program.evaluate(&self.inputs[..rows.inputs]));
+        }
+        Ok(())
     }
 
     /// The matrices `∂R/∂z` of the blocks at `(t, y)`, row-major; of those that are not linear at the last

@@ -125,6 +125,19 @@ pub struct ConstraintProjection {
     pub metric: Matrix,
 }
 
+/// The constraint Jacobian `A = ∂f/∂v` along a motion.
+#[derive(Clone, Debug)]
+pub struct ConstraintRows {
+    /// Rows of `A` in `(t, y, z)`: those whose rank may fall.
+    pub jacobian: Matrix,
+    /// Numbers of their constraints, from 1.
+    pub numbers: Vec<usize>,
+    /// Whether there are others that follow from these, and could be taken instead where these lose rank.
+    pub replaceable: bool,
+    /// Names of the coordinates, in the order of its columns.
+    pub coordinates: Vec<String>,
+}
+
 /// Equations of motion as a formulation hands them over.
 #[derive(Clone)]
 pub struct Equations {
@@ -169,8 +182,9 @@ pub struct Equations {
     pub guards: Vec<Expr>,
     /// Those of the guards at which formulas, as they were written, cease to have values.
     pub domains: Vec<Expr>,
-    /// Those of the guards at which a constraint does not restrict the velocities: its `∂f/∂v` vanishes.
-    pub silent: Vec<Expr>,
+    /// `A = ∂f/∂v` of the constraints of the system in `(t, y, z)`: where it loses rank along a motion, several
+    /// motions go on, or none. `None` where it is constant, or there is no constraint.
+    pub rows: Option<ConstraintRows>,
     /// By which pivots they were derived, where these may become small along a motion and others be taken;
     /// never where the outputs are other coordinates than those of the system.
     pub chart: Option<Chart>,
@@ -209,7 +223,7 @@ impl Equations {
             creeps: false,
             guards: Vec::new(),
             domains: Vec::new(),
-            silent: Vec::new(),
+            rows: None,
             chart: None,
             statements: Vec::new(),
             left_out: Vec::new(),
@@ -243,18 +257,6 @@ impl Equations {
     pub fn guard_regular(&mut self, g: &Graph) {
         if self.blocks.iter().all(|block| block.unknowns.len() <= 12) {
             self.guard_determinants(g, |role| matches!(role, Role::Position | Role::Velocity));
-        }
-    }
-
-    /// Guards against equations of the instant that become singular where `∂f/∂v` of constraints not linear
-    /// in the velocities loses rank.
-    ///
-    /// Not for a mass matrix that depends on velocities: under strong masses its determinant is round-off.
-    pub fn guard_rank(&mut self, system: &System) {
-        let (g, v) = (&system.graph, system.velocities());
-        let moves = |&a: &Expr| g.symbols_of(a).iter().any(|symbol| v.contains(symbol));
-        if system.constraint_jacobian().entries().iter().any(moves) {
-            self.guard_determinants(g, |role| role == Role::Velocity);
         }
     }
 

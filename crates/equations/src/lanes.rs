@@ -20,6 +20,7 @@ pub struct LaneEquations {
     condition: Option<Evaluator<Lanes>>,
     guards: Evaluator<Lanes>,
     divisors: Evaluator<Lanes>,
+    rows: Option<(Evaluator<Lanes>, (usize, usize))>,
     projection: Option<Projection>,
     states: usize,
     /// `t, y, constants`.
@@ -41,6 +42,9 @@ impl LaneEquations {
                 "not in lanes: functions in the equations may change within a step, which looks closer".into()
             ));
         }
+        if equations.rows_need_unknowns() {
+            return Ok(Err("not in lanes: the rows of the constraints contain unknowns of the instant".into()));
+        }
         let projection = match Projection::new(equations, point)? {
             Ok(projection) => projection,
             Err(words) => return Ok(Err(words)),
@@ -50,6 +54,10 @@ impl LaneEquations {
         let condition = plan
             .condition
             .map(|condition| equations.evaluator_by(&plan.all_definitions(equations), &known, &[condition]));
+        let rows = equations.rows.as_ref().map(|rows| {
+            let program = equations.evaluator(&known, rows.jacobian.entries())?;
+            Ok::<_, CompileError>((program, (rows.jacobian.rows(), rows.jacobian.columns())))
+        });
         Ok(Ok(LaneEquations {
             workspace: series.workspace(1),
             rates: series.workspace(1),
@@ -57,6 +65,7 @@ impl LaneEquations {
             condition: condition.transpose()?,
             guards: equations.evaluator(&known, &equations.guards)?,
             divisors: equations.evaluator(&known, &equations.divisors())?,
+            rows: rows.transpose()?,
             projection,
             states: equations.states.len(),
             inputs: vec![Lanes::from_f64(0.0); known.len()],
@@ -140,6 +149,19 @@ impl LaneEquations {
         self.load(t, y);
         for (value, divisor) in values.iter_mut().zip(self.divisors.evaluate(&self.inputs)) {
             *value = divisor.0;
+        }
+    }
+
+    /// [`crate::Compiled::rank`].
+    pub fn rank(&self) -> (usize, usize) {
+        self.rows.as_ref().map_or((0, 0), |(_, shape)| *shape)
+    }
+
+    /// [`crate::Compiled::rows`] of every lane.
+    pub fn rows(&mut self, t: &[f64; LANES], y: &[[f64; LANES]], entries: &mut [[f64; LANES]]) {
+        self.load(t, y);
+        if let Some((program, _)) = &mut self.rows {
+            entries.iter_mut().zip(program.evaluate(&self.inputs)).for_each(|(x, entry)| *x = entry.0);
         }
     }
 

@@ -75,6 +75,7 @@ mod planned;
 mod projection;
 mod recombination;
 mod round_off;
+mod rows;
 mod series;
 mod steep;
 mod tangents;
@@ -84,7 +85,8 @@ pub use blocks::EvaluationFailure;
 pub use compiled::Compiled;
 pub use definitions::Definitions;
 pub use equations::{
-    Block, Chart, ConstraintProjection, Equations, FreeConstant, LeftOut, Named, Role, StateVariable, Statement,
+    Block, Chart, ConstraintProjection, ConstraintRows, Equations, FreeConstant, LeftOut, Named, Role, StateVariable,
+    Statement,
 };
 pub use formulation::{Derivation, DerivationError, Formulation, Needs, parameter};
 pub use lanes::LaneEquations;

@@ -145,7 +145,6 @@ pub fn law(system: &System, epsilon: Expr, slip: Option<Expr>) -> Equations {
         guess: Vec::new(),
         regular: "constraint Jacobian of full row rank, mass matrix regular on its kernel, and ε small",
     }];
-    equations.guard_rank(&system);
     equations.coordinates = g.variables(&q);
     equations.velocities = g.variables(&v);
     equations.multipliers = multipliers.iter().map(|&s| Named { name: g.name(s), expression: g.variable(s) }).collect();

@@ -188,7 +188,7 @@ fn widened(scene: &Scene, films: &[Film], problem: &Problem) -> (Scene, Vec<Cand
     let mut new = |name: String| -> (String, Expr) {
         let name = format!("{ADDED}{name}");
         let symbol = g.symbol(&name);
-        added.push(Parameter { symbol, value: 0.0 });
+        added.push(Parameter { symbol, value: 0.0, formula: None });
         (name, g.variable(symbol))
     };
     let is_angle = |unit: &str| ["rad", "mrad", "deg", "°"].contains(&unit);

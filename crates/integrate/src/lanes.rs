@@ -11,6 +11,7 @@ mod events;
 mod inside;
 mod poles;
 mod problem;
+mod rank;
 
 use std::array::from_fn;
 
@@ -25,6 +26,7 @@ use events::Events;
 use inside::finite;
 use poles::Poles;
 pub use problem::{LANES, Lane, LaneProblem, LaneRun, LaneStart, Left};
+use rank::Ranks;
 
 /// Takes a member and what became of it.
 type Done<'a> = &'a mut dyn FnMut(usize, Result<LaneRun, Left>);
@@ -72,6 +74,7 @@ struct Lanes<'a, P> {
     inner_rates: Vec<Lane>,
     events: Events,
     poles: Poles,
+    ranks: Ranks,
 }
 
 /// Integrates the motions that `next` names (with their starts) until it names none, by Taylor series to the
@@ -107,10 +110,12 @@ pub fn integrate_lanes<P: LaneProblem>(
         lanes.expand();
         lanes.look_at_events();
         lanes.look_inside();
+        lanes.look_at_rank();
         let adopted = from_fn(|lane| lanes.judge(lane, done));
         lanes.adopt(&adopted);
         lanes.adopt_events(&adopted);
         lanes.poles.adopt(&adopted);
+        lanes.ranks.adopt(&adopted);
         for lane in 0..LANES {
             lanes.choose(lane, done);
         }
@@ -122,6 +127,7 @@ impl<'a, P: LaneProblem> Lanes<'a, P> {
     fn new(problem: &'a mut P, times: &'a [f64], options: &'a Options) -> Self {
         let (n, orders, events) = (problem.dimension(), order(options.relative_tolerance) + 1, problem.events());
         let (zeros, divisors) = (|count: usize| vec![[0.0; LANES]; count], problem.divisors());
+        let rank = problem.rank();
         Lanes {
             problem,
             times,
@@ -151,6 +157,7 @@ impl<'a, P: LaneProblem> Lanes<'a, P> {
             inner_rates: zeros(n),
             events: Events::new(events),
             poles: Poles::new(divisors),
+            ranks: Ranks::new(rank),
         }
     }
 
@@ -160,6 +167,7 @@ impl<'a, P: LaneProblem> Lanes<'a, P> {
         (self.taken[lane], self.moved[lane]) = (0.0, 0.0);
         self.next_unit[lane] = (start.end - start.t).abs();
         self.events.board(lane);
+        self.ranks.board(lane);
         for (i, y) in start.y.iter().enumerate() {
             self.candidate[i][lane] = *y;
             self.reached[i][lane] = *y;
@@ -213,6 +221,9 @@ impl<'a, P: LaneProblem> Lanes<'a, P> {
             rider.run.work.rejected += 1;
             self.step[lane] = 0.5 * self.taken[lane].abs();
             return if rider.failures > HALVINGS { self.leave(lane, Left::StepTooSmall, done) } else { false };
+        }
+        if self.ranks.suspected[lane] {
+            return self.leave(lane, Left::Rank, done);
         }
         if !self.events.none[lane] || self.poles.suspected[lane] {
             let why = if self.events.none[lane] { Left::Divisor } else { Left::Event };

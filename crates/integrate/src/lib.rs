@@ -80,6 +80,7 @@ mod problem;
 mod radau5;
 #[doc(hidden)]
 pub mod radau5_tableau;
+mod rank;
 mod root;
 mod status;
 mod steep;

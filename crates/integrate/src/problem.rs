@@ -138,6 +138,20 @@ pub trait Problem {
         Ok(())
     }
 
+    /// Rows h and columns n of a matrix `B(t, y)` that has rank h along every solution: where it has not, several
+    /// solutions go on, or none, and the integration ends. `(0, 0)` where there is none.
+    fn rank(&self) -> (usize, usize) {
+        (0, 0)
+    }
+
+    /// Writes `B(t, y)`, row-major, all of whose columns are in one unit.
+    ///
+    /// # Errors
+    /// [`EvaluationError`] where it is not defined. The step is retried, shorter.
+    fn rows(&mut self, _t: f64, _y: &[f64], _entries: &mut [f64]) -> Result<(), EvaluationError> {
+        Ok(())
+    }
+
     /// The sum of magnitudes behind each rate; round-off is proportional to it. Called only where rates
     /// differ from the slope of a step's polynomial.
     ///

@@ -71,6 +71,9 @@ pub enum StopCause {
         /// Which one, counted from 0.
         index: usize,
     },
+    /// The matrix of [`crate::Problem::rows`] loses rank here.
+    #[error("the constraints lose rank")]
+    LosesRank,
     /// F could not be evaluated however small the step.
     #[error("the rates cannot be evaluated: {reason}")]
     Evaluation { reason: String },

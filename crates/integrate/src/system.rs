@@ -264,6 +264,20 @@ impl<'p> System<'p> {
         Ok(self.inner.borrow_mut().problem.terms_of_rates(t, y, terms)?)
     }
 
+    pub(crate) fn rank(&self) -> (usize, usize) {
+        self.inner.borrow().problem.rank()
+    }
+
+    pub(crate) fn rows(&self, t: f64, y: &[f64], entries: &mut [f64]) -> Result<(), Failure> {
+        self.inner.borrow_mut().problem.rows(t, y, entries)?;
+        match entries.iter().all(|x| x.is_finite()) {
+            true => Ok(()),
+            false => {
+                Err(Failure::Evaluation { reason: format!("a row of the constraints is NaN or infinite at t = {t}") })
+            }
+        }
+    }
+
     pub(crate) fn event_values(&self, t: f64, y: &[f64], values: &mut [f64]) -> Result<(), Failure> {
         self.inner.borrow_mut().problem.event_values(t, y, values)?;
         match values.iter().position(|g| !g.is_finite()) {

@@ -1,11 +1,12 @@
 //! The one time loop: every method, forwards and backwards, with events, projection, checks and counters.
 
 use crate::dense::{Basis, DenseOutput, evaluate_segment};
-use crate::events::{EventWatch, Segment};
+use crate::events::{EventWatch, Found, Segment};
 use crate::options::{Dense, Options, Projection};
 use crate::pace::Pace;
 use crate::poles::PoleWatch;
 use crate::problem::Start;
+use crate::rank::{Lost, RankWatch};
 use crate::status::{ProjectionReport, Solution, Status, StopCause};
 use crate::steep::SteepWatch;
 use crate::stepper::{Attempt, Stepper};
@@ -17,6 +18,8 @@ pub(crate) const HALVINGS: usize = 60;
 /// After this many consecutive steps refused for the move of their projection, a move that is over half the
 /// last one is allowed.
 const PERSISTENT: usize = 6;
+/// No move is allowed that is over this part of a state: it leads to another branch of the manifold.
+const JUMP: f64 = 0.05;
 
 /// Integrates `system` from `start` to `end` with `stepper`, or reports that it could not be set up.
 pub fn drive<S: Stepper>(
@@ -51,7 +54,7 @@ pub fn run(
         moves: Moves { allowed: 1.0, last: f64::INFINITY, shorter: 0 },
         options,
     };
-    let status = match stepper.and_then(|stepper| record.walk(stepper, start, end)) {
+    let status = match stepper.and_then(|stepper| record.begin(stepper, start, end)) {
         Ok(()) => Status::Completed,
         Err(cause) => Status::Stopped { t: record.dense.end(), cause },
     };
@@ -76,6 +79,7 @@ struct Record<'a, 'p> {
 struct Inside {
     steep: SteepWatch,
     poles: PoleWatch,
+    rank: RankWatch,
 }
 
 /// Moves of projections, relative to the allowed error of a step.
@@ -88,13 +92,37 @@ struct Moves {
 }
 
 impl Record<'_, '_> {
-    fn walk(&mut self, stepper: &mut dyn Stepper, start: &Start, end: f64) -> Result<(), StopCause> {
+    fn begin(&mut self, stepper: &mut dyn Stepper, start: &Start, end: f64) -> Result<(), StopCause> {
         let system = self.system;
-        let mut watch = EventWatch::new(system, start.t, &start.y)?;
         let mut inside = Inside {
             steep: SteepWatch::new(system, start.t, &start.y)?,
             poles: PoleWatch::new(system, start.t, &start.y, self.options)?,
+            rank: RankWatch::new(system, start.t, &start.y, self.options)?,
         };
+        self.walk(stepper, start, end, &mut inside).map_err(|cause| match cause {
+            StopCause::Evaluation { .. }
+            | StopCause::NotFinite { .. }
+            | StopCause::NotSmooth { .. }
+            | StopCause::OffConstraint { .. }
+            | StopCause::StepTooSmall { .. }
+            | StopCause::Creeping { .. }
+                if inside.rank.is_near() =>
+            {
+                StopCause::LosesRank
+            }
+            cause => cause,
+        })
+    }
+
+    fn walk(
+        &mut self,
+        stepper: &mut dyn Stepper,
+        start: &Start,
+        end: f64,
+        inside: &mut Inside,
+    ) -> Result<(), StopCause> {
+        let system = self.system;
+        let mut watch = EventWatch::new(system, start.t, &start.y)?;
         // The last failure since the last accepted step, and the number of them.
         let mut failure: Option<Failure> = None;
         let mut failures = 0;
@@ -120,7 +148,7 @@ impl Record<'_, '_> {
             let accepted = match stepper.attempt() {
                 Attempt::Candidate { t, rejected } => {
                     system.count_rejected(rejected);
-                    self.take(stepper, &mut watch, &mut inside, t)
+                    self.take(stepper, &mut watch, inside, t)
                 }
                 Attempt::Rejected => {
                     system.count_rejected(1);
@@ -135,9 +163,10 @@ impl Record<'_, '_> {
                     watch.advance();
                     inside.steep.advance();
                     inside.poles.advance();
+                    inside.rank.advance();
                     (failure, failures) = (None, 0);
                 }
-                Ok(Some(index)) => return Err(StopCause::Event { index }),
+                Ok(Some(cause)) => return Err(cause),
                 Err(error) => {
                     system.count_rejected(1);
                     failures += 1;
@@ -166,6 +195,9 @@ impl Record<'_, '_> {
             }
         }
         let Moves { allowed, last, shorter } = &mut self.moves;
+        if worst * DEFECT * relative > JUMP {
+            return Err(Failure::OffConstraint { component });
+        }
         if worst <= *allowed || self.options.method.is_multistep() {
             *shorter = 0;
             return Ok(());
@@ -179,14 +211,14 @@ impl Record<'_, '_> {
         Err(Failure::OffConstraint { component })
     }
 
-    /// Checks, projects and stores the candidate that ends at `t`; returns the event that cuts it short.
+    /// Checks, projects and stores the candidate that ends at `t`; returns what cuts it short.
     fn take(
         &mut self,
         stepper: &mut dyn Stepper,
         watch: &mut EventWatch,
         inside: &mut Inside,
         t: f64,
-    ) -> Result<Option<usize>, Failure> {
+    ) -> Result<Option<StopCause>, Failure> {
         let begin = stepper.time();
         let candidate = stepper.candidate();
         check_finite(candidate)?;
@@ -198,7 +230,7 @@ impl Record<'_, '_> {
             self.check_move(candidate)?;
         }
         let watching = self.system.events() > 0;
-        let looks = inside.steep.is_on() || inside.poles.is_on();
+        let looks = inside.steep.is_on() || inside.poles.is_on() || inside.rank.is_on();
         let has_room = watching || looks || self.options.dense == Dense::Everywhere;
         let room = if has_room { Some(self.dense.room()) } else { None };
         let found = stepper.finish(moved.is_some_and(|length| length != 0.0), room).and_then(|()| {
@@ -209,11 +241,9 @@ impl Record<'_, '_> {
             let segment = Segment { basis: self.dense.basis(), coefficients, begin, width: t - begin, end: t };
             inside.steep.look(self.system, &segment)?;
             inside.poles.look(self.system, &segment, stepper.candidate())?;
-            if !watching {
-                return Ok(None);
-            }
-            let found = watch.look(self.system, &segment)?;
-            Ok(found.map(|found| (found.index, found.theta, segment.time(found.theta))))
+            let lost = inside.rank.look(self.system, &segment, stepper.candidate())?;
+            let event = if watching { watch.look(self.system, &segment)? } else { None };
+            Ok(first(lost, event).map(|(cause, theta)| (cause, theta, segment.time(theta))))
         });
         let found = found.and_then(|found| self.system.accepted(t, stepper.candidate()).map(|()| found));
         if found.is_err() && has_room {
@@ -221,6 +251,12 @@ impl Record<'_, '_> {
         }
         let found = found?;
         let mut end = t;
+        if let Some((StopCause::LosesRank, 0.0, _)) = found {
+            if has_room {
+                self.dense.pop_room();
+            }
+            return Ok(Some(StopCause::LosesRank));
+        }
         if let Some((_, theta, t_event)) = found {
             let mut state = vec![0.0; self.dense.dimension()];
             evaluate_segment(self.dense.basis(), self.dense.last_room(), theta, &mut state);
@@ -235,6 +271,19 @@ impl Record<'_, '_> {
         if let Some(length) = moved {
             self.projection.record(length);
         }
-        Ok(found.map(|(index, ..)| index))
+        Ok(found.map(|(cause, ..)| cause))
+    }
+}
+
+/// What comes first in a step, and in which part of it; at 0 the step is not taken. An event that is hardly
+/// before a loss of rank is that: pivots vanish with the rows that they are taken from.
+fn first(lost: Option<Lost>, event: Option<Found>) -> Option<(StopCause, f64)> {
+    const HARDLY: f64 = 1e-3;
+    match (lost, event) {
+        (Some(Lost::Before), _) => Some((StopCause::LosesRank, 0.0)),
+        (Some(Lost::Inside(theta)), event) if event.as_ref().is_none_or(|event| event.theta > theta - HARDLY) => {
+            Some((StopCause::LosesRank, theta))
+        }
+        (_, event) => event.map(|Found { index, theta }| (StopCause::Event { index }, theta)),
     }
 }

@@ -63,6 +63,7 @@ pub mod linear;
 pub mod newton;
 mod observables;
 mod rank;
+mod redundant;
 mod removal;
 mod removal_error;
 mod shape;

@@ -84,6 +84,9 @@ pub struct System {
     /// Constraints on positions `g(q, t) = 0`, each beside the place of `dg/dt` among the constraints:
     /// motions stay on the leaf `g = 0` of their start.
     pub on_positions: Vec<(usize, Expr)>,
+    /// Constraints that follow from the others, with the numbers that they were given: no equation depends on
+    /// them.
+    pub redundant: Vec<(usize, Expr)>,
     /// `Q(q, v, t)`, one per coordinate; the number 0 where no force was given.
     pub forces: Vec<Expr>,
     /// `w(q, v, t)`, none, or as many as constraints: displacements with `∂w/∂v δq = 0` are virtual, where
@@ -132,6 +135,7 @@ impl System {
             lagrangian: graph.zero(),
             constraints: Vec::new(),
             on_positions: Vec::new(),
+            redundant: Vec::new(),
             forces: vec![graph.zero(); coordinates.len()],
             virtual_conditions: Vec::new(),
             domains: Vec::new(),
@@ -237,9 +241,17 @@ impl System {
         momenta.iter().enumerate().map(|(i, &p)| g.sub(g.total_derivative(p, flow), on(i))).collect()
     }
 
-    /// New symbols, one per constraint: `stem_1`, `stem_2`, …, each with these primes.
+    /// New symbols, one per constraint: `stem_1`, `stem_2`, …, by [`System::constraint_numbers`], each with these
+    /// primes.
     pub fn multipliers(&self, stem: &str, primes: &str) -> Vec<Symbol> {
-        (1..=self.constraints.len()).map(|i| fresh_symbol(&self.graph, &format!("{stem}_{i}{primes}"))).collect()
+        let numbers = self.constraint_numbers().into_iter();
+        numbers.map(|i| fresh_symbol(&self.graph, &format!("{stem}_{i}{primes}"))).collect()
+    }
+
+    /// The number that each constraint was given: 1, 2, … but those of [`System::redundant`].
+    pub fn constraint_numbers(&self) -> Vec<usize> {
+        let is_free = |number: &usize| self.redundant.iter().all(|(other, _)| other != number);
+        (1..).filter(is_free).take(self.constraints.len()).collect()
     }
 
     /// Constraint Jacobian `A = ∂f/∂v`, h×n.

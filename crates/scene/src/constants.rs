@@ -6,9 +6,10 @@ use super::section::Section;
 use crate::{SceneError, SceneErrorKind, format};
 use mechanics::{ConstantsRule, MemoryVariable};
 
-/// `μ₀`, one per constraint; zero where the scene says nothing.
+/// `μ₀`, given one per constraint; zero where the scene says nothing, and of constraints that follow from others.
 pub(super) fn multipliers(context: &Context) -> Result<Vec<f64>, SceneError> {
-    let expected = context.system.constraints.len();
+    let (system, numbers) = (&context.system, context.system.constraint_numbers());
+    let expected = numbers.len() + system.redundant.len();
     let mut multipliers = vec![0.0; expected];
     if let Some(section) = context.root.section("vakonomic")? {
         section.check_keys(format::VAKONOMIC);
@@ -19,6 +20,10 @@ pub(super) fn multipliers(context: &Context) -> Result<Vec<f64>, SceneError> {
                 return Err(entry.error(SceneErrorKind::WrongLength { what, found, expected }));
             }
             multipliers = elements.iter().map(|e| context.constant(e)).collect::<Result<_, _>>()?;
+            let of_redundant = |(number, _): &(usize, _)| (*number, multipliers[number - 1]);
+            if let Some((number, value)) = system.redundant.iter().map(of_redundant).find(|(_, value)| *value != 0.0) {
+                return Err(elements[number - 1].error(SceneErrorKind::RedundantMultiplier { number, value }));
+            }
         }
     }
     for (i, multiplier) in multipliers.iter_mut().enumerate() {
@@ -26,7 +31,7 @@ pub(super) fn multipliers(context: &Context) -> Result<Vec<f64>, SceneError> {
             *multiplier = value;
         }
     }
-    Ok(multipliers)
+    Ok(numbers.into_iter().map(|number| multipliers[number - 1]).collect())
 }
 
 /// `constants` of one removal.

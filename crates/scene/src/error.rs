@@ -150,6 +150,9 @@ pub enum SceneErrorKind {
     /// As many constraints as coordinates.
     #[error("{found} constraints for {dimension} coordinates leave nothing to move; at most {} are possible", .dimension.saturating_sub(1))]
     TooManyConstraints { found: usize, dimension: usize },
+    /// A multiplier of a constraint that follows from the others.
+    #[error("constraint {number} follows from the others: its multiplier is zero, not {value:?}")]
+    RedundantMultiplier { number: usize, value: f64 },
     /// A coordinate that a removal does not know what to do with.
     #[error("removal `{removal}`: coordinate `{coordinate}` is {}; it must be exactly one of: a parameter, in rates, in direct", joined(.roles))]
     CoordinateRole { removal: String, coordinate: String, roles: Vec<&'static str> },

@@ -55,6 +55,7 @@ mod number;
 mod order;
 mod overrides;
 mod reasons;
+mod redundant;
 mod removal;
 mod scene;
 mod section;

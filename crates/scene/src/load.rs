@@ -10,7 +10,7 @@ use toml::de::DeTable;
 use super::context::Context;
 use super::overrides::Overrides;
 use super::section::{Entry, Section, Source};
-use super::{constants, film, removal, start, system, view};
+use super::{constants, film, redundant, removal, start, system, view};
 use crate::{Number, Scene, SceneError, SceneErrorKind, format};
 
 /// Size of the largest scene file that is read, in bytes.
@@ -187,6 +187,9 @@ fn read(name: &str, source: Source, overrides: Overrides) -> Result<Scene, Scene
     });
     let view = source.note(view::read(&context)).unwrap_or_default();
     let film = source.note(film::read(&context)).unwrap_or_default();
+    if !faults_so_far(source) {
+        source.note(redundant::leave_out(&mut context));
+    }
     // constraints that could not be read would be missed
     let multipliers =
         if faults_so_far(source) { Some(Vec::new()) } else { source.note(constants::multipliers(&context)) };

@@ -47,7 +47,7 @@ impl Scene {
     /// Names of the multipliers `μ₀`, one per constraint: those of the free constants of vakonomic motions.
     #[must_use]
     pub fn multiplier_names(&self) -> Vec<String> {
-        (0..self.multipliers.len()).map(multiplier_name).collect()
+        self.system.constraint_numbers().into_iter().map(|number| multiplier_name(number - 1)).collect()
     }
 }
 

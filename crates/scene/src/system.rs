@@ -226,7 +226,10 @@ fn constraints(context: &mut Context, entry: &Entry) -> Result<(), SceneError> {
     for (index, element) in entry.elements("an array of expressions")?.iter().enumerate() {
         let read = element.text("an expression in quotes");
         let read = read.and_then(|text| context.names.parse_value(source, &context.system.graph, &text));
-        for f in source.note(read).iter().flat_map(|value| value.entries()) {
+        let read = source.note(read);
+        let components = read.as_ref().map_or(&[][..], |value| value.entries());
+        // components of a vector that are 0 = 0 whatever moves say nothing
+        for f in components.iter().filter(|f| components.len() == 1 || !context.system.graph.is_zero(**f)) {
             let system = &context.system;
             let g = &system.graph;
             let depends = |symbols: Vec<Symbol>| symbols.into_iter().any(|s| g.depends_on(*f, s));
@@ -241,10 +244,6 @@ fn constraints(context: &mut Context, entry: &Entry) -> Result<(), SceneError> {
                 source.note::<()>(Err(element.error(SceneErrorKind::NoVelocity { number: index + 1 })));
             }
         }
-    }
-    let (found, dimension) = (constraints.len(), context.system.dimension());
-    if found >= dimension {
-        return Err(entry.error_at_key(SceneErrorKind::TooManyConstraints { found, dimension }));
     }
     context.system.constraints = constraints;
     context.system.on_positions = on_positions;

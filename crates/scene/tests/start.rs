@@ -110,7 +110,7 @@ fn a_sign_is_chosen_by_the_guess() {
 #[test]
 fn dependent_constraints_show_singular_values() {
     let velocities = "velocities = { \"x'\" = 0, \"y'\" = 0, \"z'\" = 0 }";
-    let error = load([0.1; 3], KINETIC, "\"x' - y'\", \"1000*y' - 1000*x'\"", velocities).unwrap_err();
+    let error = load([0.1; 3], KINETIC, "\"x' - y'\", \"1000*y' - 1000*x' + (z - 0.1)*z'\"", velocities).unwrap_err();
     let told = error.to_string();
     let StartError::DependentConstraints { singular_values, ratio, limit, combination } = error else {
         panic!("{told}")
@@ -240,4 +240,31 @@ fn a_speed_that_is_exceeded_has_no_real_start() {
     let StartError::NoRealSolution { velocities, constraint: 1, residual, limit } = &error else { panic!("{error}") };
     assert!(velocities == &["y'"] && residual > limit);
     assert!(error.to_string().starts_with("no real `y'` satisfies constraint 1"), "{error}");
+}
+
+/// Rows that depend everywhere where the others hold are left out; their multipliers are zero.
+#[test]
+fn constraints_that_follow_from_others_are_left_out() {
+    let text = |constraints: &str, multipliers: &str| {
+        format!(
+            "title = \"t\"\n[coordinates]\nx = {{ start = 0.1 }}\ny = {{ start = 0.2 }}\nz = {{ start = 0 }}\n[system]\n\
+             lagrangian = \"(x'^2 + y'^2 + z'^2)/2\"\nconstraints = [{constraints}]\n[start.velocities]\n\"x'\" = 1\n\
+             [vakonomic]\nmultipliers = [{multipliers}]\n[run]\nduration = 1\n"
+        )
+    };
+    let three = "\"z' - y*x'\", \"3*z' - 3*y*x'\", \"y' + x*x'\"";
+    let scene = Scene::parse("t", &text(three, "0.5, 0, 0.25")).unwrap_or_else(|e| panic!("{e}"));
+    let numbers: Vec<usize> = scene.system.redundant.iter().map(|(number, _)| *number).collect();
+    assert_eq!((numbers, &scene.multipliers[..]), (vec![2], &[0.5, 0.25][..]));
+    assert_eq!(scene.multiplier_names(), ["mu0_1", "mu0_3"]);
+    let refused = Scene::parse("t", &text(three, "0.5, 1, 0.25")).unwrap_err().to_string();
+    assert!(refused.contains("constraint 2 follows from the others: its multiplier is zero, not 1.0"), "{refused}");
+    // another offset contradicts, and does not follow
+    for contradictory in ["\"z' - y*x'\", \"z' - y*x' - 1\"", "\"z' - y*x'\", \"z' - y*x' + 1e-3*t\""] {
+        Scene::parse("t", &text(contradictory, "0, 0")).expect_err(contradictory);
+    }
+    // a component of a vector that is 0 = 0 is left out before they are counted
+    let vector = text("\"[z' - y*x', 0*x', 0]\"", "0.5").replace("\"x'\" = 1", "\"x'\" = 1\n\"y'\" = 0");
+    let vector = Scene::parse("t", &vector).unwrap_or_else(|e| panic!("{e}"));
+    assert_eq!((vector.system.constraints.len(), vector.system.redundant.len()), (1, 0));
 }

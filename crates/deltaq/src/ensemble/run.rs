@@ -13,6 +13,7 @@ use super::threads::{Take, shared};
 use super::{Ensemble, EnsembleMember};
 use crate::disturbed::disturbed_by_constants;
 use crate::last_digits::{UNITS, move_digits};
+use crate::lost_rank::column_factors;
 use crate::metric::subtract;
 use crate::single_run::SingleRun;
 use crate::sizes::sizes;
@@ -222,7 +223,14 @@ impl Task<'_> {
     ) {
         let n = lanes.dimension();
         let mut refused = Vec::new();
-        let mut problem = Riders { lanes, members: self.members };
+        let columns = match self.members.first() {
+            Some(first) => {
+                first.set(compiled);
+                column_factors(compiled, &mut self.metric_of(first), first.t, &first.y)
+            }
+            None => Vec::new(),
+        };
+        let mut problem = Riders { lanes, members: self.members, columns };
         let mut next = || {
             loop {
                 let index = take().filter(|_| !self.is_interrupted())?;
@@ -333,6 +341,8 @@ impl Task<'_> {
 struct Riders<'a> {
     lanes: LaneEquations,
     members: &'a [EnsembleMember],
+    /// Factors of the columns of the constraints' rows.
+    columns: Vec<f64>,
 }
 
 impl LaneProblem for Riders<'_> {
@@ -362,5 +372,14 @@ impl LaneProblem for Riders<'_> {
     }
     fn divided(&mut self, t: &Lane, y: &[Lane], values: &mut [Lane]) {
         self.lanes.divided(t, y, values);
+    }
+    fn rank(&self) -> (usize, usize) {
+        self.lanes.rank()
+    }
+    fn rows(&mut self, t: &Lane, y: &[Lane], entries: &mut [Lane]) {
+        self.lanes.rows(t, y, entries);
+        for row in entries.chunks_mut(self.columns.len()) {
+            row.iter_mut().zip(&self.columns).for_each(|(x, c)| x.iter_mut().for_each(|x| *x *= c));
+        }
     }
 }

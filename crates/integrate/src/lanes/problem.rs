@@ -38,6 +38,14 @@ pub trait LaneProblem {
 
     /// Their values.
     fn divided(&mut self, _t: &Lane, _y: &[Lane], _values: &mut [Lane]) {}
+
+    /// As [`crate::Problem::rank`].
+    fn rank(&self) -> (usize, usize) {
+        (0, 0)
+    }
+
+    /// As [`crate::Problem::rows`].
+    fn rows(&mut self, _t: &Lane, _y: &[Lane], _entries: &mut [Lane]) {}
 }
 
 /// Start and end of a motion.
@@ -68,6 +76,9 @@ pub enum Left {
     /// A divisor changes its sign or comes near zero within a step.
     #[error("a divisor nearly vanishes on the way")]
     Divisor,
+    /// Constraints lose rank or nearly so.
+    #[error("constraints nearly lose rank on the way")]
+    Rank,
     /// Steps are too short to change the time, stall, or are halved too often.
     #[error("steps too short on the way")]
     StepTooSmall,
