@@ -42,6 +42,12 @@ pub(crate) fn run(arguments: &ShowArguments) -> Result<String> {
         return Ok(catalogue::source(&arguments.scene.scene)?);
     }
     let scene = arguments.scene.find()?;
+    if arguments.formulas {
+        return match scene.meant {
+            Some(meant) => Ok(meant.formulas),
+            None => Ok(catalogue::source(&arguments.scene.scene)?),
+        };
+    }
     let style = if arguments.latex { EquationStyle::Latex } else { EquationStyle::Plain };
     let mut equations = Vec::new();
     let asked = &arguments.formulation;

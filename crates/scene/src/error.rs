@@ -153,6 +153,9 @@ pub enum SceneErrorKind {
     /// A coordinate that a removal does not know what to do with.
     #[error("removal `{removal}`: coordinate `{coordinate}` is {}; it must be exactly one of: a parameter, in rates, in direct", joined(.roles))]
     CoordinateRole { removal: String, coordinate: String, roles: Vec<&'static str> },
+    /// Bodies from which no formulas follow.
+    #[error(transparent)]
+    Bodies(bodies::FaultKind),
     /// A wrong parametrization.
     #[error(transparent)]
     Removal(RemovalError),

@@ -10,8 +10,8 @@ use toml::de::DeTable;
 use super::context::Context;
 use super::overrides::Overrides;
 use super::section::{Entry, Section, Source};
-use super::{constants, film, removal, start, system, view};
-use crate::{Number, Scene, SceneError, SceneErrorKind, format};
+use super::{constants, film, formulas, machine, removal, start, system, view};
+use crate::{Meant, Number, Scene, SceneError, SceneErrorKind, format};
 
 /// Size of the largest scene file that is read, in bytes.
 pub const SIZE_LIMIT: u64 = 1 << 20;
@@ -172,12 +172,19 @@ fn read(name: &str, source: Source, overrides: Overrides) -> Result<Scene, Scene
     }
     let root = Section::root(source, table.get_ref());
     root.check_keys(format::SCENE);
+    let follows = machine::read(source, &root)?;
+    let has_bodies = follows.is_some();
+    let table = match &follows {
+        Some(follows) => &formulas::with(table.get_ref(), &follows.made),
+        None => table.get_ref(),
+    };
+    let root = Section::root(source, table);
     let text = |key| source.note(root.text_or_empty(key)).unwrap_or_default();
     let (origin, notes) = (text("source"), text("notes"));
     let title = source.note(root.require("title", "a string").and_then(|title| title.text("a string")));
     let run = root.require("run", "a table with the duration").and_then(|run| run.section());
     let run = source.note(run);
-    let mut context = system::build(source, root, overrides)?;
+    let mut context = system::build(source, root, overrides, follows.unwrap_or_default())?;
     let duration = run.and_then(|run| {
         run.check_keys(format::RUN);
         if let Some(times) = run.get("breakpoints").and_then(|entry| source.note(breakpoints(&entry))) {
@@ -200,6 +207,10 @@ fn read(name: &str, source: Source, overrides: Overrides) -> Result<Scene, Scene
         unreachable!("what could not be read was noted")
     };
     source.no_fault()?;
+    let meant = has_bodies.then(|| Meant {
+        formulas: formulas::written(table, &context.found),
+        left_out: context.found.left_out,
+    });
     Ok(Scene {
         name: name.into(),
         title: title.text,
@@ -213,6 +224,7 @@ fn read(name: &str, source: Source, overrides: Overrides) -> Result<Scene, Scene
         duration,
         film,
         view,
+        meant,
     })
 }
 

@@ -77,6 +77,9 @@ pub struct ShowArguments {
     /// The text of the scene file, and nothing else.
     #[arg(long, conflicts_with_all = ["latex", "format", "overrides"])]
     pub source: bool,
+    /// The scene of formulas that a scene of bodies means, and nothing else.
+    #[arg(long, conflicts_with_all = ["latex", "source", "format"])]
+    pub formulas: bool,
     /// The equations as a source file in a language, and nothing else; by default those of Chetaev.
     #[arg(long, value_enum, value_name = "LANGUAGE", conflicts_with_all = ["latex", "source", "format"])]
     pub code: Option<CodeLanguage>,
