@@ -6,8 +6,8 @@ use crate::text::{Sum, is_zero_vector, vector};
 use crate::turn::{Turn, backwards, join, read, turned, written};
 use crate::{Body, Fault, FaultKind, Formulas, Machine, Made, Motion, Picture, Written};
 
-/// Definitions within definitions that are looked into.
-const DEPTH: usize = 32;
+/// Definitions and brackets within one another that are looked into.
+const DEPTH: usize = 64;
 
 /// A body against its base: space, or a body at rest that is turned in space.
 #[derive(Clone, Debug, Default)]

@@ -65,14 +65,21 @@ pub(crate) fn is_zero_vector(text: &str) -> bool {
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Sum(pub(crate) Vec<(bool, String)>);
 
+/// Brackets within brackets that are looked into; what is deeper is a term.
+const DEPTH: usize = 20;
+
 impl Sum {
     pub(crate) fn read(text: &str) -> Sum {
+        Sum::read_within(text, DEPTH)
+    }
+
+    fn read_within(text: &str, brackets: usize) -> Sum {
         let mut sum = Sum::default();
         let (mut depth, mut from, mut negative) = (0_i32, 0, false);
         let mut end = |from: usize, to: usize, negative: bool| {
             let term = text[from..to].trim();
             if !term.is_empty() {
-                sum.push(negative, term);
+                sum.push(negative, term, brackets);
             }
         };
         for (i, c) in text.char_indices() {
@@ -96,9 +103,10 @@ impl Sum {
         sum
     }
 
-    fn push(&mut self, negative: bool, term: &str) {
-        if let Some(inner) = within(term, "(") {
-            Sum::read(inner).0.iter().for_each(|(sign, term)| self.push(negative ^ sign, term));
+    fn push(&mut self, negative: bool, term: &str, brackets: usize) {
+        if let Some(inner) = within(term, "(").filter(|_| brackets > 0) {
+            let inner = Sum::read_within(inner, brackets - 1);
+            inner.0.iter().for_each(|(sign, term)| self.push(negative ^ sign, term, 0));
         } else if let Some(i) = self.0.iter().position(|(sign, other)| *sign != negative && other == term) {
             self.0.remove(i);
         } else if !is_zero(term) {
@@ -108,7 +116,7 @@ impl Sum {
 
     pub(crate) fn plus(&self, other: &Sum) -> Sum {
         let mut sum = self.clone();
-        other.0.iter().for_each(|(sign, term)| sum.push(*sign, term));
+        other.0.iter().for_each(|(sign, term)| sum.push(*sign, term, 0));
         sum
     }
 

@@ -107,7 +107,7 @@ pub(crate) fn written(turns: &[Turn]) -> String {
 
 /// The turns of a formula: a product of rotations, their transposes, and definitions of such.
 pub(crate) fn read(machine: &Machine, text: &str, depth: usize) -> Option<Vec<Turn>> {
-    let text = text.trim();
+    let (text, depth) = (text.trim(), depth.checked_sub(1)?);
     if let [_, _, ..] = split(text, '*')[..] {
         let factors = split(text, '*').into_iter().map(|part| read(machine, part, depth));
         return factors.collect::<Option<Vec<_>>>().map(|parts| parts.iter().fold(Vec::new(), |a, b| join(&a, b)));
@@ -131,8 +131,7 @@ pub(crate) fn read(machine: &Machine, text: &str, depth: usize) -> Option<Vec<Tu
             _ => None,
         };
     }
-    let meant = machine.definitions.get(text).filter(|_| depth > 0)?;
-    read(machine, meant, depth - 1)
+    read(machine, machine.definitions.get(text)?, depth)
 }
 
 /// `turns*vector`; nothing for no vector.

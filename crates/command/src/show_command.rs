@@ -119,6 +119,8 @@ pub(crate) fn run(arguments: &ShowArguments) -> Result<String> {
     let source = if scene.source.is_empty() { String::new() } else { format!("{}\n", scene.source) };
     let mut text = format!("{}\n{source}\n{}", scene.title, system_text(&scene.system, style));
     let _ = writeln!(text, "\nConstraint: {integrability}");
+    let left_out = scene.meant.iter().flat_map(|meant| &meant.left_out);
+    left_out.for_each(|row| text += &format!("Left out: {row}\n"));
     for (choice, derived, integrated) in equations {
         let mut derived = derived.unwrap_or_else(|error| format!("refused: {error}\n"));
         if let Some(ChosenForm { name, why }) = integrated.filter(|form| form.name != choice.formulation.name) {

@@ -9,12 +9,12 @@ use super::machine::Kind;
 use super::section::Text;
 use crate::{SceneError, SceneErrorKind};
 
-/// Faults of what was made of the user's formulas: those of these formulas, where there are any.
-pub(super) fn explain(context: &Context, unexplained: Vec<SceneError>) {
+/// Faults of the user's formulas, before those of what was made of them.
+pub(super) fn explain(context: &Context, unexplained: Vec<SceneError>) -> Result<(), SceneError> {
     let (source, g) = (context.source, &context.system.graph);
-    let before = source.faults.borrow().len();
+    let mut found = false;
     for (text, kind) in &context.follows.texts {
-        let found = match (context.names.parse_value(source, g, text), kind) {
+        let read = match (context.names.parse_value(source, g, text), kind) {
             (Err(fault), _) => Err(fault),
             (Ok(symbolic::Value::Scalar(_)), Kind::Number | Kind::Any) | (Ok(_), Kind::Any) => Ok(()),
             (Ok(symbolic::Value::Vector(v)), Kind::Vector) if matches!(v.len(), 2 | 3) => Ok(()),
@@ -23,11 +23,11 @@ pub(super) fn explain(context: &Context, unexplained: Vec<SceneError>) {
                 Err(source.error(&text.span, SceneErrorKind::WrongShape { found: value.shape(), expected }))
             }
         };
-        source.note(found);
+        found |= source.note(read).is_none();
     }
-    if source.faults.borrow().len() == before {
-        source.faults.borrow_mut().extend(unexplained);
-    }
+    source.faults.borrow_mut().extend(unexplained.into_iter().filter(|_| !found));
+    // what comes next is made of the same formulas
+    if context.follows.texts.is_empty() { Ok(()) } else { source.no_fault() }
 }
 
 /// Constraints that follow, after those that are written: what vanishes identically, and what another says,

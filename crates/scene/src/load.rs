@@ -10,7 +10,7 @@ use toml::de::DeTable;
 use super::context::Context;
 use super::overrides::Overrides;
 use super::section::{Entry, Section, Source};
-use super::{constants, film, formulas, machine, removal, start, system, view};
+use super::{constants, film, formulas, machine, removal, review, start, system, view};
 use crate::{Meant, Number, Scene, SceneError, SceneErrorKind, format};
 
 /// Size of the largest scene file that is read, in bytes.
@@ -63,6 +63,20 @@ impl Scene {
         overrides: &[(String, N)],
     ) -> Result<Scene, SceneError> {
         load(name, name, text, overrides)
+    }
+
+    /// What a reviewer would ask about a scene that can be read, each with its place: names that nothing
+    /// uses, masses below zero, moments that no body has, weights with the wrong sign, forces that drive
+    /// whichever way the system moves, constraints that contradict the picture. `file` as in errors.
+    ///
+    /// # Errors
+    /// As [`Scene::parse`].
+    pub fn remarks<N: Clone + Into<Number>>(
+        file: &str,
+        text: &str,
+        overrides: &[(String, N)],
+    ) -> Result<Vec<SceneError>, SceneError> {
+        loaded(file, file, text, overrides, |scene, context| review::remarks(context, &scene.view, &scene.start))
     }
 
     /// Reads a scene file of at most [`SIZE_LIMIT`] bytes.
@@ -136,9 +150,20 @@ fn load<N: Clone + Into<Number>>(
     overrides: &[(String, N)],
 ) -> Result<Scene, SceneError> {
     work_on(format!("scene {name}, digest {:016x}", digest(text, overrides)));
+    loaded(name, file, text, overrides, |scene, _| scene)
+}
+
+/// The scene, or what `then` makes of it and of how it was read.
+fn loaded<N: Clone + Into<Number>, T>(
+    name: &str,
+    file: &str,
+    text: &str,
+    overrides: &[(String, N)],
+    then: impl FnOnce(Scene, &Context) -> T,
+) -> Result<T, SceneError> {
     let faults = RefCell::default();
     let source = Source { file, text, faults: &faults };
-    let scene = Overrides::new(source, overrides).and_then(|overrides| read(name, source, overrides));
+    let scene = Overrides::new(source, overrides).and_then(|overrides| read(name, source, overrides, then));
     let mut faults = faults.into_inner();
     let scene = scene.map_err(|fault| faults.push(fault));
     match (scene, SceneError::together(faults)) {
@@ -157,7 +182,12 @@ fn digest<N: Clone + Into<Number>>(text: &str, overrides: &[(String, N)]) -> u64
 }
 
 /// Looks at as much as can be looked at: faults that leave the rest readable are noted.
-fn read(name: &str, source: Source, overrides: Overrides) -> Result<Scene, SceneError> {
+fn read<T>(
+    name: &str,
+    source: Source,
+    overrides: Overrides,
+    then: impl FnOnce(Scene, &Context) -> T,
+) -> Result<T, SceneError> {
     let Source { file, text, .. } = source;
     let size = text.len() as u64;
     if size > SIZE_LIMIT {
@@ -209,14 +239,14 @@ fn read(name: &str, source: Source, overrides: Overrides) -> Result<Scene, Scene
     source.no_fault()?;
     let meant = has_bodies.then(|| Meant {
         formulas: formulas::written(table, &context.found),
-        left_out: context.found.left_out,
+        left_out: context.found.left_out.clone(),
     });
-    Ok(Scene {
+    let scene = Scene {
         name: name.into(),
         title: title.text,
         source: origin,
         notes,
-        system: context.system,
+        system: context.system.clone(),
         start: state,
         completion,
         removals,
@@ -225,7 +255,8 @@ fn read(name: &str, source: Source, overrides: Overrides) -> Result<Scene, Scene
         film,
         view,
         meant,
-    })
+    };
+    Ok(then(scene, &context))
 }
 
 fn faults_so_far(source: Source) -> bool {

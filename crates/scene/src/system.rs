@@ -71,7 +71,7 @@ pub(super) fn build<'a>(
             context.system.parameters.push(Parameter { symbol, value });
         }
     }
-    source.note(definitions(&mut context));
+    definitions(&mut context)?;
     source.note(read_system(&mut context));
     context.system.domains = context.system.graph.lost_domains(&context.system.written());
     for (section, constancy) in [("invariants", Constancy::Expected), ("observables", Constancy::Free)] {
@@ -144,7 +144,9 @@ fn parameters(
 }
 
 fn definitions(context: &mut Context) -> Result<(), SceneError> {
-    let Some(section) = context.root.section("definitions")? else { return Ok(()) };
+    let Some(section) = context.root.section("definitions")? else {
+        return followed::explain(context, Vec::new());
+    };
     let source = context.source;
     let mut written = Vec::new();
     for entry in section.entries() {
@@ -176,8 +178,7 @@ fn definitions(context: &mut Context) -> Result<(), SceneError> {
             None => context.names.insert_faulty(entry.key, Role::Definition),
         }
     }
-    followed::explain(context, unexplained.into_inner());
-    Ok(())
+    followed::explain(context, unexplained.into_inner())
 }
 
 fn read_system(context: &mut Context) -> Result<(), SceneError> {
