@@ -113,8 +113,11 @@ impl Maker<'_> {
         angle.rate(|term| self.machine.moves(term))
     }
 
-    /// A new definition, by a name that is free.
+    /// A definition, by a name that is free; what is defined already has its name.
     pub(crate) fn define(&mut self, owner: &Written, part: &str, text: String) -> String {
+        if let Some(known) = self.made.definitions.iter().find(|made| made.text == text) {
+            return known.name.clone();
+        }
         let mut name: String =
             owner.text.chars().map(|c| if c.is_ascii_alphanumeric() { c } else { '_' }).collect();
         if !name.starts_with(|c: char| c.is_ascii_alphabetic()) {

@@ -8,6 +8,7 @@ use scene::{Scene, SceneError};
 
 use crate::cli::{CheckArguments, NewArguments};
 use crate::schema::schema;
+use crate::show_command::of_contacts;
 use program::{keep, plain};
 
 const TEMPLATE: &str = include_str!("template.toml");
@@ -35,8 +36,7 @@ pub(crate) fn check(arguments: &CheckArguments) -> Result<String> {
         match catalogue::find(name, &arguments.set.overrides) {
             Ok(scene) => {
                 text += &described(&scene);
-                let left_out = scene.meant.iter().flat_map(|meant| &meant.left_out);
-                left_out.for_each(|row| text += &format!("  left out: {row}\n"));
+                text += &of_contacts(&scene);
                 for remark in Scene::remarks(name, &catalogue::source(name)?, &arguments.set.overrides)? {
                     remarks += 1;
                     text += &format!("note: {remark}\n");

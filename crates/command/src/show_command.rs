@@ -119,8 +119,7 @@ pub(crate) fn run(arguments: &ShowArguments) -> Result<String> {
     let source = if scene.source.is_empty() { String::new() } else { format!("{}\n", scene.source) };
     let mut text = format!("{}\n{source}\n{}", scene.title, system_text(&scene.system, style));
     let _ = writeln!(text, "\nConstraint: {integrability}");
-    let left_out = scene.meant.iter().flat_map(|meant| &meant.left_out);
-    left_out.for_each(|row| text += &format!("Left out: {row}\n"));
+    text += &of_contacts(&scene);
     for (choice, derived, integrated) in equations {
         let mut derived = derived.unwrap_or_else(|error| format!("refused: {error}\n"));
         if let Some(ChosenForm { name, why }) = integrated.filter(|form| form.name != choice.formulation.name) {
@@ -133,6 +132,14 @@ pub(crate) fn run(arguments: &ShowArguments) -> Result<String> {
         let _ = write!(text, "\n## {}\n\n{derived}", choice.label);
     }
     Ok(text)
+}
+
+/// What the constraints of bodies say, each with its multiplier.
+pub(crate) fn of_contacts(scene: &Scene) -> String {
+    let Some(meant) = &scene.meant else { return String::new() };
+    let kept = meant.constraints.iter().enumerate().map(|(i, says)| format!("  lambda_{}: {says}\n", i + 1));
+    let left_out = meant.left_out.iter().map(|says| format!("  left out: {says}\n"));
+    kept.chain(left_out).collect()
 }
 
 /// Whether the constraints are integrable. Ranks take far longer than brackets, and users who ask for the

@@ -69,6 +69,7 @@ pub(super) fn rows(context: &mut Context, constraints: &mut Vec<Expr>) {
         context.found.constraints.push(text.text);
         known.push((rate, row.says));
     }
+    context.found.says = known.into_iter().map(|(_, says)| says).collect();
 }
 
 /// `Qᵢ = F ∂ℓ/∂qᵢ`, beside the forces that are written.

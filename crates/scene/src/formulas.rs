@@ -64,6 +64,8 @@ fn draw(view: Option<&mut DeTable>, made: &Formulas) {
 pub(super) struct Found {
     pub(super) constraints: Vec<String>,
     pub(super) forces: Vec<(String, String)>,
+    /// What all constraints say, those that are written, too.
+    pub(super) says: Vec<String>,
     /// Constraints that say the same as others.
     pub(super) left_out: Vec<String>,
 }

@@ -239,6 +239,7 @@ fn read<T>(
     source.no_fault()?;
     let meant = has_bodies.then(|| Meant {
         formulas: formulas::written(table, &context.found),
+        constraints: context.found.says.clone(),
         left_out: context.found.left_out.clone(),
     });
     let scene = Scene {

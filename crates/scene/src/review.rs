@@ -159,7 +159,9 @@ impl<'c> Reviewer<'c> {
         let root = &self.context.root;
         let system = root.section("system").ok().flatten();
         let entry = system.as_ref().and_then(|system| system.get(key));
-        let span = entry.map(|entry| entry.key_span).or(system.map(|system| system.span)).unwrap_or(0..0);
+        let span = entry.map(|entry| entry.key_span).or(system.map(|system| system.span));
+        let bodies = || root.get("body").map(|bodies| bodies.key_span);
+        let span = span.filter(|span| !span.is_empty()).or_else(bodies).unwrap_or(0..0);
         self.context.source.error(&span, SceneErrorKind::Remark(remark))
     }
 

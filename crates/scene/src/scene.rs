@@ -39,6 +39,9 @@ pub struct Scene {
 pub struct Meant {
     /// The same scene without bodies, as a file: it has the same system, start and picture.
     pub formulas: String,
+    /// What each constraint says, in their order: its multiplier in Chetaev's equations is the force, or torque,
+    /// that the contact exerts on the body there.
+    pub constraints: Vec<String>,
     /// Constraints that were left out, because others say the same.
     pub left_out: Vec<String>,
 }

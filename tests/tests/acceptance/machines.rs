@@ -343,3 +343,29 @@ fn a_wheel_with_a_tyre_and_a_leaning_wheel_roll_as_circle_and_ball() {
     let round = parsed(&body("shape = \"ellipsoid\"\nsize = [0.3, 0.3, 0.3]"));
     same_system("round ellipsoid", &ball, &round);
 }
+
+/// Multipliers are forces of contacts: Newton and Euler by hand.
+#[test]
+fn multipliers_are_the_forces_of_the_ground() {
+    let reactions = |text: &str, set: &[(&str, f64)]| -> Vec<f64> {
+        let set: Vec<_> = set.iter().map(|&(name, x)| (name.to_string(), x)).collect();
+        let scene = Scene::parse_with("scene", text, &set).unwrap_or_else(|e| panic!("{e}"));
+        let names = scene.meant.as_ref().map(|meant| meant.constraints.len()).unwrap_or_default();
+        let chetaev = choice(CHETAEV, None, ConstantsRule::Given(Vec::new()));
+        let mut motion = solve_choice(&scene, &chetaev, &tight()).unwrap_or_else(|e| panic!("{e}"));
+        let now = motion.at(scene.start.t).unwrap_or_else(|e| panic!("{e}"));
+        now.multipliers.into_iter().take(names).collect()
+    };
+    let of = |name: &str| MACHINES.iter().find(|(known, _)| *known == name).map(|(name, b)| from_bodies(name, b));
+    // a homogeneous ball on an incline is held back by 2/7 of its weight's pull
+    let found = reactions(&of("ball-on-incline").unwrap_or_default(), &[("duration", 0.1), ("m", 1.4)]);
+    must("ball on incline: friction", (found[0] + 2.0 / 7.0 * 1.4 * 9.81 * 0.3).abs().max(found[1].abs()), 1e-12);
+    // the bicycle stands upright: moments of its weights about where the rear wheel touches
+    let found = reactions(&of("bicycle").unwrap_or_default(), &[("duration", 0.1), ("v", 0.0)]);
+    let front = 9.81 * (85.0 * 0.3 + 4.0 * 0.9 + 3.0 * 1.02) / 1.02;
+    must("bicycle: normal force in front", (found[4] - front).abs() / front, 1e-12);
+    // a rattleback at rest in its equilibrium carries its weight
+    let at_rest = [("duration", 0.1), ("psi'", 0.0), ("alpha'", 0.0), ("beta'", 0.0)];
+    let found = reactions(&of("rattleback").unwrap_or_default(), &at_rest);
+    must("rattleback: normal force", (found[2] - 9.81).abs(), 1e-12);
+}
