@@ -4,7 +4,7 @@ use crate::chain::{Maker, Placed};
 use crate::energy::carrier;
 use crate::text::{Sum, components, factor, is_zero, vector};
 use crate::turn::{Axis, Turn};
-use crate::{Contact, Fault, FaultKind, Law, Row, Written};
+use crate::{Contact, Fault, FaultKind, Law, Made, Row, Written};
 
 /// Of a contact: where it is, how it slips, its two directions and its height, each a formula.
 struct Touch {
@@ -41,6 +41,12 @@ impl Maker<'_> {
                 }
             }
         };
+        let place = contact.name.place.clone();
+        let normal = touch.normal.as_ref().unwrap_or(&touch.height);
+        let all = [along.clone(), across.clone(), normal.clone()].into_iter();
+        let all = all.chain((contact.law == Law::Rubber).then(|| touch.spin.clone()));
+        let named = |text| Made { name: contact.name.text.clone(), text, place: place.clone() };
+        self.made.slips.extend(all.map(named));
         match contact.law {
             Law::Rolls | Law::Rubber => {
                 rows.push((along, None, says("no slip along")));
@@ -56,7 +62,6 @@ impl Maker<'_> {
         if contact.law == Law::Rubber {
             rows.push((touch.spin, None, says("no turn about the normal")));
         }
-        let place = contact.name.place.clone();
         let rows = rows.into_iter().map(|(text, height, says)| Row { text, height, says, place: place.clone() });
         self.made.rows.extend(rows);
         let on = contact.on.as_ref().map_or("ground", |on| on.text.as_str()).to_owned();

@@ -218,6 +218,8 @@ pub struct Formulas {
     pub energies: Vec<String>,
     /// Constraints; those that vanish identically are no constraints.
     pub rows: Vec<Row>,
+    /// Slips at all contacts along, across and along the normal, or the height that it is the rate of.
+    pub slips: Vec<Made>,
     /// Generalized forces.
     pub works: Vec<Work>,
     /// The picture.

@@ -69,6 +69,14 @@ pub(super) fn rows(context: &mut Context, constraints: &mut Vec<Expr>) {
         context.found.constraints.push(text.text);
         known.push((rate, row.says));
     }
+    let g = &context.system.graph;
+    for slip in std::mem::take(&mut context.follows.made.slips) {
+        let text = Text { text: slip.text, span: slip.place };
+        let Some(s) = context.source.note(context.names.parse(context.source, g, &text)) else { continue };
+        let is_rate = context.system.velocities().iter().any(|&v| g.depends_on(s, v));
+        let rate = if is_rate { s } else { g.total_derivative(s, &context.system.flow()) };
+        context.found.slips.extend((!g.is_zero(rate)).then_some(rate));
+    }
     context.found.says = known.into_iter().map(|(_, says)| says).collect();
 }
 

@@ -4,6 +4,7 @@ use std::borrow::Cow;
 use std::ops::Range;
 
 use bodies::Formulas;
+use symbolic::Expr;
 use toml::Spanned;
 use toml::de::{DeArray, DeTable, DeValue};
 
@@ -64,6 +65,8 @@ fn draw(view: Option<&mut DeTable>, made: &Formulas) {
 pub(super) struct Found {
     pub(super) constraints: Vec<String>,
     pub(super) forces: Vec<(String, String)>,
+    /// Slips at all contacts.
+    pub(super) slips: Vec<Expr>,
     /// What all constraints say, those that are written, too.
     pub(super) says: Vec<String>,
     /// Constraints that say the same as others.

@@ -240,6 +240,7 @@ fn read<T>(
     let meant = has_bodies.then(|| Meant {
         formulas: formulas::written(table, &context.found),
         constraints: context.found.says.clone(),
+        slips: context.found.slips.clone(),
         left_out: context.found.left_out.clone(),
     });
     let scene = Scene {

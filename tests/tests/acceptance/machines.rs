@@ -1,7 +1,7 @@
 //! Systems from bodies against those whose formulas were written by hand.
 
 use catalogue::find;
-use deltaq::{CHETAEV, REMOVED_CONSTRAINT, Settings, VAKONOMIC, solve_choice};
+use deltaq::{Beyond, CHETAEV, REMOVED_CONSTRAINT, Settings, VAKONOMIC, beyond_contacts, solve_choice};
 use mechanics::{ConstantsRule, State};
 use nalgebra::{DMatrix, DVector};
 use scene::Scene;
@@ -368,4 +368,34 @@ fn multipliers_are_the_forces_of_the_ground() {
     let at_rest = [("duration", 0.1), ("psi'", 0.0), ("alpha'", 0.0), ("beta'", 0.0)];
     let found = reactions(&of("rattleback").unwrap_or_default(), &at_rest);
     must("rattleback: normal force", (found[2] - 9.81).abs(), 1e-12);
+}
+
+/// The torque about the normal that turns a vakonomic disc and sledge is that of `C μ`, and no contact has it;
+/// Chetaev's reactions are forces of contacts.
+#[test]
+fn vakonomic_torques_are_none_of_contacts() {
+    for (name, coordinate) in [("disc", "psi"), ("sledge", "phi")] {
+        let (_, bodies) = MACHINES.iter().find(|(known, _)| *known == name).expect("a machine");
+        let scene = Scene::parse_with("scene", &from_bodies(name, bodies), &[("duration".to_string(), 1.0)]);
+        let scene = scene.unwrap_or_else(|e| panic!("{e}"));
+        let h = scene.system.constraints.len();
+        let motion = |formulation, constants| {
+            let motion = solve_choice(&scene, &choice(formulation, None, ConstantsRule::Given(constants)), &tight());
+            motion.unwrap_or_else(|e| panic!("{e}"))
+        };
+        let chetaev = beyond_contacts(&scene, &mut motion(CHETAEV, Vec::new()));
+        assert_eq!(chetaev.unwrap_or_else(|e| panic!("{e}")), None, "{name}");
+        let mut vakonomic = motion(VAKONOMIC, vec![0.3; h]);
+        let found = beyond_contacts(&scene, &mut vakonomic).unwrap_or_else(|e| panic!("{e}"));
+        let Beyond { coordinate: along, force, t } = found.unwrap_or_else(|| panic!("{name}: nothing"));
+        assert_eq!(along, coordinate, "{name}");
+        // across: f = -x' sin(phi) + y' cos(phi); C couples the turn with what is along, by f's multiplier
+        let now = vakonomic.at(t).unwrap_or_else(|e| panic!("{e}"));
+        let rate = match name {
+            "disc" => 0.5 * now.velocities[3],
+            _ => now.velocities[0].hypot(now.velocities[1]),
+        };
+        let torque = (now.multipliers[h - 1] * rate).abs();
+        must(&format!("{name}: torque of {torque:.3} at {t:.2}"), (force.abs() - torque).abs() / torque, 1e-8);
+    }
 }
