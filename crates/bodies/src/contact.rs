@@ -7,25 +7,30 @@ use crate::turn::{Axis, Turn};
 use crate::{Contact, Fault, FaultKind, Law, Made, Row, Written};
 
 /// Of a contact: where it is, how it slips, its two directions and its height, each a formula.
-struct Touch {
-    at: String,
+pub(crate) struct Touch {
+    pub(crate) at: String,
     /// `s` in space without what the support does.
-    slip: String,
+    pub(crate) slip: String,
     /// `s` along and across the heading, where it has one; what the support does is subtracted.
-    rows: Option<[String; 2]>,
-    height: String,
+    pub(crate) rows: Option<[String; 2]>,
+    pub(crate) height: String,
     /// `s·n`, where it is simpler than the rate of that height.
-    normal: Option<String>,
+    pub(crate) normal: Option<String>,
     /// `ω·n`.
-    spin: String,
+    pub(crate) spin: String,
 }
 
 impl Maker<'_> {
     /// Constraints of a contact, and its place in the picture.
     pub(crate) fn contact(&mut self, contact: &Contact) -> Result<(), Fault> {
         let i = self.machine.find(&contact.of)?;
-        let support = self.support(contact, i)?;
-        let touch = self.touch(contact, i, support)?;
+        let touch = match self.is_on_curved(contact)? {
+            Some(under) => self.curved(contact, i, under)?,
+            None => {
+                let support = self.support(contact, i)?;
+                self.touch(contact, i, support)?
+            }
+        };
         let says = |what: &str| format!("contact {}: {what}", contact.name.text);
         let mut rows: Vec<(String, Option<String>, String)> = Vec::new();
         let [along, across] = match (&contact.along, &touch.rows) {
@@ -79,12 +84,9 @@ impl Maker<'_> {
     fn support(&self, contact: &Contact, i: usize) -> Result<Option<usize>, Fault> {
         let base = self.placed(i).base;
         let Some(on) = &contact.on else {
-            let apart = |base: usize| {
-                let kind = FaultKind::Support { on: "ground".into(), why: "the body stands on one that is turned" };
-                let _ = base;
-                Fault { place: contact.name.place.clone(), kind }
-            };
-            return base.map_or(Ok(None), |base| Err(apart(base)));
+            let kind = FaultKind::Support { on: "ground".into(), why: "the body stands on one that is turned" };
+            let fault = Fault { place: contact.name.place.clone(), kind };
+            return if base.is_none() { Ok(None) } else { Err(fault) };
         };
         let fault = |kind| Err(Fault { place: on.place.clone(), kind });
         if self.machine.drawn.contains(&on.text) && self.machine.bodies.iter().all(|body| body.name.text != on.text) {
@@ -95,13 +97,8 @@ impl Maker<'_> {
             return Ok(None);
         }
         let body = self.body(under);
-        if let Some((word, _)) = body.shape.as_ref().filter(|(word, _)| !matches!(word.text.as_str(), "plane" | "table")) {
-            let why = match word.text.as_str() {
-                "cone" | "cylinder" | "bowl" | "ball" | "ellipsoid" => {
-                    "contacts are on planes and tables; on curved surfaces constraints are written by hand"
-                }
-                _ => "contacts are on planes and tables",
-            };
+        if body.shape.as_ref().is_some_and(|(word, _)| !matches!(word.text.as_str(), "plane" | "table")) {
+            let why = "contacts are on planes and tables, in cones, cylinders and bowls";
             return fault(FaultKind::Support { on: on.text.clone(), why });
         }
         let Placed { at, turns, .. } = self.placed(under);
@@ -116,8 +113,19 @@ impl Maker<'_> {
         }
     }
 
+    /// The cone, cylinder or bowl that a contact is on.
+    fn is_on_curved(&self, contact: &Contact) -> Result<Option<usize>, Fault> {
+        let machine = self.machine;
+        let Some(on) = contact.on.as_ref().filter(|on| machine.bodies.iter().any(|body| body.name.text == on.text)) else {
+            return Ok(None);
+        };
+        let under = machine.find(on)?;
+        let word = self.body(under).shape.as_ref().map(|(word, _)| word.text.as_str());
+        Ok(matches!(word, Some("cone" | "cylinder" | "bowl")).then_some(under))
+    }
+
     /// What a name that was made stands for.
-    fn meaning(&self, name: &str) -> String {
+    pub(crate) fn meaning(&self, name: &str) -> String {
         self.made.definitions.iter().find(|made| made.name == name).map_or(name, |made| &made.text).into()
     }
 

@@ -20,6 +20,7 @@
 
 mod chain;
 mod contact;
+mod curved;
 mod energy;
 mod fault;
 mod link;

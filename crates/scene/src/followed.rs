@@ -44,7 +44,7 @@ pub(super) fn rows(context: &mut Context, constraints: &mut Vec<Expr>) {
         let has_velocity = system.velocities().iter().any(|&v| g.depends_on(f, v));
         let rate = if has_velocity { f } else { g.total_derivative(f, &system.flow()) };
         let is_zero = |e: Expr| g.vanishes(e, &HashMap::new()).is_zero();
-        if is_zero(rate) {
+        if is_zero(rate) || height.is_some_and(|height| is_zero(g.total_derivative(height, &system.flow()))) {
             let position = height.or((!has_velocity).then_some(f));
             let value = position.map(|position| g.vanishes(position, &system.parameter_values()));
             if let Some(Vanishing::No { value, .. }) = value {

@@ -152,7 +152,7 @@ pub const JOINT: &[Key] = &[
 /// `[contact.NAME]`.
 pub const CONTACT: &[Key] = &[
     must("of", Text, "the body"),
-    may("on", Text, "what it stands on: the ground z = 0 if left out, a plane that carries the body, a table that turns"),
+    may("on", Text, "what it stands on: the ground z = 0 if left out, a plane that carries the body, a table that turns, a cone, cylinder or bowl"),
     must("law", Text, LAWS),
     may("at", Vector, "the point of the body that touches, where its shape does not say; the origin if left out"),
     may("along", Vector, "the direction of the first constraint; the wheel's heading if left out, x of a ball"),

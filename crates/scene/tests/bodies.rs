@@ -69,7 +69,7 @@ const FAULTS: &[(&str, &str, &str)] = &[
     ("of = \"wheel\"", "of = \"whel\"", "23:6: there is no body `whel`, did you mean `wheel`?"),
     ("of = \"wheel\"\n", "", "22:10: `of` is missing in [contact.wheel]"),
     ("law = \"rolls\"", "law = \"roll\"", "24:7: expected one of rolls, blade, slides, rubber, found \"roll\""),
-    ("law = \"rolls\"", "law = \"rolls\"\non = \"arm\"", "25:6: nothing can stand on `arm`: contacts are on planes and tables"),
+    ("law = \"rolls\"", "law = \"rolls\"\non = \"arm\"", "25:6: nothing can stand on `arm`: contacts are on planes and tables, in cones"),
     ("law = \"rolls\"", "law = \"rolls\"\nat = [0, 0, 1]", "22:10: a wheel touches where its shape says"),
     ("at = [0, 0, 0.1]", "at = [0, 0, 0.2]", "22:10: contact wheel: height is 1.000e-1 off, wherever the bodies are"),
     ("joint = \"cart\"", "joint = \"cat\"", "26:9: there is no body `cat`, did you mean `cart`?"),

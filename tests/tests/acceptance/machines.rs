@@ -14,9 +14,12 @@ macro_rules! bodies {
 }
 
 /// Built-in scenes whose formulas follow from these bodies.
-const MACHINES: [(&str, &str); 15] = bodies![
+const MACHINES: [(&str, &str); 18] = bodies![
+    "ball-in-cone",
+    "ball-in-cylinder",
     "ball-on-incline",
     "bicycle",
+    "bowl",
     "chaplygin-sphere",
     "coin-on-incline",
     "disc",
