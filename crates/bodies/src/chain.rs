@@ -76,7 +76,8 @@ impl Machine {
         let mut open = vec![text.to_owned()];
         while let Some(text) = open.pop() {
             for (name, place) in symbolic::names_in(&text) {
-                let is_axes = text[..place].trim_end().ends_with("rotation(") && name.chars().all(|c| "xyz".contains(c));
+                let is_axes =
+                    text[..place].trim_end().ends_with("rotation(") && name.chars().all(|c| "xyz".contains(c));
                 if is_axes {
                     continue;
                 }
@@ -118,8 +119,7 @@ impl Maker<'_> {
         if let Some(known) = self.made.definitions.iter().find(|made| made.text == text) {
             return known.name.clone();
         }
-        let mut name: String =
-            owner.text.chars().map(|c| if c.is_ascii_alphanumeric() { c } else { '_' }).collect();
+        let mut name: String = owner.text.chars().map(|c| if c.is_ascii_alphanumeric() { c } else { '_' }).collect();
         if !name.starts_with(|c: char| c.is_ascii_alphabetic()) {
             name.insert(0, 'b');
         }
@@ -189,7 +189,8 @@ impl Maker<'_> {
         } else {
             self.define(&body.name, "R", written(&turns))
         };
-        let given = |text: &Option<Written>| text.as_ref().filter(|v| !is_zero_vector(&v.text)).map(|v| vector(&v.text));
+        let given =
+            |text: &Option<Written>| text.as_ref().filter(|v| !is_zero_vector(&v.text)).map(|v| vector(&v.text));
         let mut terms: Vec<String> = Vec::new();
         terms.extend((!under.at.is_empty()).then(|| under.at.clone()));
         terms.extend(given(&joint.at).map(|at| turned(&under.rotation, &at)));

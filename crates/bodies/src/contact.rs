@@ -40,9 +40,7 @@ impl Maker<'_> {
                 let along = given.as_ref().map_or_else(|| "[1, 0, 0]".into(), |along| vector(&along.text));
                 match components(&along).is_some_and(|u| u[0].parse() == Ok(1.0) && is_zero(&u[1]) && is_zero(&u[2])) {
                     true => [format!("{slip}.x"), format!("{slip}.y")],
-                    false => {
-                        [format!("dot({slip}, {along})"), format!("dot({slip}, cross([0, 0, 1], {along}))")]
-                    }
+                    false => [format!("dot({slip}, {along})"), format!("dot({slip}, cross([0, 0, 1], {along}))")],
                 }
             }
         };
@@ -116,7 +114,8 @@ impl Maker<'_> {
     /// The cone, cylinder or bowl that a contact is on.
     fn is_on_curved(&self, contact: &Contact) -> Result<Option<usize>, Fault> {
         let machine = self.machine;
-        let Some(on) = contact.on.as_ref().filter(|on| machine.bodies.iter().any(|body| body.name.text == on.text)) else {
+        let Some(on) = contact.on.as_ref().filter(|on| machine.bodies.iter().any(|body| body.name.text == on.text))
+        else {
             return Ok(None);
         };
         let under = machine.find(on)?;

@@ -7,8 +7,8 @@ use crate::turn::turned;
 use crate::{Contact, Fault, FaultKind, Law};
 
 impl Maker<'_> {
-    /// The contact of body `i` with the curved body `under`, in the axes of which its middle is `p`: `r = a n`
-    /// with the outward normal `n` there, and the distance from the surface stays.
+    /// The contact of body `i` with the curved body `under`, in the axes of which its middle is `p`:
+    /// `r = a n` with the outward normal `n` there, and the distance from the surface stays.
     pub(crate) fn curved(&mut self, c: &Contact, i: usize, under: usize) -> Result<Touch, Fault> {
         let on = self.body(under).name.text.clone();
         let fault = |why| {
@@ -40,7 +40,8 @@ impl Maker<'_> {
         let middle = if middle.is_empty() { "[0, 0, 0]".into() } else { middle };
         let from = if origin.is_empty() { middle.clone() } else { format!("{middle} - {origin}") };
         let back = if axes.is_empty() { String::new() } else { format!("transpose({axes})") };
-        let p = if back.is_empty() && origin.is_empty() { from } else { self.define(&c.name, "p", turned(&back, &from)) };
+        let p =
+            if back.is_empty() && origin.is_empty() { from } else { self.define(&c.name, "p", turned(&back, &from)) };
         let (n, along, across, distance, height) = match (surface.text.as_str(), size(0), size(1)) {
             ("cone", Some(angle), _) => {
                 // the distance from the axis where the ball touches: without a root, as the surface has it

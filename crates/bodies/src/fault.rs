@@ -36,7 +36,9 @@ pub enum FaultKind {
     Joint { found: String },
     #[error("`{key}` places a body that has no `joint`; with one, it stands in the joint")]
     Twice { key: String },
-    #[error("expected `joint = \"BODY\"` or `between` with two bodies and a point of each, as in between = {{ arm = [1, 0, 0], space = [0, 0, 0] }}")]
+    #[error(
+        "expected `joint = \"BODY\"` or `between` with two bodies and a point of each, as in between = {{ arm = [1, 0, 0], space = [0, 0, 0] }}"
+    )]
     Between,
     #[error("{what} is {value:.3e} off, wherever the bodies are")]
     Off { what: String, value: f64 },

@@ -30,5 +30,6 @@ mod turn;
 
 pub use fault::{Fault, FaultKind};
 pub use machine::{
-    Between, Body, Contact, Formulas, Inertia, Joint, Law, Link, LinkKind, Machine, Made, Motion, Picture, Row, Work, Written,
+    Between, Body, Contact, Formulas, Inertia, Joint, Law, Link, LinkKind, Machine, Made, Motion, Picture, Row, Work,
+    Written,
 };

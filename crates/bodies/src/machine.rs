@@ -171,7 +171,8 @@ pub struct Made {
 pub struct Row {
     /// The formula.
     pub text: String,
-    /// What stays zero with it: the length that it is the rate of, or a polynomial that vanishes where it does.
+    /// What stays zero with it: the length that it is the rate of, or a polynomial that vanishes where
+    /// it does.
     pub height: Option<String>,
     /// What it says.
     pub says: String,

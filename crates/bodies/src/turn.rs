@@ -1,7 +1,7 @@
 //! Rotations as turns one after the other, each about an axis as the turns before have left it.
 
-use crate::text::{Sum, is_zero, split, vector, within};
 use crate::Machine;
+use crate::text::{Sum, is_zero, split, vector, within};
 
 /// An axis: x, y, z, or along a vector.
 #[derive(Clone, Debug, PartialEq)]

@@ -10,8 +10,8 @@ use crate::growth::growth;
 use crate::runs::{Decided, Pair, Run, decide, predicted, questions};
 use crate::table::is_in_table;
 use crate::{
-    Answer, Beyond, CHETAEV, Choice, Membership, Metric, Settings, SolveError, VAKONOMIC, VAKONOMIC_COSTATE, beyond_contacts, constant_names,
-    integrability, solve_choice,
+    Answer, Beyond, CHETAEV, Choice, Membership, Metric, Settings, SolveError, VAKONOMIC, VAKONOMIC_COSTATE,
+    beyond_contacts, constant_names, integrability, solve_choice,
 };
 
 /// A scene in every formulation.
@@ -74,7 +74,9 @@ impl Comparison {
     pub fn add(&mut self, mut run: Run) -> Result<(), SolveError> {
         let (mut metric, second) = (Metric::new(&self.scene.system)?, self.runs.len());
         run.outcome = run.outcome.and_then(|mut motion| motion.at(motion.start()).map(|_| motion));
-        if let (true, Ok(motion)) = (run.choice.formulation == VAKONOMIC && self.scene.meant.is_some(), &mut run.outcome) {
+        if let (true, Ok(motion)) =
+            (run.choice.formulation == VAKONOMIC && self.scene.meant.is_some(), &mut run.outcome)
+        {
             // where it cannot be read off, nothing is said
             self.beyond = beyond_contacts(&self.scene, motion).ok();
         }

@@ -1,4 +1,4 @@
-//! What follows from bodies, read: constraints that say something, generalized forces, faults where they stand.
+//! What follows from bodies, read: constraints that say something, forces, and faults where they stand.
 
 use std::collections::HashMap;
 

@@ -127,7 +127,11 @@ pub const MACHINE: &[Key] = &[
     may("shape", Text, "point, rod, blade, box, cart, disc, wheel, ball, …: as in [view], a wheel about y"),
     may("size", List(&Expression), "its sizes, as in [view]; of a wheel the radius, then that of its tyre"),
     may("mass", Expression, "m; without it, the body has no weight and no kinetic energy of translation"),
-    may("inertia", Moments, "about the mass centre, along the body's axes: [A, B, C] or three rows; of shape and mass if left out"),
+    may(
+        "inertia",
+        Moments,
+        "about the mass centre, along the body's axes: [A, B, C] or three rows; of shape and mass if left out",
+    ),
     may("mass-centre", Vector, "from the body's origin, along its axes; the origin if left out, the middle of a rod"),
     may("at", Vector, "where its origin is, in space or, with `on`, along the axes of that body"),
     may("rotation", Text, "from its axes to those of space or, with `on`, of that body"),
@@ -152,7 +156,11 @@ pub const JOINT: &[Key] = &[
 /// `[contact.NAME]`.
 pub const CONTACT: &[Key] = &[
     must("of", Text, "the body"),
-    may("on", Text, "what it stands on: the ground z = 0 if left out, a plane that carries the body, a table that turns, a cone, cylinder or bowl"),
+    may(
+        "on",
+        Text,
+        "what it stands on: the ground z = 0 if left out, a plane that carries the body, a table that turns, a cone, cylinder or bowl",
+    ),
     must("law", Text, LAWS),
     may("at", Vector, "the point of the body that touches, where its shape does not say; the origin if left out"),
     may("along", Vector, "the direction of the first constraint; the wheel's heading if left out, x of a ball"),
@@ -181,7 +189,8 @@ pub const MOTOR: &[Key] = &[
 ];
 
 /// `[loop.NAME]`.
-pub const LOOP: &[Key] = &[must("between", Named(&Vector), "two bodies, or one and `space`, with the points that coincide")];
+pub const LOOP: &[Key] =
+    &[must("between", Named(&Vector), "two bodies, or one and `space`, with the points that coincide")];
 
 /// `[start]`.
 pub const START: &[Key] = &[

@@ -4,6 +4,7 @@ use std::cell::RefCell;
 use std::io::Read;
 use std::path::Path;
 
+use mechanics::{State, View};
 use symbolic::work_on;
 use toml::de::DeTable;
 
@@ -76,7 +77,7 @@ impl Scene {
         text: &str,
         overrides: &[(String, N)],
     ) -> Result<Vec<SceneError>, SceneError> {
-        loaded(file, file, text, overrides, |scene, context| review::remarks(context, &scene.view, &scene.start))
+        loaded(file, file, text, overrides, review::remarks).map(|(_, remarks)| remarks)
     }
 
     /// Reads a scene file of at most [`SIZE_LIMIT`] bytes.
@@ -150,20 +151,20 @@ fn load<N: Clone + Into<Number>>(
     overrides: &[(String, N)],
 ) -> Result<Scene, SceneError> {
     work_on(format!("scene {name}, digest {:016x}", digest(text, overrides)));
-    loaded(name, file, text, overrides, |scene, _| scene)
+    loaded(name, file, text, overrides, |_, _, _| ()).map(|(scene, ())| scene)
 }
 
-/// The scene, or what `then` makes of it and of how it was read.
+/// The scene, and what `look` sees in it while it is read.
 fn loaded<N: Clone + Into<Number>, T>(
     name: &str,
     file: &str,
     text: &str,
     overrides: &[(String, N)],
-    then: impl FnOnce(Scene, &Context) -> T,
-) -> Result<T, SceneError> {
+    look: impl FnOnce(&Context, &View, &State) -> T,
+) -> Result<(Scene, T), SceneError> {
     let faults = RefCell::default();
     let source = Source { file, text, faults: &faults };
-    let scene = Overrides::new(source, overrides).and_then(|overrides| read(name, source, overrides, then));
+    let scene = Overrides::new(source, overrides).and_then(|overrides| read(name, source, overrides, look));
     let mut faults = faults.into_inner();
     let scene = scene.map_err(|fault| faults.push(fault));
     match (scene, SceneError::together(faults)) {
@@ -186,8 +187,8 @@ fn read<T>(
     name: &str,
     source: Source,
     overrides: Overrides,
-    then: impl FnOnce(Scene, &Context) -> T,
-) -> Result<T, SceneError> {
+    look: impl FnOnce(&Context, &View, &State) -> T,
+) -> Result<(Scene, T), SceneError> {
     let Source { file, text, .. } = source;
     let size = text.len() as u64;
     if size > SIZE_LIMIT {
@@ -237,18 +238,19 @@ fn read<T>(
         unreachable!("what could not be read was noted")
     };
     source.no_fault()?;
+    let seen = look(&context, &view, &state);
     let meant = has_bodies.then(|| Meant {
         formulas: formulas::written(table, &context.found),
-        constraints: context.found.says.clone(),
-        slips: context.found.slips.clone(),
-        left_out: context.found.left_out.clone(),
+        constraints: context.found.says,
+        slips: context.found.slips,
+        left_out: context.found.left_out,
     });
     let scene = Scene {
         name: name.into(),
         title: title.text,
         source: origin,
         notes,
-        system: context.system.clone(),
+        system: context.system,
         start: state,
         completion,
         removals,
@@ -258,7 +260,7 @@ fn read<T>(
         view,
         meant,
     };
-    Ok(then(scene, &context))
+    Ok((scene, seen))
 }
 
 fn faults_so_far(source: Source) -> bool {

@@ -136,10 +136,7 @@ impl Reader<'_> {
         const EXPECTED: &str = "a vector: a list of two or three numbers or expressions, or an expression in quotes";
         if let Ok(text) = entry.text(EXPECTED) {
             let written = Written { text: text.text, place: text.span };
-            let is_axis = matches!(written.text.trim(), "x" | "y" | "z") && entry.key.ends_with(['e', 'r']);
-            if !is_axis {
-                self.remember(&written, Kind::Vector);
-            }
+            self.remember(&written, Kind::Vector);
             return Ok(written);
         }
         let elements = entry.elements(EXPECTED)?;
@@ -149,6 +146,12 @@ impl Reader<'_> {
         }
         let parts = elements.iter().map(|e| Ok(self.number(e)?.text)).collect::<Result<Vec<_>, _>>()?;
         Ok(Written { text: format!("[{}]", parts.join(", ")), place: entry.span.clone() })
+    }
+
+    /// An axis by its letter, or a vector.
+    fn axis(&self, entry: &Entry) -> Result<Written, SceneError> {
+        let letter = entry.text("").ok().filter(|text| matches!(text.text.trim(), "x" | "y" | "z"));
+        letter.map_or_else(|| self.vector(entry), |text| Ok(Written { text: text.text, place: text.span }))
     }
 
     fn rotation(&self, entry: &Entry) -> Result<Written, SceneError> {
@@ -214,7 +217,8 @@ impl Reader<'_> {
         let elements = entry.elements(EXPECTED)?;
         match &elements[..] {
             [first, ..] if first.elements("").is_ok() => {
-                let rows = elements.iter().map(|row| self.numbers::<3>(row, EXPECTED)).collect::<Result<Vec<_>, _>>()?;
+                let rows =
+                    elements.iter().map(|row| self.numbers::<3>(row, EXPECTED)).collect::<Result<Vec<_>, _>>()?;
                 let found = rows.len();
                 let rows = <[[Written; 3]; 3]>::try_from(rows)
                     .map_err(|_| entry.error(SceneErrorKind::WrongLength { what: "rows", found, expected: 3 }))?;
@@ -230,8 +234,8 @@ impl Reader<'_> {
             ["hinge", "slider", "plane", "ball", "fixed"].iter().filter_map(|kind| s.get(kind)).collect();
         let motion = match &kinds[..] {
             [kind] => match kind.key {
-                "hinge" => Motion::Hinge(self.vector(kind)?, self.required(s, "angle", "the angle of the hinge")?),
-                "slider" => Motion::Slider(self.vector(kind)?, self.required(s, "shift", "the shift of the slider")?),
+                "hinge" => Motion::Hinge(self.axis(kind)?, self.required(s, "angle", "the angle of the hinge")?),
+                "slider" => Motion::Slider(self.axis(kind)?, self.required(s, "shift", "the shift of the slider")?),
                 "plane" => Motion::Plane(self.numbers(kind, "a list of x, y and the angle")?),
                 "ball" => Motion::Turned(self.rotation(kind)?),
                 _ => Motion::Fixed,

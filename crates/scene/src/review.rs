@@ -276,9 +276,7 @@ impl<'c> Reviewer<'c> {
                     let against = [0, 1, 2].map(|k| here[k] - there[k]);
                     let slip = match body.shape.kind {
                         Kind::Disc | Kind::Ball | Kind::Ellipsoid | Kind::Cylinder => norm(&against),
-                        Kind::Blade | Kind::Cart => {
-                            dot(&[1, 4, 7].map(|k| poses[i].rotation[k]), &against).abs()
-                        }
+                        Kind::Blade | Kind::Cart => dot(&[1, 4, 7].map(|k| poses[i].rotation[k]), &against).abs(),
                         _ => 0.0,
                     };
                     if slip > 10.0 * SMALL * size && slip > largest[i].0 {

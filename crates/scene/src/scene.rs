@@ -39,11 +39,11 @@ pub struct Scene {
 pub struct Meant {
     /// The same scene without bodies, as a file: it has the same system, start and picture.
     pub formulas: String,
-    /// What each constraint says, in their order: its multiplier in Chetaev's equations is the force, or torque,
-    /// that the contact exerts on the body there.
+    /// What each constraint says, in their order: its multiplier in Chetaev's equations is the force, or
+    /// torque, that the contact exerts on the body there.
     pub constraints: Vec<String>,
-    /// Slips at all contacts, linear in velocities, in the graph of the system: along, across and along the normal,
-    /// whether the law demands that they vanish or not.
+    /// Slips at all contacts, in the graph of the system: along, across and along the normal, whether the
+    /// law demands that they vanish or not.
     pub slips: Vec<Expr>,
     /// Constraints that were left out, because others say the same.
     pub left_out: Vec<String>,

@@ -48,9 +48,21 @@ const FAULTS: &[(&str, &str, &str)] = &[
     ("gravity = [0, 0, -9.81]", "gravity = [1]", "2:11: 1 numbers where 3 are needed"),
     ("gravity = [0, 0, -9.81]", "gravity = [0, 0, \"-G\"]", "2:20: undefined name `G`"),
     ("[body.cart]\n", "[body.cart]\nmas = 1\n", "8:1: unknown key `mas` in [body.cart], did you mean `mass`?"),
-    ("slider = [1, 0, 0], shift", "slider = [1, 0, 0], shft", "8:31: unknown key `shft` in [body.cart.joint], did you mean `shift`?"),
-    ("slider = [1, 0, 0]", "slider = [1, 0, 0], hinge = [1, 0, 0]", "8:9: a joint is one of hinge, slider, plane, ball and fixed; found hinge and slider"),
-    ("joint = { slider = [1, 0, 0], shift = \"x\" }", "joint = {}", "8:9: a joint is one of hinge, slider, plane, ball and fixed; found none"),
+    (
+        "slider = [1, 0, 0], shift",
+        "slider = [1, 0, 0], shft",
+        "8:31: unknown key `shft` in [body.cart.joint], did you mean `shift`?",
+    ),
+    (
+        "slider = [1, 0, 0]",
+        "slider = [1, 0, 0], hinge = [1, 0, 0]",
+        "8:9: a joint is one of hinge, slider, plane, ball and fixed; found hinge and slider",
+    ),
+    (
+        "joint = { slider = [1, 0, 0], shift = \"x\" }",
+        "joint = {}",
+        "8:9: a joint is one of hinge, slider, plane, ball and fixed; found none",
+    ),
     (", shift = \"x\"", "", "8:1: `shift` is missing in [body.cart.joint]"),
     ("shift = \"x\"", "shift = \"y\"", "8:40: undefined name `y`"),
     ("mass = 3", "mass = \"[1, 2]\"", "9:8: expected a number, found a vector of 2"),
@@ -61,15 +73,27 @@ const FAULTS: &[(&str, &str, &str)] = &[
     ("mass = 3", "mass = 3\ninertia = [[1, 0, 0], [0, 1, 0]]", "10:11: 2 rows where 3 are needed"),
     ("mass = 3", "mass = 3\nmass-centre = \"3\"", "10:15: expected a vector of 2 or 3, found a number"),
     ("mass = 3", "mass = 3\nsize = [1]", "7:7: `shape` is missing in [body.cart]"),
-    ("on = \"cart\"\njoint = { hinge = [0, 1, 0], angle = \"a\"", "on = \"car\"\njoint = { hinge = [0, 1, 0], angle = \"a\"", "11:6: there is no body `car`, did you mean `cart`?"),
-    ("[body.cart]\n", "[body.cart]\non = \"arm\"\n", "7:7: these bodies stand on one another in a circle: cart → arm → cart"),
+    (
+        "on = \"cart\"\njoint = { hinge = [0, 1, 0], angle = \"a\"",
+        "on = \"car\"\njoint = { hinge = [0, 1, 0], angle = \"a\"",
+        "11:6: there is no body `car`, did you mean `cart`?",
+    ),
+    (
+        "[body.cart]\n",
+        "[body.cart]\non = \"arm\"\n",
+        "7:7: these bodies stand on one another in a circle: cart → arm → cart",
+    ),
     ("angle = \"a\"", "axes = \"a\", angle = \"a\"", "12:37: expected a rotation that bodies can be built on"),
     ("shape = \"rod\"", "shape = \"stick\"", "10:7: expected one of point, rod"),
     ("size = [1.2]", "size = [1.2, 1]", "10:7: the size of a rod is [length], found 2 numbers"),
     ("of = \"wheel\"", "of = \"whel\"", "23:6: there is no body `whel`, did you mean `wheel`?"),
     ("of = \"wheel\"\n", "", "22:10: `of` is missing in [contact.wheel]"),
     ("law = \"rolls\"", "law = \"roll\"", "24:7: expected one of rolls, blade, slides, rubber, found \"roll\""),
-    ("law = \"rolls\"", "law = \"rolls\"\non = \"arm\"", "25:6: nothing can stand on `arm`: contacts are on planes and tables, in cones"),
+    (
+        "law = \"rolls\"",
+        "law = \"rolls\"\non = \"arm\"",
+        "25:6: nothing can stand on `arm`: contacts are on planes and tables, in cones",
+    ),
     ("law = \"rolls\"", "law = \"rolls\"\nat = [0, 0, 1]", "22:10: a wheel touches where its shape says"),
     ("at = [0, 0, 0.1]", "at = [0, 0, 0.2]", "22:10: contact wheel: height is 1.000e-1 off, wherever the bodies are"),
     ("joint = \"cart\"", "joint = \"cat\"", "26:9: there is no body `cat`, did you mean `cart`?"),
@@ -127,7 +151,8 @@ fn formulas_and_bodies_mix() {
 #[test]
 fn no_text_of_bodies_panics() {
     let deep = format!("{}x{}", "(".repeat(10_000), ")".repeat(10_000));
-    let chain: String = (0..300).map(|i| format!("[body.b{}]\non = \"b{i}\"\njoint = {{ fixed = true }}\n", i + 1)).collect();
+    let chain: String =
+        (0..300).map(|i| format!("[body.b{}]\non = \"b{i}\"\njoint = {{ fixed = true }}\n", i + 1)).collect();
     let texts = [
         ARM.replace("shift = \"x\"", &format!("shift = \"{deep}\"")),
         ARM.replace("angle = \"a\"", "angle = \"+-+-\""),

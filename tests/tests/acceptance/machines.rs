@@ -14,7 +14,7 @@ macro_rules! bodies {
 }
 
 /// Built-in scenes whose formulas follow from these bodies.
-const MACHINES: [(&str, &str); 18] = bodies![
+const MACHINES: [(&str, &str); 28] = bodies![
     "ball-in-cone",
     "ball-in-cylinder",
     "ball-on-incline",
@@ -24,15 +24,25 @@ const MACHINES: [(&str, &str); 18] = bodies![
     "coin-on-incline",
     "disc",
     "falling-disc",
+    "mobile-robot",
+    "one-motor-robot",
+    "planar-body",
     "rattleback",
     "roller-racer",
     "routh-sphere",
     "rubber-ball",
+    "rubber-chaplygin-sphere",
+    "rudder-skate",
     "sledge",
+    "sledge-with-friction",
+    "sleigh",
     "snakeboard",
     "trailer",
+    "turning-knife-edge",
     "turntable",
     "two-wheeled-carriage",
+    "unicycle-in-potential",
+    "veselova",
 ];
 
 /// A built-in scene with bodies in the place of its formulas and picture.
@@ -180,9 +190,9 @@ const HEAD: &str = "title = \"machine\"\n[run]\nduration = 1\n";
 fn as_by_hand(title: &str, coordinates: &[(&str, f64)], bodies: &str, by_hand: &str) {
     let q: String = coordinates.iter().map(|(q, x)| format!("{q} = {{ start = {x} }}\n")).collect();
     let v: String = coordinates.iter().map(|(q, _)| format!("\"{q}'\" = 0\n")).collect();
-    let (gravity, rest) = bodies.split_at(bodies.find("\n[").unwrap_or(0));
-    let [scene, by_hand] =
-        [(gravity, rest), ("", by_hand)].map(|(first, rest)| parsed(&format!("{first}\n{HEAD}[coordinates]\n{q}[start.velocities]\n{v}\n{rest}")));
+    let (gravity, rest) = bodies.split_at(bodies.find("\n[").unwrap_or_default());
+    let [scene, by_hand] = [(gravity, rest), ("", by_hand)]
+        .map(|(first, rest)| parsed(&format!("{first}\n{HEAD}[coordinates]\n{q}[start.velocities]\n{v}\n{rest}")));
     same_system(title, &by_hand, &scene);
 }
 
@@ -236,6 +246,73 @@ a = "-2*cos(t) - 0.3*(a' + b')"
 b = "-0.3*(a' + b')"
 "#;
     as_by_hand("cart, pole and bob", &[("x", 0.2), ("a", 0.3), ("b", 0.4)], bodies, by_hand);
+}
+
+#[test]
+fn a_motor_turns_wheel_and_body_of_a_segway_apart() {
+    let bodies = r#"
+gravity = [0, 0, -9.81]
+
+[body.body]
+at = "[x, 0, 0.2]"
+rotation = "rotation(y, th)"
+mass = 40
+mass-centre = [0, 0, 0.7]
+inertia = [5, 6, 2]
+[body.wheels]
+on = "body"
+joint = { hinge = [0, 1, 0], angle = "w - th" }
+shape = "wheel"
+size = [0.2]
+mass = 5
+[contact.wheels]
+of = "wheels"
+law = "rolls"
+[motor.wheels]
+joint = "wheels"
+force = "30*th + 4*th'"
+"#;
+    let by_hand = r#"
+[system]
+lagrangian = "45/2*x'^2 + 0.05*w'^2 + 28*x'*th'*cos(th) + (19.6 + 6)/2*th'^2 - 40*9.81*0.7*cos(th)"
+constraints = ["x' - 0.2*w'"]
+forces = { th = "-30*th - 4*th'", w = "30*th + 4*th'" }
+"#;
+    as_by_hand("segway", &[("x", 0.2), ("th", 0.1), ("w", 0.4)], bodies, by_hand);
+}
+
+#[test]
+fn hitches_behind_the_axle_are_what_the_textbook_has() {
+    // hitches 0.3 behind an axle, the next axle 1.1 behind the hitch
+    let trailer = |name: &str, on: &str, angle: &str| {
+        format!(
+            "[body.{name}]\non = \"{on}\"\njoint = {{ hinge = [0, 0, 1], angle = \"{angle}\", at = [-0.3, 0, 0], own = [1.1, 0, 0] }}\nmass = 2\ninertia = [0, 0, 0.5]\n"
+        )
+    };
+    let bodies = format!(
+        "\n[body.tractor]\njoint = {{ plane = [\"x\", \"y\", \"a\"] }}\nmass = 3\ninertia = [0, 0, 1]\n{}{}[contact]\n{}",
+        trailer("first", "tractor", "b - a"),
+        trailer("second", "first", "c - b"),
+        ["tractor", "first", "second"]
+            .map(|name| format!("{name} = {{ of = \"{name}\", law = \"blade\" }}\n"))
+            .concat()
+    );
+    let by_hand = r#"
+[definitions]
+x1 = "x - 0.3*cos(a) - 1.1*cos(b)"
+y1 = "y - 0.3*sin(a) - 1.1*sin(b)"
+x2 = "x1 - 0.3*cos(b) - 1.1*cos(c)"
+y2 = "y1 - 0.3*sin(b) - 1.1*sin(c)"
+[system]
+lagrangian = "1.5*(x'^2 + y'^2) + (x1'^2 + y1'^2) + (x2'^2 + y2'^2) + 0.5*a'^2 + 0.25*(b'^2 + c'^2)"
+constraints = [
+  "y'*cos(a) - x'*sin(a)",
+  "y'*cos(b) - x'*sin(b) - 0.3*a'*cos(b - a) - 1.1*b'",
+  "y'*cos(c) - x'*sin(c) - 0.3*a'*cos(c - a) - 1.4*b'*cos(c - b) - 1.1*c'",
+]
+"#;
+    let q = [("x", 0.0), ("y", 0.0), ("a", 0.3), ("b", 0.2), ("c", 0.1)];
+    as_by_hand("tractor with two trailers", &q, &bodies, by_hand);
 }
 
 #[test]
@@ -373,8 +450,8 @@ fn multipliers_are_the_forces_of_the_ground() {
     must("rattleback: normal force", (found[2] - 9.81).abs(), 1e-12);
 }
 
-/// The torque about the normal that turns a vakonomic disc and sledge is that of `C μ`, and no contact has it;
-/// Chetaev's reactions are forces of contacts.
+/// What turns a vakonomic disc and sledge is `C μ`, and no contact has it; Chetaev's reactions are forces of
+/// contacts.
 #[test]
 fn vakonomic_torques_are_none_of_contacts() {
     for (name, coordinate) in [("disc", "psi"), ("sledge", "phi")] {

@@ -9,7 +9,9 @@ use super::decision;
 use super::numbers::{enumerate, precise, short};
 use crate::contradiction::FAULT;
 use crate::table::is_in_table;
-use crate::{Beyond, CERTAINTY, CHETAEV, Comparison, Gap, Pair, REMOVED_CONSTRAINT, VAKONOMIC, VAKONOMIC_COSTATE, Verdict};
+use crate::{
+    Beyond, CERTAINTY, CHETAEV, Comparison, Gap, Pair, REMOVED_CONSTRAINT, VAKONOMIC, VAKONOMIC_COSTATE, Verdict,
+};
 
 /// Which of several motions is the user's: said where formulations differ.
 const WHICH: &str = "Wheels, skates and rolling bodies follow Chetaev (d'Alembert–Lagrange): friction holds their \
