@@ -315,6 +315,54 @@ constraints = [
     as_by_hand("tractor with two trailers", &q, &bodies, by_hand);
 }
 
+/// Links of length 1, each on a blade in its middle, driven at the joints; headings are against space.
+#[test]
+fn a_snake_of_five_driven_links_is_what_a_loop_writes() {
+    let (mut bodies, mut contacts, mut motors) = (String::new(), String::new(), String::new());
+    let (mut definitions, mut lagrangian, mut constraints) = (String::new(), String::new(), String::new());
+    let mut forces = vec![String::new(); 5];
+    for i in 0..5_usize {
+        let (x, y) = if i == 0 { ("x".into(), "y".into()) } else { (format!("x{i}"), format!("y{i}")) };
+        let joint = match i.checked_sub(1) {
+            None => "joint = { plane = [\"x\", \"y\", \"a0\"] }".to_string(),
+            Some(h) => {
+                let [before_x, before_y] = ["x", "y"].map(|c| if h == 0 { c.into() } else { format!("{c}{h}") });
+                definitions += &format!("{x} = \"{before_x} - 0.5*cos(a{h}) - 0.5*cos(a{i})\"\n");
+                definitions += &format!("{y} = \"{before_y} - 0.5*sin(a{h}) - 0.5*sin(a{i})\"\n");
+                motors += &format!("m{i} = {{ joint = \"l{i}\", force = \"{i}*cos(t)\" }}\n");
+                forces[i] += &format!("+ {i}*cos(t)");
+                forces[h] += &format!("- {i}*cos(t)");
+                let hinge = format!("hinge = \"z\", angle = \"a{i} - a{h}\", at = [-0.5, 0], own = [0.5, 0]");
+                format!("on = \"l{h}\"\njoint = {{ {hinge} }}")
+            }
+        };
+        bodies += &format!("[body.l{i}]\n{joint}\nmass = 2\ninertia = [0, 0, 0.1]\n");
+        contacts += &format!("c{i} = {{ of = \"l{i}\", law = \"blade\" }}\n");
+        lagrangian += &format!("+ {x}'^2 + {y}'^2 + 0.05*a{i}'^2");
+        constraints += &format!("\"{y}'*cos(a{i}) - {x}'*sin(a{i})\", ");
+    }
+    let forces: String = forces.iter().enumerate().map(|(i, q)| format!("a{i} = \"{q}\"\n")).collect();
+    let by_hand = format!(
+        "[definitions]\n{definitions}[system]\nlagrangian = \"{lagrangian}\"\nconstraints = [{constraints}]\n[system.forces]\n{forces}"
+    );
+    let bodies = format!("\n{bodies}[contact]\n{contacts}[motor]\n{motors}");
+    let q = [("x", 0.0), ("y", 0.0), ("a0", 0.1), ("a1", 0.4), ("a2", 0.2), ("a3", -0.2), ("a4", 0.3)];
+    as_by_hand("snake", &q, &bodies, &by_hand);
+}
+
+/// The misprint of the paper slips in its own picture, and nothing else is remarkable.
+#[test]
+fn built_in_scenes_are_not_remarkable() {
+    for (name, text) in catalogue::GROUPS.into_iter().flat_map(|(_, group)| group) {
+        let remarks = Scene::remarks::<f64>(name, text, &[]).unwrap_or_else(|e| panic!("{e}"));
+        let slips = |remark: &scene::SceneError| remark.to_string().contains("the contact of `ball` slips on `cone`");
+        match *name {
+            "ball-in-cone-as-printed" => assert!(remarks.len() == 1 && slips(&remarks[0]), "{remarks:?}"),
+            _ => assert!(remarks.is_empty(), "{remarks:?}"),
+        }
+    }
+}
+
 #[test]
 fn loops_are_constraints_on_positions() {
     let bodies = r#"
