@@ -114,6 +114,7 @@ pub fn scene(trailers: usize, coordinates: Coordinates) -> Result<Scene, ParseEr
         duration: DURATION,
         film: Vec::new(),
         view: View::default(),
+        meant: None,
     })
 }
 

@@ -8,14 +8,17 @@ use scene::{Scene, SceneError};
 
 use crate::cli::{CheckArguments, NewArguments};
 use crate::schema::schema;
+use crate::show_command::of_contacts;
 use program::{keep, plain};
 
 const TEMPLATE: &str = include_str!("template.toml");
+const ROBOT: &str = include_str!("robot.toml");
 
 /// A commented template, or a built-in scene; to a file that is not there yet, or to the terminal.
 pub(crate) fn new(arguments: &NewArguments) -> Result<String> {
     let text = match &arguments.from {
         None if arguments.schema => format!("{:#}\n", schema()),
+        None if arguments.bodies => ROBOT.to_string(),
         None => TEMPLATE.to_string(),
         Some(name) => catalogue::source(name)?,
     };
@@ -28,10 +31,17 @@ pub(crate) fn new(arguments: &NewArguments) -> Result<String> {
 /// What each scene is; or all faults of all of them, and an error.
 pub(crate) fn check(arguments: &CheckArguments) -> Result<String> {
     let mut text = String::new();
-    let mut faults = 0;
+    let (mut faults, mut remarks) = (0, 0);
     for name in &arguments.scenes {
         match catalogue::find(name, &arguments.set.overrides) {
-            Ok(scene) => text += &described(&scene),
+            Ok(scene) => {
+                text += &described(&scene);
+                text += &of_contacts(&scene);
+                for remark in Scene::remarks(name, &catalogue::source(name)?, &arguments.set.overrides)? {
+                    remarks += 1;
+                    text += &format!("note: {remark}\n");
+                }
+            }
             Err(catalogue::NotFound::Fault(error)) => {
                 error.each().for_each(|fault| {
                     let _ = writeln!(stderr(), "{}", coloured(fault));
@@ -43,6 +53,9 @@ pub(crate) fn check(arguments: &CheckArguments) -> Result<String> {
     }
     if faults > 0 {
         bail!("{faults} fault{}", if faults == 1 { "" } else { "s" });
+    }
+    if arguments.strict && remarks > 0 {
+        bail!("{text}{remarks} note{}, and --strict takes them for faults", if remarks == 1 { "" } else { "s" });
     }
     Ok(text)
 }

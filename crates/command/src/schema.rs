@@ -35,6 +35,7 @@ fn content(what: &Content) -> Value {
     match what {
         Content::Text => json!({ "type": "string" }),
         Content::Number | Content::Expression | Content::Quantity => json!({ "type": ["number", "string"] }),
+        Content::Vector | Content::Moments => json!({ "type": ["array", "string"] }),
         Content::Truth => json!({ "type": "boolean" }),
         Content::List(of) => json!({ "type": "array", "items": content(of) }),
         Content::Table(keys) => table(keys),

@@ -42,6 +42,12 @@ pub(crate) fn run(arguments: &ShowArguments) -> Result<String> {
         return Ok(catalogue::source(&arguments.scene.scene)?);
     }
     let scene = arguments.scene.find()?;
+    if arguments.formulas {
+        return match scene.meant {
+            Some(meant) => Ok(meant.formulas),
+            None => Ok(catalogue::source(&arguments.scene.scene)?),
+        };
+    }
     let style = if arguments.latex { EquationStyle::Latex } else { EquationStyle::Plain };
     let mut equations = Vec::new();
     let asked = &arguments.formulation;
@@ -113,6 +119,7 @@ pub(crate) fn run(arguments: &ShowArguments) -> Result<String> {
     let source = if scene.source.is_empty() { String::new() } else { format!("{}\n", scene.source) };
     let mut text = format!("{}\n{source}\n{}", scene.title, system_text(&scene.system, style));
     let _ = writeln!(text, "\nConstraint: {integrability}");
+    text += &of_contacts(&scene);
     for (choice, derived, integrated) in equations {
         let mut derived = derived.unwrap_or_else(|error| format!("refused: {error}\n"));
         if let Some(ChosenForm { name, why }) = integrated.filter(|form| form.name != choice.formulation.name) {
@@ -125,6 +132,14 @@ pub(crate) fn run(arguments: &ShowArguments) -> Result<String> {
         let _ = write!(text, "\n## {}\n\n{derived}", choice.label);
     }
     Ok(text)
+}
+
+/// What the constraints of bodies say, each with its multiplier.
+pub(crate) fn of_contacts(scene: &Scene) -> String {
+    let Some(meant) = &scene.meant else { return String::new() };
+    let kept = meant.constraints.iter().enumerate().map(|(i, says)| format!("  lambda_{}: {says}\n", i + 1));
+    let left_out = meant.left_out.iter().map(|says| format!("  left out: {says}\n"));
+    kept.chain(left_out).collect()
 }
 
 /// Whether the constraints are integrable. Ranks take far longer than brackets, and users who ask for the

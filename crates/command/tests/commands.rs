@@ -362,3 +362,25 @@ fn a_start_may_be_an_equation() {
     let complaint = answer(&["prove", file, "--out", "-"], 3).1;
     assert!(complaint.contains("start equations supply velocities"), "{complaint}");
 }
+
+#[test]
+fn a_robot_of_bodies_is_checked_and_shown_in_formulas() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = |name: &str| folder.path().join(name).to_str().expect("UTF-8").to_owned();
+    let (robot, formulas, odd) = (path("robot.toml"), path("formulas.toml"), path("odd.toml"));
+    answer(&["new", "--bodies", &robot], 0);
+    let told = answer(&["check", "--strict", &robot], 0).0;
+    assert!(told.contains("left out: contact left: no slip across, as contact right: no slip across says the same"));
+    // the scene of formulas has the same motion, to the last digit
+    let shown = answer(&["show", "--formulas", &robot], 0).0;
+    assert!(!shown.contains("[body") && !shown.contains("[motor"), "{shown}");
+    std::fs::write(&formulas, &shown).expect("written");
+    let motion = |file: &str| answer(&["solve", file, "-f", "chetaev", "--times", "0,1"], 0).0;
+    assert_eq!(motion(&formulas), motion(&robot));
+    assert_eq!(answer(&["show", "--formulas", &formulas], 0).0, shown);
+    let text = std::fs::read_to_string(&robot).expect("a scene").replace("mass = 3\n", "mass = -3\n");
+    std::fs::write(&odd, text).expect("written");
+    let told = answer(&["check", &odd], 0).0;
+    assert!(told.contains("odd.toml:25:8: the mass of [body.robot] is -3, below zero"), "{told}");
+    refused(&["check", "--strict", &odd], &["below zero", "and --strict takes them for faults"]);
+}

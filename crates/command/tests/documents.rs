@@ -3,7 +3,10 @@
 use std::fs;
 use std::path::Path;
 
-use scene::format::{BODY, COORDINATE, REMOVAL, RUN, SCENE, START, SYSTEM, VAKONOMIC};
+use scene::format::{
+    BODY, CONTACT, COORDINATE, DAMPER, JOINT, LOOP, MACHINE, MOTOR, REMOVAL, RUN, SCENE, SPRING, START, SYSTEM,
+    VAKONOMIC,
+};
 
 use crate::support;
 
@@ -18,6 +21,7 @@ fn runs_as_printed(name: &str) {
     let inputs = folder.path().join("page.in");
     fs::create_dir(&inputs).expect("the folder in which commands run");
     fs::write(inputs.join("disc-on-slope.toml"), DISC).expect("the scene");
+    fs::copy(root.join("docs/robot-film.csv"), inputs.join("robot-film.csv")).expect("the film");
     trycmd::TestCases::new().case(&page).run();
 }
 
@@ -31,6 +35,11 @@ fn the_guide_is_true() {
     runs_as_printed("docs/guide.md");
 }
 
+#[test]
+fn the_robot_is_true() {
+    runs_as_printed("docs/robot.md");
+}
+
 /// Keys are those of the reader, and the pieces of scenes are pieces of scenes that are read by other tests.
 #[test]
 fn the_page_of_the_scene_format_is_true() {
@@ -38,6 +47,8 @@ fn the_page_of_the_scene_format_is_true() {
     let read = |path: &str| fs::read_to_string(root.join(path)).expect("a file");
     let page = read("docs/scenes.md");
     let keys = [SCENE, COORDINATE, SYSTEM, START, VAKONOMIC, RUN, REMOVAL, BODY].concat();
+    let bodies = [MACHINE, JOINT, CONTACT, SPRING, DAMPER, MOTOR, LOOP].concat();
+    let keys = [keys, bodies].concat();
     for key in keys {
         let name = key.name;
         let written = [format!("`{name}`"), format!("`[{name}]`"), format!("`[{name}.NAME]`"), format!(" {name} = ")];
@@ -47,12 +58,13 @@ fn the_page_of_the_scene_format_is_true() {
         "tests/tests/scenes/rattleback-by-vectors.toml",
         "tests/tests/scenes/ball-by-spin.toml",
         "crates/catalogue/scenes/sledge.toml",
+        "crates/command/src/robot.toml",
     ]
     .map(read);
     let flat = |line: &str| line.split(" #").next().unwrap_or(line).split_whitespace().collect::<String>();
     let known: Vec<String> = whole.iter().flat_map(|text| text.lines()).map(flat).collect();
     let blocks: Vec<&str> = page.split("```toml\n").skip(1).filter_map(|rest| rest.split("```").next()).collect();
-    assert_eq!(blocks.len(), 4);
+    assert_eq!(blocks.len(), 5);
     for line in blocks.iter().flat_map(|block| block.lines()).filter(|line| !line.is_empty()) {
         assert!(known.contains(&flat(line)), "{line}");
     }

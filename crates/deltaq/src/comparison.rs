@@ -10,8 +10,8 @@ use crate::growth::growth;
 use crate::runs::{Decided, Pair, Run, decide, predicted, questions};
 use crate::table::is_in_table;
 use crate::{
-    Answer, CHETAEV, Choice, Membership, Metric, Settings, SolveError, VAKONOMIC, VAKONOMIC_COSTATE, constant_names,
-    integrability, solve_choice,
+    Answer, Beyond, CHETAEV, Choice, Membership, Metric, Settings, SolveError, VAKONOMIC, VAKONOMIC_COSTATE,
+    beyond_contacts, constant_names, integrability, solve_choice,
 };
 
 /// A scene in every formulation.
@@ -31,6 +31,9 @@ pub struct Comparison {
     /// Which motions are motions of another formulation for some values of its constants. Removals by
     /// coordinates are left out: their family is the vakonomic one.
     pub decided: Vec<Decided>,
+    /// What the vakonomic motion needs and contacts cannot exert; `None` inside if nothing, or outside where the
+    /// scene has no bodies or there is no such motion.
+    pub beyond: Option<Option<Beyond>>,
 }
 
 /// Results besides the gaps: how gaps begin, and which family contains which motion.
@@ -51,7 +54,7 @@ impl Comparison {
         settings.check()?;
         let integrability = integrability(&scene)?;
         let (runs, pairs, fits, decided) = Default::default();
-        Ok(Comparison { scene, integrability, extent, runs, pairs, fits, decided })
+        Ok(Comparison { scene, integrability, extent, runs, pairs, fits, decided, beyond: None })
     }
 
     /// Solves a choice, and adds it as [`Comparison::add`] does.
@@ -71,6 +74,12 @@ impl Comparison {
     pub fn add(&mut self, mut run: Run) -> Result<(), SolveError> {
         let (mut metric, second) = (Metric::new(&self.scene.system)?, self.runs.len());
         run.outcome = run.outcome.and_then(|mut motion| motion.at(motion.start()).map(|_| motion));
+        if let (true, Ok(motion)) =
+            (run.choice.formulation == VAKONOMIC && self.scene.meant.is_some(), &mut run.outcome)
+        {
+            // where it cannot be read off, nothing is said
+            self.beyond = beyond_contacts(&self.scene, motion).ok();
+        }
         for first in 0..second {
             let before = &mut self.runs[first];
             if !worth_comparing(before, &run) {

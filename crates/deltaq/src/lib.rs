@@ -60,6 +60,7 @@
 //! [`Ending`], and the part up to its end is valid. An error estimate that cannot be trusted carries a
 //! [`Doubt`].
 
+mod beyond;
 mod by_name;
 mod carried;
 mod charts;
@@ -122,6 +123,7 @@ mod wanted;
 mod watch;
 pub mod words;
 
+pub use beyond::{Beyond, beyond_contacts};
 pub use decision::{Finding, PlainScene, Section};
 pub use symbolic::{Broken, Language, caught};
 

@@ -6,6 +6,8 @@ use std::ops::Range;
 use mechanics::System;
 use symbolic::{Expr, Graph, Symbol};
 
+use super::formulas::Found;
+use super::machine::Follows;
 use super::names::{Names, check_symbols};
 use super::overrides::Overrides;
 use super::section::{Entry, Section, Source, Text, Value};
@@ -27,6 +29,9 @@ pub(super) struct Context<'a> {
     pub(super) places: Vec<Range<usize>>,
     /// Constraints on positions as written: number, place, `g(q, t)`.
     pub(super) on_positions: Vec<(usize, Range<usize>, Expr)>,
+    /// What follows from bodies, and what became of it.
+    pub(super) follows: Follows,
+    pub(super) found: Found,
 }
 
 impl Context<'_> {

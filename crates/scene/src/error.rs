@@ -7,7 +7,7 @@ use symbolic::{ParseErrorKind, excerpt};
 
 use mechanics::{RemovalError, StartError};
 
-use crate::{NameFault, Unavailable};
+use crate::{NameFault, Remark, Unavailable};
 
 /// A fault in a scene file: the place and what was expected there.
 ///
@@ -156,6 +156,12 @@ pub enum SceneErrorKind {
     /// A coordinate that a removal does not know what to do with.
     #[error("removal `{removal}`: coordinate `{coordinate}` is {}; it must be exactly one of: a parameter, in rates, in direct", joined(.roles))]
     CoordinateRole { removal: String, coordinate: String, roles: Vec<&'static str> },
+    /// No fault, but what a reviewer would ask about.
+    #[error(transparent)]
+    Remark(Remark),
+    /// Bodies from which no formulas follow.
+    #[error(transparent)]
+    Bodies(bodies::FaultKind),
     /// A wrong parametrization.
     #[error(transparent)]
     Removal(RemovalError),

@@ -11,6 +11,10 @@ pub enum Content {
     Expression,
     /// An expression for a number, a vector or a matrix; a number, too.
     Quantity,
+    /// A list of two or three numbers or expressions, or an expression for a vector.
+    Vector,
+    /// A list of numbers or expressions, or of such lists.
+    Moments,
     /// True or false.
     Truth,
     /// A list.
@@ -46,7 +50,7 @@ const fn may(name: &'static str, content: Content, about: &'static str) -> Key {
     Key { name, content, required: false, about }
 }
 
-use Content::{Constants, Expression, List, Named, Number, Quantity, Removals, Table, Text, Truth};
+use Content::{Constants, Expression, List, Moments, Named, Number, Quantity, Removals, Table, Text, Truth, Vector};
 
 /// The whole file.
 pub const SCENE: &[Key] = &[
@@ -59,7 +63,14 @@ pub const SCENE: &[Key] = &[
     may("invariants", Named(&Quantity), "what is to stay constant along every motion, and is watched"),
     may("observables", Named(&Quantity), "what else is printed of a motion"),
     may("film", Named(&Table(FILMED)), "what columns of films show, by name"),
-    must("system", Table(SYSTEM), "what moves"),
+    may("system", Table(SYSTEM), "what moves, beside bodies"),
+    may("gravity", Vector, "the acceleration of free fall, a vector in space; none if left out"),
+    may("body", Named(&Table(MACHINE)), "bodies that move, by name: L, constraints and picture follow from them"),
+    may("contact", Named(&Table(CONTACT)), "where bodies touch what they stand on, by name"),
+    may("spring", Named(&Table(SPRING)), "springs, by name"),
+    may("damper", Named(&Table(DAMPER)), "dampers, by name"),
+    may("motor", Named(&Table(MOTOR)), "motors, by name"),
+    may("loop", Named(&Table(LOOP)), "points of two bodies that coincide, by name"),
     may("start", Table(START), "where it starts"),
     may("removal", Removals, "parametrizations written by hand"),
     may("vakonomic", Table(VAKONOMIC), "free constants of the vakonomic motion"),
@@ -81,7 +92,7 @@ pub const FILMED: &[Key] = &[
 
 /// `[system]`.
 pub const SYSTEM: &[Key] = &[
-    must("lagrangian", Expression, "L(q, q', t)"),
+    may("lagrangian", Expression, "L(q, q', t); what bodies give is added, and without bodies it has to be there"),
     may(
         "constraints",
         List(&Quantity),
@@ -107,6 +118,79 @@ pub const BODY: &[Key] = &[
     may("rotation", Quantity, "from its axes to those of space, a matrix or an angle about z; none if left out"),
     may("touches", Named(&Quantity), "by name of another body, where it touches it"),
 ];
+
+/// The words for how a contact holds.
+pub const LAWS: &str = "one of rolls, blade, slides, rubber";
+
+/// `[body.NAME]`.
+pub const MACHINE: &[Key] = &[
+    may("shape", Text, "point, rod, blade, box, cart, disc, wheel, ball, …: as in [view], a wheel about y"),
+    may("size", List(&Expression), "its sizes, as in [view]; of a wheel the radius, then that of its tyre"),
+    may("mass", Expression, "m; without it, the body has no weight and no kinetic energy of translation"),
+    may(
+        "inertia",
+        Moments,
+        "about the mass centre, along the body's axes: [A, B, C] or three rows; of shape and mass if left out",
+    ),
+    may("mass-centre", Vector, "from the body's origin, along its axes; the origin if left out, the middle of a rod"),
+    may("at", Vector, "where its origin is, in space or, with `on`, along the axes of that body"),
+    may("rotation", Text, "from its axes to those of space or, with `on`, of that body"),
+    may("on", Text, "the body that it is joined to"),
+    may("joint", Table(JOINT), "how it moves against that body, or in space"),
+];
+
+/// `joint` of a body.
+pub const JOINT: &[Key] = &[
+    may("hinge", Vector, "the axis that it turns about by `angle`"),
+    may("angle", Expression, "the angle of the hinge"),
+    may("slider", Vector, "the axis that it is shifted along by `shift`"),
+    may("shift", Expression, "the shift of the slider"),
+    may("plane", List(&Expression), "[x, y, angle]: a shift in the plane of x and y, and a turn about z"),
+    may("ball", Text, "any rotation, as in \"rotation(zxz, psi, theta, phi)\""),
+    may("fixed", Truth, "true: nothing moves"),
+    may("at", Vector, "the point of the joint in the parent"),
+    may("own", Vector, "the same point in this body; the two coincide"),
+    may("axes", Text, "the rotation from the axes of the joint to those of the parent"),
+];
+
+/// `[contact.NAME]`.
+pub const CONTACT: &[Key] = &[
+    must("of", Text, "the body"),
+    may(
+        "on",
+        Text,
+        "what it stands on: the ground z = 0 if left out, a plane that carries the body, a table that turns, a cone, cylinder or bowl",
+    ),
+    must("law", Text, LAWS),
+    may("at", Vector, "the point of the body that touches, where its shape does not say; the origin if left out"),
+    may("along", Vector, "the direction of the first constraint; the wheel's heading if left out, x of a ball"),
+];
+
+/// `[spring.NAME]`.
+pub const SPRING: &[Key] = &[
+    may("joint", Text, "the body whose joint it is at"),
+    may("between", Named(&Vector), "two bodies, or one and `space`, with a point of each"),
+    must("stiffness", Expression, "k in V = k (l - rest)²/2"),
+    may("rest", Expression, "angle, shift or length without force; 0 if left out"),
+];
+
+/// `[damper.NAME]`.
+pub const DAMPER: &[Key] = &[
+    may("joint", Text, "the body whose joint it is at"),
+    may("between", Named(&Vector), "two bodies, or one and `space`, with a point of each"),
+    must("damping", Expression, "c in the force -c l'"),
+];
+
+/// `[motor.NAME]`.
+pub const MOTOR: &[Key] = &[
+    may("joint", Text, "the body whose joint it is at"),
+    may("between", Named(&Vector), "two bodies, or one and `space`, with a point of each"),
+    must("force", Expression, "the force or torque that lengthens; it acts on both bodies by virtual work"),
+];
+
+/// `[loop.NAME]`.
+pub const LOOP: &[Key] =
+    &[must("between", Named(&Vector), "two bodies, or one and `space`, with the points that coincide")];
 
 /// `[start]`.
 pub const START: &[Key] = &[

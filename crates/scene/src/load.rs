@@ -4,14 +4,15 @@ use std::cell::RefCell;
 use std::io::Read;
 use std::path::Path;
 
+use mechanics::{State, View};
 use symbolic::work_on;
 use toml::de::DeTable;
 
 use super::context::Context;
 use super::overrides::Overrides;
 use super::section::{Entry, Section, Source};
-use super::{constants, film, redundant, removal, start, system, view};
-use crate::{Number, Scene, SceneError, SceneErrorKind, format};
+use super::{constants, film, formulas, machine, redundant, removal, review, start, system, view};
+use crate::{Meant, Number, Scene, SceneError, SceneErrorKind, format};
 
 /// Size of the largest scene file that is read, in bytes.
 pub const SIZE_LIMIT: u64 = 1 << 20;
@@ -63,6 +64,20 @@ impl Scene {
         overrides: &[(String, N)],
     ) -> Result<Scene, SceneError> {
         load(name, name, text, overrides)
+    }
+
+    /// What a reviewer would ask about a scene that can be read, each with its place: names that nothing
+    /// uses, masses below zero, moments that no body has, weights with the wrong sign, forces that drive
+    /// whichever way the system moves, constraints that contradict the picture. `file` as in errors.
+    ///
+    /// # Errors
+    /// As [`Scene::parse`].
+    pub fn remarks<N: Clone + Into<Number>>(
+        file: &str,
+        text: &str,
+        overrides: &[(String, N)],
+    ) -> Result<Vec<SceneError>, SceneError> {
+        loaded(file, file, text, overrides, review::remarks).map(|(_, remarks)| remarks)
     }
 
     /// Reads a scene file of at most [`SIZE_LIMIT`] bytes.
@@ -136,9 +151,20 @@ fn load<N: Clone + Into<Number>>(
     overrides: &[(String, N)],
 ) -> Result<Scene, SceneError> {
     work_on(format!("scene {name}, digest {:016x}", digest(text, overrides)));
+    loaded(name, file, text, overrides, |_, _, _| ()).map(|(scene, ())| scene)
+}
+
+/// The scene, and what `look` sees in it while it is read.
+fn loaded<N: Clone + Into<Number>, T>(
+    name: &str,
+    file: &str,
+    text: &str,
+    overrides: &[(String, N)],
+    look: impl FnOnce(&Context, &View, &State) -> T,
+) -> Result<(Scene, T), SceneError> {
     let faults = RefCell::default();
     let source = Source { file, text, faults: &faults };
-    let scene = Overrides::new(source, overrides).and_then(|overrides| read(name, source, overrides));
+    let scene = Overrides::new(source, overrides).and_then(|overrides| read(name, source, overrides, look));
     let mut faults = faults.into_inner();
     let scene = scene.map_err(|fault| faults.push(fault));
     match (scene, SceneError::together(faults)) {
@@ -157,7 +183,12 @@ fn digest<N: Clone + Into<Number>>(text: &str, overrides: &[(String, N)]) -> u64
 }
 
 /// Looks at as much as can be looked at: faults that leave the rest readable are noted.
-fn read(name: &str, source: Source, overrides: Overrides) -> Result<Scene, SceneError> {
+fn read<T>(
+    name: &str,
+    source: Source,
+    overrides: Overrides,
+    look: impl FnOnce(&Context, &View, &State) -> T,
+) -> Result<(Scene, T), SceneError> {
     let Source { file, text, .. } = source;
     let size = text.len() as u64;
     if size > SIZE_LIMIT {
@@ -172,12 +203,19 @@ fn read(name: &str, source: Source, overrides: Overrides) -> Result<Scene, Scene
     }
     let root = Section::root(source, table.get_ref());
     root.check_keys(format::SCENE);
+    let follows = machine::read(source, &root)?;
+    let has_bodies = follows.is_some();
+    let table = match &follows {
+        Some(follows) => &formulas::with(table.get_ref(), &follows.made),
+        None => table.get_ref(),
+    };
+    let root = Section::root(source, table);
     let text = |key| source.note(root.text_or_empty(key)).unwrap_or_default();
     let (origin, notes) = (text("source"), text("notes"));
     let title = source.note(root.require("title", "a string").and_then(|title| title.text("a string")));
     let run = root.require("run", "a table with the duration").and_then(|run| run.section());
     let run = source.note(run);
-    let mut context = system::build(source, root, overrides)?;
+    let mut context = system::build(source, root, overrides, follows.unwrap_or_default())?;
     let duration = run.and_then(|run| {
         run.check_keys(format::RUN);
         if let Some(times) = run.get("breakpoints").and_then(|entry| source.note(breakpoints(&entry))) {
@@ -203,7 +241,14 @@ fn read(name: &str, source: Source, overrides: Overrides) -> Result<Scene, Scene
         unreachable!("what could not be read was noted")
     };
     source.no_fault()?;
-    Ok(Scene {
+    let seen = look(&context, &view, &state);
+    let meant = has_bodies.then(|| Meant {
+        formulas: formulas::written(table, &context.found),
+        constraints: context.found.says,
+        slips: context.found.slips,
+        left_out: context.found.left_out,
+    });
+    let scene = Scene {
         name: name.into(),
         title: title.text,
         source: origin,
@@ -216,7 +261,9 @@ fn read(name: &str, source: Source, overrides: Overrides) -> Result<Scene, Scene
         duration,
         film,
         view,
-    })
+        meant,
+    };
+    Ok((scene, seen))
 }
 
 fn faults_so_far(source: Source) -> bool {

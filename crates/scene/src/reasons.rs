@@ -57,3 +57,32 @@ pub enum Unavailable {
     #[error("a coordinate given directly may contain parameters and their first rates only")]
     SecondRate,
 }
+
+/// What a reviewer would ask about a scene that can be read.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+#[expect(missing_docs, reason = "the messages say what variants and fields are")]
+pub enum Remark {
+    #[error("`{name}` is used by nothing")]
+    Unused { name: String },
+    #[error("{what} is {value}, below zero")]
+    Negative { what: String, value: f64 },
+    #[error("no body has the moments {moments:?}: the largest is at most the sum of the other two")]
+    Moments { moments: [f64; 3] },
+    #[error(
+        "the kinetic energy is negative at the start: wᵀ M w = {value:.3e} for a velocity w of length 1 that the constraints admit"
+    )]
+    KineticEnergy { value: f64 },
+    #[error(
+        "what g gives to L grows with the height of {bodies}: the weight of a mass m at the height h is -m*g*h in L"
+    )]
+    Weight { bodies: String },
+    #[error(
+        "forces that depend on velocities drive whichever way the system moves: their power is {value:.3e} at a velocity and at its opposite"
+    )]
+    Driving { value: f64 },
+    #[error(
+        "the contact of `{body}` slips on `{on}` by {slip:.3e} at a velocity that the constraints admit: they contradict the picture"
+    )]
+    Slips { body: String, on: String, slip: f64 },
+}

@@ -16,13 +16,14 @@ pub(super) fn leave_out(context: &mut Context) -> Result<(), SceneError> {
         context.places = kept.iter().map(|&i| context.places[i].clone()).collect();
     }
     let (found, dimension) = (system.constraints.len(), system.dimension());
-    if found < dimension {
+    if found < dimension || found == 0 {
         return Ok(());
     }
     let kind = SceneErrorKind::TooManyConstraints { found, dimension };
     let entry = context.root.section("system")?.and_then(|section| section.get("constraints"));
-    Err(match entry {
-        Some(entry) => entry.error_at_key(kind),
-        None => SceneError::outside(context.source.file, kind),
+    Err(match (entry, context.places.last()) {
+        (Some(entry), _) => entry.error_at_key(kind),
+        (None, Some(place)) => context.source.error(place, kind),
+        (None, None) => SceneError::outside(context.source.file, kind),
     })
 }

@@ -30,6 +30,23 @@ pub struct Scene {
     pub film: Vec<Filmed>,
     /// The drawing; without bodies where the file has no `[view]`.
     pub view: View,
+    /// What the scene's bodies mean; none where it has no bodies.
+    pub meant: Option<Meant>,
+}
+
+/// What the bodies of a scene mean.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Meant {
+    /// The same scene without bodies, as a file: it has the same system, start and picture.
+    pub formulas: String,
+    /// What each constraint says, in their order: its multiplier in Chetaev's equations is the force, or
+    /// torque, that the contact exerts on the body there.
+    pub constraints: Vec<String>,
+    /// Slips at all contacts, in the graph of the system: along, across and along the normal, whether the
+    /// law demands that they vanish or not.
+    pub slips: Vec<Expr>,
+    /// Constraints that were left out, because others say the same.
+    pub left_out: Vec<String>,
 }
 
 /// The quantity in a column of a film.

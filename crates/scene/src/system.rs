@@ -1,10 +1,14 @@
 //! Parameters, coordinates, definitions and `[system]`.
 
+use std::cell::RefCell;
 use std::collections::HashMap;
 
 use symbolic::{Graph, Symbol};
 
 use super::context::{Context, unrounded};
+use super::followed;
+use super::formulas::Found;
+use super::machine::Follows;
 use super::names::{Names, OF_LAWS, Role};
 use super::order::in_order;
 use super::overrides::Overrides;
@@ -17,6 +21,7 @@ pub(super) fn build<'a>(
     source: Source<'a>,
     root: Section<'a>,
     overrides: Overrides,
+    follows: Follows,
 ) -> Result<Context<'a>, SceneError> {
     let graph = Graph::new();
     let mut names = Names::default();
@@ -54,6 +59,8 @@ pub(super) fn build<'a>(
         time: 0.0,
         places: Vec::new(),
         on_positions: Vec::new(),
+        follows,
+        found: Found::default(),
     };
     context.system.parameters = parameters;
     for name in OF_LAWS.into_iter().filter(|name| context.names.role(name).is_none()) {
@@ -63,7 +70,7 @@ pub(super) fn build<'a>(
             context.system.parameters.push(Parameter { symbol, value, formula: None });
         }
     }
-    source.note(definitions(&mut context));
+    definitions(&mut context)?;
     source.note(read_system(&mut context));
     context.system.domains = context.system.graph.lost_domains(&context.system.written());
     for (section, constancy) in [("invariants", Constancy::Expected), ("observables", Constancy::Free)] {
@@ -128,7 +135,9 @@ fn parameters(section: &Section, overrides: &Overrides, graph: &Graph, names: &m
 }
 
 fn definitions(context: &mut Context) -> Result<(), SceneError> {
-    let Some(section) = context.root.section("definitions")? else { return Ok(()) };
+    let Some(section) = context.root.section("definitions")? else {
+        return followed::explain(context, Vec::new());
+    };
     let source = context.source;
     let mut written = Vec::new();
     for entry in section.entries() {
@@ -142,7 +151,10 @@ fn definitions(context: &mut Context) -> Result<(), SceneError> {
             None => {}
         }
     }
+    let unexplained = RefCell::default();
     for (entry, value) in in_order(source, written, Role::Definition, &mut context.names) {
+        let follows = context.follows.made.definitions.iter().any(|made| made.name == entry.key);
+        let source = if follows { Source { faults: &unexplained, ..source } } else { source };
         let value = match value {
             Value::Number(x) => Ok(symbolic::Value::Scalar(context.system.graph.number(x))),
             Value::Expression(text) => context.names.parse_value(source, &context.system.graph, &text),
@@ -157,7 +169,7 @@ fn definitions(context: &mut Context) -> Result<(), SceneError> {
             None => context.names.insert_faulty(entry.key, Role::Definition),
         }
     }
-    Ok(())
+    followed::explain(context, unexplained.into_inner())
 }
 
 fn read_system(context: &mut Context) -> Result<(), SceneError> {
@@ -169,13 +181,11 @@ fn read_system(context: &mut Context) -> Result<(), SceneError> {
     if let Some(lagrangian) = source.note(lagrangian) {
         context.system.lagrangian = lagrangian;
     }
-    if let Some(entry) = section.get("constraints") {
-        source.note(constraints(context, &entry));
-    }
+    source.note(constraints(context, &section));
     if let Some(entry) = section.get("virtual") {
         source.note(virtual_conditions(context, &entry));
     }
-    let Some(forces) = section.section("forces")? else { return Ok(()) };
+    let Some(forces) = section.section("forces")? else { return followed::works(context) };
     let known: Vec<String> = context.system.coordinates.iter().map(|c| c.name.clone()).collect();
     for entry in forces.entries() {
         let place = known.iter().position(|name| name == entry.key);
@@ -187,7 +197,7 @@ fn read_system(context: &mut Context) -> Result<(), SceneError> {
             context.system.forces[i] = force;
         }
     }
-    Ok(())
+    followed::works(context)
 }
 
 /// What the user wants to see: a vector by its components. Positions that are to stay where they are, too.
@@ -220,10 +230,12 @@ fn watched(context: &mut Context, section: &str, constancy: Constancy) -> Result
 }
 
 /// Each element is a constraint, or a vector of them. One on positions is kept as its time derivative.
-fn constraints(context: &mut Context, entry: &Entry) -> Result<(), SceneError> {
+fn constraints(context: &mut Context, section: &Section) -> Result<(), SceneError> {
     let source = context.source;
     let (mut constraints, mut on_positions) = (Vec::new(), Vec::new());
-    for (index, element) in entry.elements("an array of expressions")?.iter().enumerate() {
+    let entry = section.get("constraints");
+    let elements = entry.as_ref().map(|entry| entry.elements("an array of expressions")).transpose()?;
+    for (index, element) in elements.iter().flatten().enumerate() {
         let read = element.text("an expression in quotes");
         let read = read.and_then(|text| context.names.parse_value(source, &context.system.graph, &text));
         let read = source.note(read);
@@ -245,6 +257,7 @@ fn constraints(context: &mut Context, entry: &Entry) -> Result<(), SceneError> {
             }
         }
     }
+    followed::rows(context, &mut constraints, &mut on_positions);
     context.system.constraints = constraints;
     context.system.on_positions = on_positions;
     Ok(())

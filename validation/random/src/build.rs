@@ -375,6 +375,7 @@ impl<'a> Builder<'a> {
             duration: DURATION,
             film: Vec::new(),
             view: View::default(),
+            meant: None,
             system: self.system,
         }
     }

@@ -49,8 +49,11 @@ pub struct NewArguments {
     #[arg(long, value_name = "SCENE")]
     pub from: Option<String>,
     /// The JSON schema of scene files, for editors, in the place of the template.
-    #[arg(long, conflicts_with = "from")]
+    #[arg(long, conflicts_with_all = ["from", "bodies"])]
     pub schema: bool,
+    /// A robot from bodies, in the place of the template.
+    #[arg(long, conflicts_with = "from")]
+    pub bodies: bool,
 }
 
 /// `deltaq check`.
@@ -61,6 +64,9 @@ pub struct CheckArguments {
     pub scenes: Vec<String>,
     #[command(flatten)]
     pub set: Overrides,
+    /// Take notes for faults: exit code 2.
+    #[arg(long)]
+    pub strict: bool,
 }
 
 /// `deltaq show`.
@@ -77,6 +83,9 @@ pub struct ShowArguments {
     /// The text of the scene file, and nothing else.
     #[arg(long, conflicts_with_all = ["latex", "format", "overrides"])]
     pub source: bool,
+    /// The scene of formulas that a scene of bodies means, and nothing else.
+    #[arg(long, conflicts_with_all = ["latex", "source", "format"])]
+    pub formulas: bool,
     /// The equations as a source file in a language, and nothing else; by default those of Chetaev.
     #[arg(long, value_enum, value_name = "LANGUAGE", conflicts_with_all = ["latex", "source", "format"])]
     pub code: Option<CodeLanguage>,

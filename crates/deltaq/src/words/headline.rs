@@ -9,7 +9,9 @@ use super::decision;
 use super::numbers::{enumerate, precise, short};
 use crate::contradiction::FAULT;
 use crate::table::is_in_table;
-use crate::{CERTAINTY, CHETAEV, Comparison, Gap, Pair, REMOVED_CONSTRAINT, VAKONOMIC, VAKONOMIC_COSTATE, Verdict};
+use crate::{
+    Beyond, CERTAINTY, CHETAEV, Comparison, Gap, Pair, REMOVED_CONSTRAINT, VAKONOMIC, VAKONOMIC_COSTATE, Verdict,
+};
 
 /// Which of several motions is the user's: said where formulations differ.
 const WHICH: &str = "Wheels, skates and rolling bodies follow Chetaev (d'Alembert–Lagrange): friction holds their \
@@ -209,6 +211,7 @@ fn why(comparison: &Comparison) -> Vec<String> {
             measured.exponent
         ));
     }
+    sentences.extend(comparison.beyond.as_ref().map(|beyond| contacts(comparison, beyond.as_ref())));
     let substituted: Vec<String> = substituted(comparison).map(|i| label(comparison, i).to_owned()).collect();
     if !substituted.is_empty() {
         let is = if substituted.len() == 1 { "is" } else { "are" };
@@ -219,6 +222,20 @@ fn why(comparison: &Comparison) -> Vec<String> {
     }
     sentences.extend(breaches(comparison));
     sentences
+}
+
+/// What the vakonomic motion asks of contacts.
+fn contacts(comparison: &Comparison, beyond: Option<&Beyond>) -> String {
+    let Some(Beyond { coordinate, force, t }) = beyond else {
+        return "Forces at the contacts can make the vakonomic motion, too.".into();
+    };
+    let angle = comparison.scene.system.coordinates.iter().any(|c| c.name == *coordinate && c.unit == "rad");
+    let what = if angle { "torque" } else { "generalized force" };
+    format!(
+        "The vakonomic motion needs a {what} of {} along {coordinate} (at t = {}) that no contact can exert.",
+        precise(force.abs()),
+        short(*t)
+    )
 }
 
 /// For each quantity that the user expects to be constant and some formulation changes: which do.

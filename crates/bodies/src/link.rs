@@ -1,0 +1,73 @@
+//! Springs, dampers, motors and loops.
+
+use crate::chain::Maker;
+use crate::text::{Sum, factor};
+use crate::{Between, Fault, FaultKind, Link, LinkKind, Motion, Row, Work, Written};
+
+impl Maker<'_> {
+    pub(crate) fn link(&mut self, link: &Link) -> Result<(), Fault> {
+        let place = link.name.place.clone();
+        let length = match &link.between {
+            Between::Joint(joint) => self.coordinate(joint)?,
+            Between::Points(ends) => {
+                let gap = self.gap(link, ends)?;
+                let gap = self.define(&link.name, "gap", gap);
+                if let LinkKind::Loop = link.kind {
+                    self.made.rows.extend(["x", "y", "z"].map(|axis| Row {
+                        text: format!("{gap}.{axis}"),
+                        height: None,
+                        says: format!("loop {}: its points coincide along {axis}", link.name.text),
+                        place: place.clone(),
+                    }));
+                    return Ok(());
+                }
+                self.define(&link.name, "length", format!("sqrt(dot({gap}, {gap}))"))
+            }
+        };
+        match &link.kind {
+            LinkKind::Spring(stiffness, rest) => {
+                let rest = rest.as_ref().map_or_else(Sum::default, |rest| Sum::read(&rest.text));
+                let stretch = Sum::read(&length).plus(&rest.negative());
+                self.made.energies.push(format!("-{}/2*({stretch})^2", factor(&stiffness.text)));
+            }
+            LinkKind::Damper(damping) => {
+                let force = format!("-{}*({length})'", factor(&damping.text));
+                self.made.works.push(Work { along: length, force, place });
+            }
+            LinkKind::Motor(force) => self.made.works.push(Work { along: length, force: force.text.clone(), place }),
+            LinkKind::Loop => {}
+        }
+        Ok(())
+    }
+
+    /// The angle or shift of the joint that carries a body.
+    fn coordinate(&self, joint: &Written) -> Result<String, Fault> {
+        let i = self.machine.find(joint)?;
+        match &self.body(i).joint.motion {
+            Motion::Hinge(_, coordinate) | Motion::Slider(_, coordinate) | Motion::Plane([_, _, coordinate]) => {
+                Ok(coordinate.text.clone())
+            }
+            Motion::Fixed | Motion::Turned(_) => {
+                let kind = FaultKind::NoJoint { name: joint.text.clone() };
+                Err(Fault { place: joint.place.clone(), kind })
+            }
+        }
+    }
+
+    /// From the second point to the first.
+    fn gap(&self, link: &Link, [first, second]: &[(Written, Written); 2]) -> Result<String, Fault> {
+        let place = |(name, point): &(Written, Written)| -> Result<(Option<usize>, String), Fault> {
+            if name.text == "space" {
+                return Ok((None, crate::text::vector(&point.text)));
+            }
+            let i = self.machine.find(name)?;
+            Ok((self.placed(i).base, self.point(i, &point.text)))
+        };
+        let ((base, from), (other, to)) = (place(first)?, place(second)?);
+        if base != other {
+            let kind = FaultKind::Bases(first.0.text.clone(), second.0.text.clone());
+            return Err(Fault { place: link.name.place.clone(), kind });
+        }
+        Ok(format!("{from} - ({to})"))
+    }
+}
