@@ -63,7 +63,8 @@ fn form(a: &str, as_parameter: bool) -> Scene {
 
 /// A scene with this constraint, in which `A` is a parameter, or stands there as it is.
 fn constrained(f: &str, a: &str, as_parameter: bool) -> Scene {
-    let (parameters, own) = if as_parameter { (format!("[parameters]\na = \"{a}\"\n"), "a") } else { (String::new(), a) };
+    let (parameters, own) =
+        if as_parameter { (format!("[parameters]\na = \"{a}\"\n"), "a") } else { (String::new(), a) };
     let text = format!(
         "title = \"form\"\n{parameters}[coordinates]\nx = {{ start = 1 }}\ny = {{ start = \"1/2\" }}\nz = {{ start = 0 }}\n\
          [system]\nlagrangian = \"(x'^2 + y'^2 + z'^2)/2 - x^2/2\"\nconstraints = [\"{}\"]\n\
@@ -89,7 +90,10 @@ fn what_is_one_is_one_as_a_parameter_as_well() {
         assert!(matches!(found, Integrability::Integrable { .. }), "{a}: {found}");
         assert_eq!(Ok(found), integrability(&literal).map_err(|e| e.to_string()), "{a}");
         let answers = [&parameter, &literal].map(answer);
-        assert!(matches!(answers[0], Some(Answer::SomeProved | Answer::Some { settled: true, .. })), "{a}: {answers:?}");
+        assert!(
+            matches!(answers[0], Some(Answer::SomeProved | Answer::Some { settled: true, .. })),
+            "{a}: {answers:?}"
+        );
         assert_eq!(answers[0], answers[1], "{a}");
     }
 }
@@ -112,7 +116,8 @@ fn what_is_zero_is_zero_as_a_parameter_as_well() {
             for as_parameter in [true, false] {
                 let scene = constrained(f, a, as_parameter);
                 let found = integrability(&scene).expect("a verdict");
-                let right = if is_zero { found.is_integrable() } else { found == Integrability::Nonintegrable { depth: 1 } };
+                let right =
+                    if is_zero { found.is_integrable() } else { found == Integrability::Nonintegrable { depth: 1 } };
                 assert!(right, "{f}, A = {a}, {as_parameter}: {found}");
                 let every = matches!(answer(&scene), Some(Answer::SomeProved | Answer::Some { settled: true, .. }));
                 assert!(every || !is_zero, "{f}, A = {a}, {as_parameter}");

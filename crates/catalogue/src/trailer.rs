@@ -88,7 +88,8 @@ pub fn scene(trailers: usize, coordinates: Coordinates) -> Result<Scene, ParseEr
     let names: Vec<(&str, &str)> = train.coordinates.iter().map(|c| (c.0.as_str(), c.1)).collect();
     let mut system = System::new(symbolic::Graph::new(), &names);
     let g = &system.graph;
-    system.parameters = PARAMETERS.map(|(name, value)| Parameter { symbol: g.symbol(name), value, formula: None }).into();
+    system.parameters =
+        PARAMETERS.map(|(name, value)| Parameter { symbol: g.symbol(name), value, formula: None }).into();
     let scope = |name: &str| g.find_symbol(name).map(|s| g.variable(s));
     system.lagrangian = g.parse(&train.lagrangian, &scope, &[])?;
     system.constraints = train.constraints.iter().map(|f| g.parse(f, &scope, &[])).collect::<Result<Vec<Expr>, _>>()?;

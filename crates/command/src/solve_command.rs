@@ -6,8 +6,9 @@ use std::time::Duration;
 
 use anyhow::{Context, Result, bail, ensure};
 use deltaq::{
-    Choice, ErrorEstimate, Form, Motion, STEP_LIMIT, Setting, Settings, Steps, default_constants, equidistant, error_estimates,
-    formulation_in, removal, removal_names, removals, sensitivities, setting, solve_by_steps, solve_choice,
+    Choice, ErrorEstimate, Form, Motion, STEP_LIMIT, Setting, Settings, Steps, default_constants, equidistant,
+    error_estimates, formulation_in, removal, removal_names, removals, sensitivities, setting, solve_by_steps,
+    solve_choice,
 };
 use discrete::Composition;
 use equations::{Formulation, Outputs};

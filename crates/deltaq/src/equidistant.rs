@@ -28,7 +28,9 @@ pub fn equidistant_value(from: f64, to: f64, count: usize, place: usize) -> f64 
             match last {
                 0..=EXACT if step * tens >= STEPS => (value * tens).round() / tens,
                 ..0 if last >= -EXACT && step / tens >= STEPS => (value / tens).round() * tens,
-                _ if last > EXACT && step * tens >= STEPS => format!("{value:.*}", last.unsigned_abs() as usize).parse().unwrap_or(value),
+                _ if last > EXACT && step * tens >= STEPS => {
+                    format!("{value:.*}", last.unsigned_abs() as usize).parse().unwrap_or(value)
+                }
                 _ => value,
             }
         }

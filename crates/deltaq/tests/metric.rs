@@ -9,7 +9,8 @@ use symbolic::Graph;
 fn what_was_asked_before_changes_no_length() {
     let mut system = System::new(Graph::new(), &[("q", "m")]);
     let [m, s] = ["m", "s"].map(|name| system.graph.symbol(name));
-    system.parameters = vec![Parameter { symbol: m, value: 1.0, formula: None }, Parameter { symbol: s, value: 0.5, formula: None }];
+    system.parameters =
+        vec![Parameter { symbol: m, value: 1.0, formula: None }, Parameter { symbol: s, value: 0.5, formula: None }];
     system.lagrangian = system.expression("(m*q + s*t)*q'^2/2").expect("a Lagrangian");
     let mut metric = Metric::varying(&system, &[m]).expect("a metric");
     for m in [1.0, -1.0, 4.0] {

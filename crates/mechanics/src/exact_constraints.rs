@@ -93,14 +93,14 @@ impl System {
     /// Whether `Σ a_j dq_j + b dt` is closed, exactly: `∂a_j/∂q_k = ∂a_k/∂q_j`. `places` are `q` and time.
     fn is_total_derivative(&self, row: &BTreeMap<usize, Expr>, places: &[Symbol]) -> bool {
         let g = &self.graph;
-        g.are_exact(&row.values().copied().collect::<Vec<_>>()) && row.iter().all(|(&j, &a)| {
-            let symbols = g.symbols_of(a);
-            places.iter().enumerate().filter(|(k, place)| *k != j && symbols.contains(place)).all(|(k, &place)| {
-                let other = row.get(&k).map_or(g.zero(), |&b| g.derivative(b, places[j]));
-                let curl = g.sub(g.derivative(a, place), other);
-                g.vanishes_exactly(curl) || g.vanishes_exactly(self.as_written(curl))
+        g.are_exact(&row.values().copied().collect::<Vec<_>>())
+            && row.iter().all(|(&j, &a)| {
+                let symbols = g.symbols_of(a);
+                places.iter().enumerate().filter(|(k, place)| *k != j && symbols.contains(place)).all(|(k, &place)| {
+                    let other = row.get(&k).map_or(g.zero(), |&b| g.derivative(b, places[j]));
+                    let curl = g.sub(g.derivative(a, place), other);
+                    g.vanishes_exactly(curl) || g.vanishes_exactly(self.as_written(curl))
+                })
             })
-        })
     }
 }
-

@@ -56,7 +56,8 @@ fn total_derivatives_are_integrable() {
 fn a_parameter_is_its_formula_and_a_rounded_number_nothing_exact() {
     // `a` has the value of its formula, or another since
     let form = |a: &str, value: Option<f64>, b: f64| {
-        let (mut system, state) = systems::kinetic(&["x", "y", "z"], &[("a", 0.0), ("b", b)], &["z' - a*x*y' - b*y*x'"]);
+        let (mut system, state) =
+            systems::kinetic(&["x", "y", "z"], &[("a", 0.0), ("b", b)], &["z' - a*x*y' - b*y*x'"]);
         let formula = system.expression(a).expect("a formula");
         let own = system.graph.evaluate(formula, &Default::default()).expect("a number");
         system.parameters[0].value = value.unwrap_or(own);

@@ -86,12 +86,7 @@ fn unit(section: &Section) -> Result<String, SceneError> {
 }
 
 /// Parameters that are numbers. One that is given by others is an expression in them, and follows them.
-fn parameters(
-    section: &Section,
-    overrides: &Overrides,
-    graph: &Graph,
-    names: &mut Names,
-) -> Vec<Parameter> {
+fn parameters(section: &Section, overrides: &Overrides, graph: &Graph, names: &mut Names) -> Vec<Parameter> {
     let source = section.source;
     let mut written = Vec::new();
     for entry in section.entries() {

@@ -120,7 +120,13 @@ fn bicycle((from, to, count): (f64, f64, usize)) -> Result<Sweep> {
     let scene = catalogue::find("bicycle", &[])?;
     let constants = default_constants(CHETAEV, &scene);
     let choice = Choice { label: CHETAEV.title.into(), formulation: CHETAEV, removal: None, constants };
-    Ok(sweep(&scene, &choice, &["lean", "steer"], ("v", &deltaq::equidistant(from, to, count).collect::<Vec<_>>()), false)?)
+    Ok(sweep(
+        &scene,
+        &choice,
+        &["lean", "steer"],
+        ("v", &deltaq::equidistant(from, to, count).collect::<Vec<_>>()),
+        false,
+    )?)
 }
 
 /// First column, eigenvalue.
