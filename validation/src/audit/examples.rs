@@ -178,7 +178,6 @@ impl<'a> Writer<'a> {
         let removal = self.removal;
         let mut lines = Vec::new();
         let mut residuals = Vec::new();
-        let constants = &self.derived.parameters;
         let mut flow: Vec<(Symbol, Expr)> = self.derived.states.iter().map(|y| (y.symbol, y.rate)).collect();
         flow.push((self.system.time, g.one()));
         for (u, momentum, force) in &balances {
@@ -187,13 +186,13 @@ impl<'a> Writer<'a> {
             let name = format!("balance for {}", g.name(u.symbol));
             let statement = self.derived.statements.iter().find(|s| s.meaning == name).context("no balance")?;
             let rest = g.sub(written, g.sub(statement.left, statement.right));
-            residuals.push(g.vanishes(rest, constants));
+            residuals.push(self.system.vanishes(rest));
         }
         for (p, force) in &rates {
             let state = self.derived.states.iter().find(|y| y.symbol == *p).context("no costate")?;
             let rate = g.symbol(&format!("{}'", g.name(*p)));
             lines.push(format!("{} = {}", g.latex_symbol(rate), self.print(g.neg(*force))));
-            residuals.push(g.vanishes(g.add(state.rate, self.plain(*force)), constants));
+            residuals.push(self.system.vanishes(g.add(state.rate, self.plain(*force))));
         }
         for w in &removal.memory {
             let rate = g.symbol(&format!("{}'", g.name(w.symbol)));
