@@ -167,7 +167,7 @@ pub fn integrability(system: &System, state: &State, end: f64) -> Result<Integra
         return Ok(Integrability::NonlinearInVelocity);
     }
     let (constants, surroundings) = (system.parameter_values(), Surroundings::of_start(system, state, end));
-    let domain = Domain::of(system);
+    let domain = Domain::of_constraints(system);
     let (system, state) = &system.without_exact_constraints(state)?;
     let g = &system.graph;
     let exact = h - system.constraints.len();
