@@ -159,7 +159,7 @@ impl std::fmt::Display for Integrability {
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn integrability(system: &System, state: &State, end: f64) -> Result<Integrability, RemovalError> {
-    let h = system.constraints.len();
+    let (h, domain) = (system.constraints.len(), Domain::of_constraints(system));
     if h == 0 {
         return Ok(Integrability::Unconstrained);
     }
@@ -167,7 +167,6 @@ pub fn integrability(system: &System, state: &State, end: f64) -> Result<Integra
         return Ok(Integrability::NonlinearInVelocity);
     }
     let (constants, surroundings) = (system.parameter_values(), Surroundings::of_start(system, state, end));
-    let domain = Domain::of_constraints(system);
     let (system, state) = &system.without_exact_constraints(state)?;
     let g = &system.graph;
     let exact = h - system.constraints.len();
@@ -204,10 +203,9 @@ pub fn integrability(system: &System, state: &State, end: f64) -> Result<Integra
     };
 
     let mut fields = admissible.clone();
+    let (mut generic, mut at_start) = (vec![fields.len()], vec![surroundings.rank_at_centre(g, &fields)]);
     let mut newest = admissible.clone();
     let mut rank = fields.len();
-    let mut generic = vec![rank];
-    let mut at_start = vec![surroundings.rank_at_centre(g, &fields)];
     let mut open = None;
     while rank < space.len() {
         let mut added = Vec::new();
