@@ -22,17 +22,21 @@ pub fn run(arguments: &ProveArguments) -> Result<Answer> {
             holds_beside_numbers(&scene)?;
             let order = certificate.order;
             let text = pretty("certificate", &certificate.value(&given.set.written()));
+            let domain = match almost_every {
+                true => Domain::of(&scene.system).almost_every("start"),
+                false => "this start".into(),
+            };
             let told = |file: &str| match format {
                 TextOrJson::Text => {
                     let what = "no μ₀ makes the vakonomic motion Chetaev's";
-                    let domain = Domain::of(&scene.system);
-                    let start =
-                        if *almost_every { format!(" from {}", domain.almost_every("start")) } else { String::new() };
-                    format!("{}: {what}{start}: proved (order {order}); the certificate is in {file}\n", scene.name)
+                    let from = if *almost_every { format!(" from {domain}") } else { String::new() };
+                    format!("{}: {what}{from}: proved (order {order}); the certificate is in {file}\n", scene.name)
                 }
                 TextOrJson::Json => {
-                    let value = json!({ "answer": "none", "proved": true, "order": order, "certificate": file });
-                    pretty("prove", &value)
+                    let found = json!({
+                        "answer": "none", "proved": true, "domain": domain, "order": order, "certificate": file,
+                    });
+                    pretty("prove", &found)
                 }
             };
             return Ok(keep(Some(out), text, told)?.into());

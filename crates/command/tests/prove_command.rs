@@ -158,6 +158,11 @@ fn the_words_say_what_is_proved_and_what_is_not() {
     particle("z' - (x - sqrt(x^2))*y'", "x = { unit = \"m\", start = 1");
     let complaint = answer(&["prove", &path, "--out", &out], 3).1;
     assert!(complaint.contains("at random starts of the branch of this start"), "{complaint}");
+    particle("z' - (x - sqrt(x^2))*y'", "x = { unit = \"m\", start = -1");
+    let told = answer(&["prove", &path, "--almost-every", "--out", &out], 0).0;
+    assert!(told.contains("from almost every start of the branch of this start: proved"), "{told}");
+    let told = answer(&["prove", &path, "--out", &out, "--format", "json"], 0).0;
+    assert_eq!(serde_json::from_str::<Value>(&told).expect("JSON")["domain"], "this start");
     let complaint = answer(&["prove", "disc", "--out", &out], 3).1;
     assert!(complaint.contains("an identity, (-m*x', -m*y'), for all starts: proved"), "{complaint}");
     let complaint = answer(&["prove", "disc", "--set", "phi=1.0471975511965976", "--out", &out], 3).1;

@@ -89,22 +89,16 @@ impl ExactStart {
             if self.domain.leaf { self.written_state(&given, time, &[])?.first().map(|q| short(q)) } else { None };
         let (mut rootless, mut rooted) = (vec![false; self.system.constraints.len()], 0);
         let mut leaf_rootless = vec![false; self.leaf.constraints()];
-        let mut found = None;
+        let (mut found, mut is_one_piece) = (None, false);
         for _ in 0..DRAWS {
             let q = draws(near_q.as_deref())?;
             let v = draws(near_v.as_deref())?;
             let time = draws(near.as_ref().map(|_| &times[..]))?[0];
-            let (q, on_leaf) = match &own {
-                None => (q, Vec::new()),
-                Some(own) => match self
-                    .leaf
-                    .placed(&parameters, time, own, q, near.is_some(), &mut leaf_rootless)
-                    .map_err(|_| NoExactStart::Positions)?
-                {
-                    Some(placed) => placed,
-                    None => continue,
-                },
+            let placed = match &own {
+                None => Ok(Some((q, Vec::new()))),
+                Some(own) => self.leaf.placed(&parameters, time, own, q, near.is_some(), &mut leaf_rootless),
             };
+            let Some((q, on_leaf)) = placed.map_err(|_| NoExactStart::Positions)? else { continue };
             let velocities = match self.solved(&parameters, time, &q, &v, usual.unwrap_or(&self.spare)) {
                 Err(NoExactStart::Nonlinear) => self.with_roots(&parameters, time, &q, &v)?,
                 solved => Solved::At { velocities: solved?, free: Vec::new() },
@@ -116,17 +110,16 @@ impl ExactStart {
                     found.get_or_insert((time, q, velocities, free, on_leaf));
                 }
             }
-            let is_one_piece = |free: &[usize], on_leaf: &[usize]| {
-                free.iter().all(|&i| rootless[i]) && on_leaf.iter().all(|&i| leaf_rootless[i])
-            };
-            if rooted == ROOTED || found.as_ref().is_some_and(|(.., free, on_leaf)| is_one_piece(free, on_leaf)) {
+            let one_piece = |free: &[usize], rootless: &[bool]| free.iter().all(|&i| rootless[i]);
+            is_one_piece = found.as_ref().is_some_and(|(.., free, on_leaf): &(_, _, _, Vec<usize>, Vec<usize>)| {
+                one_piece(free, &rootless) && one_piece(on_leaf, &leaf_rootless)
+            });
+            if rooted == ROOTED || is_one_piece {
                 break;
             }
         }
         match found {
-            Some((time, q, v, free, on_leaf))
-                if free.iter().all(|&i| rootless[i]) && on_leaf.iter().all(|&i| leaf_rootless[i]) =>
-            {
+            Some((time, q, v, ..)) if is_one_piece => {
                 Ok(SeriesStart { parameters: given, time: time.resized(), positions: long(&q), velocities: long(&v) })
             }
             Some(_) => Err(NoExactStart::Product),

@@ -25,11 +25,19 @@ pub struct Domain {
 impl Domain {
     /// That of statements on motions of `system`.
     pub fn of(system: &System) -> Self {
+        Domain::of_formulas(system, &[&[system.lagrangian], &system.constraints[..], &system.forces].concat())
+    }
+
+    /// That of statements on the constraints alone.
+    pub(crate) fn of_constraints(system: &System) -> Self {
+        Domain::of_formulas(system, &system.constraints)
+    }
+
+    fn of_formulas(system: &System, formulas: &[Expr]) -> Self {
         let g = &system.graph;
-        let formulas = [&[system.lagrangian], &system.constraints[..], &system.forces].concat();
         let parameters: Vec<Symbol> = system.parameters.iter().map(|p| p.symbol).collect();
         let varies = |e: &Expr| g.symbols_of(*e).iter().any(|s| !parameters.contains(s));
-        Domain { leaf: !system.on_positions.is_empty(), branch: g.ends_of_pieces(&formulas).iter().any(varies) }
+        Domain { leaf: !system.on_positions.is_empty(), branch: g.ends_of_pieces(formulas).iter().any(varies) }
     }
 
     /// "almost every place of the leaf of this start", or of what else there are so many.

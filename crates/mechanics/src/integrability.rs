@@ -171,7 +171,7 @@ pub fn integrability(system: &System, state: &State, end: f64) -> Result<Integra
 }
 
 fn by_brackets(system: &System, state: &State, end: f64) -> Result<Integrability, RemovalError> {
-    let h = system.constraints.len();
+    let (h, domain) = (system.constraints.len(), Domain::of_constraints(system));
     if h == 0 {
         return Ok(Integrability::Unconstrained);
     }
@@ -179,7 +179,6 @@ fn by_brackets(system: &System, state: &State, end: f64) -> Result<Integrability
         return Ok(Integrability::NonlinearInVelocity);
     }
     let surroundings = Surroundings::of_start(system, state, end);
-    let domain = Domain::of(system);
     let (system, state) = &system.without_exact_constraints(state)?;
     let g = &system.graph;
     let exact = h - system.constraints.len();
@@ -216,10 +215,9 @@ fn by_brackets(system: &System, state: &State, end: f64) -> Result<Integrability
     };
 
     let mut fields = admissible.clone();
+    let (mut generic, mut at_start) = (vec![fields.len()], vec![surroundings.rank_at_centre(g, &fields)]);
     let mut newest = admissible.clone();
     let mut rank = fields.len();
-    let mut generic = vec![rank];
-    let mut at_start = vec![surroundings.rank_at_centre(g, &fields)];
     // rounded numbers may cancel, and differ in digits that they have not got
     let mut open = (!g.are_exact(&system.constraints)).then_some(Undecided::AtPoints);
     while rank < space.len() {

@@ -58,6 +58,7 @@ mod domain;
 pub mod elimination;
 mod exact_constraints;
 mod integrability;
+mod integrable_alone;
 mod leaf;
 pub mod linear;
 pub mod newton;

@@ -1,5 +1,6 @@
 //! Ranks of matrices of expressions.
 
+use std::cmp::Ordering;
 use std::collections::{BTreeSet, HashMap};
 
 use symbolic::{Bounded, Evaluator, Expr, Graph, Matrix, Scalar, SplitMix, Symbol};
@@ -10,6 +11,8 @@ use crate::{Parameter, State, System};
 const REACHES: [f64; 4] = [1.0, 0.1, 3.0, 0.01];
 /// The same where something varies under a root or has a kink: on the branch of the centre.
 const NEAR: [f64; 4] = [0.01, 0.001, 0.003, 0.0001];
+/// The centre itself.
+const CENTRE: [f64; 4] = [0.0; 4];
 /// Signs of the way from the centre: drawn, all up, all down. Roots and logarithms have a side.
 const SIGNS: [Option<f64>; 3] = [None, Some(1.0), Some(-1.0)];
 
@@ -60,25 +63,16 @@ impl Surroundings {
     }
 
     /// Values at one of the points: a pure function of its number and of the places of the symbols.
-    fn point(&self, symbols: &[Symbol], point: usize, near: bool) -> Vec<Bounded> {
-        let reaches = if near { NEAR } else { REACHES };
+    fn point(&self, symbols: &[Symbol], point: usize, reaches: [f64; 4]) -> Vec<Bounded> {
         let (reach, sign) = (reaches[point % REACHES.len()], SIGNS[point % SIGNS.len()]);
         let mut random = SplitMix::new(point as u64);
         let value = |symbol: &Symbol| {
             let (magnitude, drawn) = (0.3 + random.unit(), if random.unit() < 0.5 { 1.0 } else { -1.0 });
             let (centre, size) = self.variables.get(symbol).copied().unwrap_or((0.0, 1.0));
-            let size = if near && centre != 0.0 { size.min(centre.abs()) } else { size };
+            let size = if reaches != REACHES && centre != 0.0 { size.min(centre.abs()) } else { size };
             let varied = centre + size * reach * magnitude * sign.unwrap_or(drawn);
             self.constants.get(symbol).copied().unwrap_or(Bounded::from_f64(varied))
         };
-        symbols.iter().map(value).collect()
-    }
-
-    /// The centre itself.
-    fn centre(&self, symbols: &[Symbol]) -> Vec<Bounded> {
-        let centre = |symbol: &Symbol| self.variables.get(symbol).map_or(0.0, |(centre, _)| *centre);
-        let value =
-            |symbol: &Symbol| self.constants.get(symbol).copied().unwrap_or_else(|| Bounded::from_f64(centre(symbol)));
         symbols.iter().map(value).collect()
     }
 
@@ -88,7 +82,7 @@ impl Surroundings {
         let symbols: Vec<Symbol> =
             entries.iter().flat_map(|&e| graph.symbols_of(e)).collect::<BTreeSet<_>>().into_iter().collect();
         let Ok(tape) = graph.compile(&symbols, &entries, &HashMap::new()) else { return 0 };
-        let values = Evaluator::new(tape).evaluate(&self.centre(&symbols)).to_vec();
+        let values = Evaluator::new(tape).evaluate(&self.point(&symbols, 0, CENTRE)).to_vec();
         let width = fields.first().map_or(1, Vec::len);
         if values.iter().all(|x| x.is_finite()) {
             certain_rank(values.chunks(width).map(<[Bounded]>::to_vec).collect())
@@ -113,14 +107,15 @@ pub fn generic_rank(graph: &Graph, matrix: &Matrix, surroundings: &Surroundings)
     let ends: Vec<Expr> = graph.ends_of_pieces(matrix.entries()).into_iter().filter(varies).collect();
     let all = [matrix.entries(), &ends].concat();
     let mut evaluator = Evaluator::new(graph.compile(&symbols, &all, &HashMap::new()).ok()?);
-    let signs = |ends: &[Bounded]| ends.iter().map(|e| e.value.total_cmp(&0.0)).collect::<Vec<_>>();
+    let signs = |ends: &[Bounded]| ends.iter().map(|e| e.value.partial_cmp(&0.0)).collect::<Vec<_>>();
     let count = matrix.entries().len();
-    let own = signs(&evaluator.evaluate(&surroundings.centre(&symbols))[count..]);
+    let own = signs(&evaluator.evaluate(&surroundings.point(&symbols, 0, CENTRE))[count..]);
     let mut found = None;
     for point in 0..REACHES.len() * SIGNS.len() {
-        let values = evaluator.evaluate(&surroundings.point(&symbols, point, !ends.is_empty()));
+        let values =
+            evaluator.evaluate(&surroundings.point(&symbols, point, if ends.is_empty() { REACHES } else { NEAR }));
         let (entries, ends) = values.split_at(count);
-        let on_branch = own.iter().zip(signs(ends)).all(|(own, sign)| own.is_eq() || *own == sign);
+        let on_branch = own.iter().zip(signs(ends)).all(|(own, sign)| own.is_none_or(Ordering::is_eq) || *own == sign);
         if on_branch && entries.iter().all(|e| e.is_finite()) {
             found = found.max(Some(certain_rank(entries.chunks(matrix.columns()).map(<[Bounded]>::to_vec).collect())));
         }
