@@ -74,6 +74,13 @@ pub(crate) fn by_beginning(
 
 /// What a plain explanation brings as near as the best fits is not excluded, and does not leave the best as the only one.
 pub(crate) fn explain(scene: &Scene, rows: &mut [Row], films: &[Film], question: &Question) {
+    // where nothing fits: what would make it noise
+    for row in rows.iter_mut().filter(|row| row.verdict == Verdict::None) {
+        let (Ok(fit), Some(problem)) = (&row.fit, &row.problem) else { continue };
+        let noise = Fit { chi_squared: fit.freedom as f64, ..fit.clone() };
+        let found = explanations(scene, &row.choice, films, question, (problem, fit), &noise);
+        row.notes.extend(found.iter().map(|found| format!("it may fit {}", found.words())));
+    }
     let supported = |row: &Row| row.verdict == Verdict::Supported;
     let Some(best) = rows.iter().find(|row| supported(row)).cloned() else { return };
     let Ok(least) = &best.fit else { return };
