@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use anyhow::{Context, Result, bail};
 use deltaq::Settings;
-use fit::{Aim, Best, Design, Deviations, EXCLUDED, Film, Point, Question, design_value};
+use fit::{Aim, Best, Design, Deviations, EXCLUDED, Film, Point, Question, design_value, significance};
 use program::{Answer, TextOrJson, parallel, pretty};
 use scene::Scene;
 
@@ -110,7 +110,11 @@ impl Found<'_> {
             Aim::Estimate(name) if point.value.is_infinite() => format!("{name} is not shown"),
             Aim::Estimate(name) => format!("standard error of {name} {:.4e}", point.value),
             Aim::Tell(..) => {
-                let tells = if point.value >= EXCLUDED { "excluded at" } else { "cannot tell," };
+                let sigmas = point.value.sqrt();
+                let tells = match point.value >= EXCLUDED {
+                    true => format!("excluded at {}", significance(sigmas)),
+                    false => format!("cannot tell, {sigmas:.1} σ"),
+                };
                 let [truth, rival] = [0, 1].map(|i| &self.design.labels()[i]);
                 let minima = if point.minima == 1 {
                     "one minimum".into()
@@ -118,8 +122,7 @@ impl Found<'_> {
                     format!("the least of {} minima", point.minima)
                 };
                 format!(
-                    "where {truth} is right, {rival}: {tells} {:.1} σ (chi squared {:.2} above that of noise, {minima})",
-                    point.value.sqrt(),
+                    "where {truth} is right, {rival}: {tells} (chi squared {:.2} above that of noise, {minima})",
                     point.value,
                 )
             }

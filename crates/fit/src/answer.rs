@@ -283,7 +283,7 @@ fn fit_choices(
         // where a beginning excludes it, the least χ² of the whole films is no matter
         if let Some((own, fit)) = near.filter(|_| !begins_well(&problem)) {
             let spread = |name: &str| is_constant(name) || is_of_law(name);
-            problem.excluded_by = by_beginning((&own, &fit), &problem, 1, &spread, starts);
+            problem.excluded_by = by_beginning((&own, &fit), &problem, (1, problem.samples() / 2), &spread, starts);
         }
         let is_open = problem.excluded_by.is_none();
         if !is_open {

@@ -33,7 +33,7 @@ pub(crate) fn settle(rows: &mut [Row], question: &Question) {
             continue;
         }
         let (sigmas, more) = (*sigmas, above(fit, &best).1);
-        let settled = || by_beginning((&of_best, &best), problem, more, &spread, question.starts);
+        let settled = || by_beginning((&of_best, &best), problem, (more, problem.samples()), &spread, question.starts);
         match problem.excluded_by.or_else(settled) {
             Some((samples, sigmas)) => {
                 row.notes.push(format!(
@@ -47,11 +47,11 @@ pub(crate) fn settle(rows: &mut [Row], question: &Question) {
 }
 
 /// The shortest beginning of the films that excludes `problem`, by a least χ² that several starts reach: its
-/// samples, and the significance.
+/// samples, fewer than `most`, and the significance, the best having so many unknowns `more`.
 pub(crate) fn by_beginning(
     (best, fit): (&Problem, &Fit),
     problem: &Problem,
-    more: usize,
+    (more, most): (usize, usize),
     spread: &dyn Fn(&str) -> bool,
     starts: usize,
 ) -> Option<(usize, f64)> {
@@ -60,7 +60,7 @@ pub(crate) fn by_beginning(
     let columns = problem.films().map(|film| film.columns.len()).min().unwrap_or(1);
     let films = problem.films().count();
     let mut samples = (FIRST * problem.unknowns().len()).div_ceil(columns * films) + 1;
-    while samples < problem.samples() {
+    while samples < most {
         let of_best = least(&best.beginning(samples).ok()?, &theta, &scale[..theta.len()], Stage::Profile).ok()?;
         let found = search(&problem.beginning(samples).ok()?, spread, starts, false).ok()?.best;
         let above = found.chi_squared - of_best.chi_squared;
@@ -74,6 +74,13 @@ pub(crate) fn by_beginning(
 
 /// What a plain explanation brings as near as the best fits is not excluded, and does not leave the best as the only one.
 pub(crate) fn explain(scene: &Scene, rows: &mut [Row], films: &[Film], question: &Question) {
+    // where nothing fits: what would make it noise
+    for row in rows.iter_mut().filter(|row| row.verdict == Verdict::None) {
+        let (Ok(fit), Some(problem)) = (&row.fit, &row.problem) else { continue };
+        let noise = Fit { chi_squared: fit.freedom as f64, ..fit.clone() };
+        let found = explanations(scene, &row.choice, films, question, (problem, fit), &noise);
+        row.notes.extend(found.iter().map(|found| format!("it may fit {}", found.words())));
+    }
     let supported = |row: &Row| row.verdict == Verdict::Supported;
     let Some(best) = rows.iter().find(|row| supported(row)).cloned() else { return };
     let Ok(least) = &best.fit else { return };

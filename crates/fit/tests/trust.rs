@@ -81,6 +81,10 @@ fn a_tilt_is_named_before_anything_is_supported() {
         let rows = fitted(&scene, &[film], &["x", "y", "x'", "y'"], &[]);
         assert_ne!(rows[1].verdict, Verdict::Supported, "{seed}");
         assert!(!matches!(rows[0].verdict, Verdict::Excluded { .. }), "{:?}", rows[0].verdict);
+        if rows[0].verdict == Verdict::None {
+            explained += 1;
+            assert!(rows[0].notes.iter().any(|note| note.contains("as of a tilt")), "{:?}", rows[0].notes);
+        }
         if let Verdict::Explained { with: Some(with), from } = &rows[0].verdict {
             explained += 1;
             assert!(from == &["vakonomic"] && !with.is_empty(), "{with}");

@@ -31,9 +31,13 @@ pub(crate) struct Connections {
     runs: usize,
     /// How many of them with derivatives.
     with_derivatives: usize,
+    /// Whether every mu0 gives the same motions, so that none is unknown.
+    every_constant: bool,
+    /// Why there is no motion at all; None elsewhere.
+    none: Option<String>,
 }
 
-kept!(Connections: formulation unknowns motions starts failures runs with_derivatives);
+kept!(Connections: formulation unknowns motions starts failures runs with_derivatives every_constant none);
 
 #[pymethods]
 impl Connections {
@@ -76,15 +80,17 @@ pub(crate) struct Connection {
     conjugate_errors: Option<Py<PyArrayDyn<f64>>>,
     /// By how much the rank falls there, length k.
     multiplicities: Option<Vec<usize>>,
-    /// Whether the action has a local minimum, by conjugate times; None where it is not stationary.
+    /// Whether the action has a local minimum, by conjugate times; None where that is not known.
     is_minimum: Option<bool>,
+    /// What the second variation of the action says, in words.
+    second_variation: String,
     /// How many starts led here.
     starts: usize,
 }
 
 kept!(
     Connection: system unknowns errors constants velocities action action_error residuals condition is_isolated
-    conjugate_times conjugate_errors multiplicities is_minimum starts
+    conjugate_times conjugate_errors multiplicities is_minimum second_variation starts
 );
 
 #[pymethods]
@@ -150,7 +156,7 @@ fn found(
         Ok::<_, SolveError>((found, scene, aim))
     };
     let (found, scene, aim) = background::run(py, &interrupt, work)?.map_err(errors::solve)?;
-    let Found { unknowns, found, failures, runs: [runs, with_derivatives] } = found;
+    let Found { unknowns, found, failures, runs: [runs, with_derivatives], every_constant, none } = found;
     let motions = found.into_iter().map(|motion| Py::new(py, one(py, &scene, &aim, &unknowns, motion)?));
     Ok(Connections {
         formulation,
@@ -160,6 +166,8 @@ fn found(
         failures: failures.into_py_dict(py)?.unbind(),
         runs,
         with_derivatives,
+        every_constant,
+        none,
     })
 }
 
@@ -203,6 +211,7 @@ fn one(
         residuals: aim.to.iter().map(|(name, _)| name).zip(motion.residuals).into_py_dict(py)?.unbind(),
         condition: motion.condition,
         is_minimum: motion.is_minimum,
+        second_variation: motion.second_variation.words().to_string(),
         starts: motion.starts,
     })
 }

@@ -44,11 +44,11 @@ class Profile:
 class FormulationFit:
     """A formulation fitted to films; `FilmFit` has one per formulation.
 
-    `label`, `formulation`: its name. `verdict`: "supported", "excluded", "cannot-tell", "none" or "not-fitted", in `words`.
-    `names`: of the unknowns, in the order of theta. `estimates`: by name value, error, low, high (of 95 %), profiled and
-    at_bound, None for infinite. `shown`: whether such films can show the unknowns at all, with answer "proved", "hidden" or
-    "open", hidden, order and words. `chi_squared`, `freedom`, `bic`, `tests`, `hidden`, `minima`, `starts`, `reached` as in
-    the schema of `deltaq fit`; without a fit `estimates` is empty.
+    `label`, `formulation`: its name. `verdict`: "supported", "excluded", "not-settled", "cannot-tell", "none" or
+    "not-fitted", in `words`. `names`: of the unknowns, in the order of theta. `estimates`: by name value, error, low, high
+    (of 95 %), profiled and at_bound, None for infinite. `shown`: whether such films can show the unknowns at all, with answer
+    "proved", "hidden" or "open", hidden, order and words. `chi_squared`, `freedom`, `bic`, `tests`, `hidden`, `minima`,
+    `starts`, `reached` as in the schema of `deltaq fit`; without a fit `estimates` is empty.
     """
 
     def __init__(self, fitted: _Fitted, place: int, answer: Mapping[str, Any]):

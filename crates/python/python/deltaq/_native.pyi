@@ -709,6 +709,10 @@ class Connections:
     """Motions integrated in the search, those with derivatives among them."""
     with_derivatives: Final[int]
     """How many of them with derivatives."""
+    every_constant: Final[bool]
+    """Whether every mu0 gives the same motions, so that none is unknown."""
+    none: Final[str | None]
+    """Why there is no motion at all; None elsewhere."""
     def __len__(self) -> int: ...
 
 @final
@@ -743,7 +747,9 @@ class Connection:
     multiplicities: Final[list[int] | None]
     """By how much the rank falls there, length k."""
     is_minimum: Final[bool | None]
-    """Whether the action has a local minimum, by conjugate times; None where it is not stationary."""
+    """Whether the action has a local minimum, by conjugate times; None where that is not known."""
+    second_variation: Final[str]
+    """What the second variation of the action says, in words."""
     starts: Final[int]
     """How many starts led here."""
 
