@@ -1,0 +1,3 @@
+//! Equations that are right and wrong, and what is said of them.
+
+mod disc;
