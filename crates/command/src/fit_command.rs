@@ -53,7 +53,7 @@ pub fn run(arguments: &FitArguments) -> Result<Answer> {
         TextOrJson::Text => text(&films, &rows),
         TextOrJson::Json => pretty("fit", &fit_value(&scene, &films, &rows)),
     };
-    Ok(Answer { text, complaint })
+    Ok(Answer { text, complaint, ..Answer::default() })
 }
 
 /// `psi'@2=6`: the film from 0, name and value.

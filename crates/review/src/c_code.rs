@@ -251,6 +251,7 @@ impl Converter<'_> {
     /// An expression in the notation of scenes.
     fn expression(&self, text: &str, line: usize) -> Result<String, ReviewError> {
         let mut out = String::new();
+        let text = text.replace("(double)", "");
         let mut rest = text.trim();
         while let Some(c) = rest.chars().next() {
             if c.is_alphabetic() || c == '_' {
@@ -273,7 +274,6 @@ impl Converter<'_> {
                     Some(known) => out += known,
                     None if name.contains('[') => return Err(self.fault(line, format!("`{name}` has no value here"))),
                     None if name == "M_PI" => out += "pi",
-                    None if name == "double" => out += "1",
                     None => out += &name,
                 }
                 rest = after;

@@ -97,7 +97,7 @@ impl<'r> Frame<'r> {
         let unknowns = [&reading.multipliers[..], &rates, &a].concat();
         let contains = |e: Expr, of: &[Symbol]| of.iter().any(|&s| g.depends_on(e, s));
         let (mut moves, mut kinematic, mut leaf) = (Vec::new(), Vec::new(), Vec::new());
-        for stated in &reading.equations {
+        for stated in reading.equations.iter().filter(|stated| !g.is_zero(stated.expression)) {
             let e = stated.expression;
             if contains(e, &unknowns) {
                 moves.push(e);

@@ -3,13 +3,13 @@
 use decision::exact::{FIELDS, Modular, in_field};
 use equations::Formulation;
 use scene::Scene;
-use symbolic::{Bounded, Symbol};
+use symbolic::{Bounded, Scalar, Symbol};
 
 use crate::atoms::{Atom, atoms, pieces, wrong_constraints};
 use crate::base::{Base, formulated, substituted, with_constraint};
 use crate::case::{Case, split};
-use crate::frame::{Frame, Trouble};
-use crate::number::Number;
+use crate::frame::{Frame, Point, Trouble};
+use crate::number::{Number, constants};
 use crate::reading::{Line, Reading, read};
 use crate::ReviewError;
 
@@ -70,18 +70,36 @@ pub struct Review {
     pub notes: Vec<String>,
 }
 
-/// Whether the equations of `lines` are those of `formulation` of the scene; `wheres` are formulas `NAME = …`
-/// for its coordinates and parameters in their names.
+/// What they are held against, and how they are to be read.
+#[derive(Clone, Debug)]
+pub struct Asked {
+    /// The formulation whose equations they are to be.
+    pub formulation: &'static Formulation,
+    /// Formulas `NAME = …` for coordinates and parameters of the scene, in names of theirs.
+    pub wheres: Vec<String>,
+    /// Relative errors of the numbers of a table.
+    pub tolerance: f64,
+}
+
+impl Default for Asked {
+    fn default() -> Self {
+        Asked { formulation: deltaq::CHETAEV, wheres: Vec::new(), tolerance: 1e-8 }
+    }
+}
+
+/// Whether the equations of `lines` are those that are asked for; with `rows`, states `(t, q, v)` and
+/// accelerations by them, whether these are.
 ///
 /// # Errors
 /// [`ReviewError`], for what cannot be read.
 pub(crate) fn review(
     scene: &Scene,
     lines: &[Line],
-    wheres: &[String],
-    formulation: &'static Formulation,
+    rows: Option<&[Row]>,
+    to_be: &Asked,
 ) -> Result<Review, ReviewError> {
-    let reading = read(scene, lines, wheres)?;
+    let reading = read(scene, lines, &to_be.wheres)?;
+    let formulation = to_be.formulation;
     let name = |s: &Symbol| reading.system.graph.name(*s);
     let mut review = Review {
         verdict: Verdict::Undecided,
@@ -95,8 +113,7 @@ pub(crate) fn review(
         unknowns: reading.multipliers.iter().chain(reading.states.iter().map(|s| &s[0])).map(name).collect(),
         notes: Vec::new(),
     };
-    let start = |s: Symbol| start_of(scene, s);
-    let frame = match Frame::new(&reading, &start) {
+    let frame = match Frame::new(&reading, &|s| start_of(scene, s)) {
         Ok(frame) => frame,
         Err(text) => {
             review.notes.push(format!("`{text}` is not linear in accelerations and multipliers"));
@@ -111,9 +128,19 @@ pub(crate) fn review(
         review.notes.push(format!("the scene has no {} equations that these can be compared with", formulation.title));
         return Ok(review);
     }
-    let mut trouble = in_field(&FIELDS[0], || decide::<Modular>(scene, &frame, &asked, formulation, &mut review)).err();
+    let held = Held { scene, frame: &frame, asked: &asked, formulation };
+    if let Some(rows) = rows {
+        let points = held.points(rows, to_be.tolerance);
+        review.differences = held.differences(&points, &mut review.state);
+        held.decide(&Case { frame: &frame, points }, None, &mut review);
+        if review.verdict == Verdict::Right {
+            (review.differences, review.state) = Default::default();
+        }
+        return Ok(review);
+    }
+    let mut trouble = in_field(&FIELDS[0], || held.decide_at_random::<Modular>(&mut review)).err();
     if let Some(Trouble::NoPoint(_)) = trouble {
-        trouble = decide::<Bounded>(scene, &frame, &asked, formulation, &mut review).err();
+        trouble = held.decide_at_random::<Bounded>(&mut review).err();
     }
     match trouble {
         None => {}
@@ -126,10 +153,38 @@ pub(crate) fn review(
         }
         Some(Trouble::NoPoint(why)) => review.notes.push(why),
     }
-    if review.verdict == Verdict::Wrong {
-        differences(&mut review, &frame, &asked);
+    for seed in 0..if review.verdict == Verdict::Wrong { 10 } else { 0 } {
+        let drawn = frame.draw::<Bounded>(seed, u32::from(seed > 0), true).and_then(|inputs| frame.at(inputs));
+        let points: Vec<Point<Bounded>> = drawn.into_iter().collect();
+        review.differences = held.differences(&points, &mut review.state);
+        if !review.differences.is_empty() {
+            review.at_start = seed == 0 && frame.reading.map.is_empty() && frame.on_leaf.is_empty();
+            break;
+        }
     }
     Ok(review)
+}
+
+/// A state and the accelerations that their program has there.
+pub(crate) struct Row {
+    pub(crate) t: f64,
+    pub(crate) q: Vec<f64>,
+    pub(crate) v: Vec<f64>,
+    pub(crate) a: Vec<f64>,
+}
+
+/// States `(t, q, v)` of the scene on its constraints, drawn at random, at which a program can be asked for its
+/// accelerations.
+pub fn states(scene: &Scene) -> Vec<mechanics::State> {
+    let Ok(reading) = read(scene, &[], &[]) else { return Vec::new() };
+    let Ok(frame) = Frame::new(&reading, &|s| start_of(scene, s)) else { return Vec::new() };
+    let (first, n) = (reading.parameters.len(), scene.system.dimension());
+    let numbers = |seed: u64| {
+        let drawn = frame.draw::<Bounded>(seed, u32::from(seed > 0), true).ok()?;
+        let x: Vec<f64> = drawn[first..].iter().map(|x| x.coefficient(0).value).collect();
+        Some(mechanics::State { t: x[0], q: x[1..=n].to_vec(), v: x[n + 1..].to_vec() })
+    };
+    (0..40).filter_map(numbers).take(8).collect()
 }
 
 /// The number of the scene's start that a symbol has, or one in its place.
@@ -140,34 +195,84 @@ fn start_of(scene: &Scene, s: Symbol) -> f64 {
     of(system.positions(), &start.q).or_else(|| of(system.velocities(), &start.v)).or(time).unwrap_or(0.7)
 }
 
-fn decide<C: Number>(
-    scene: &Scene,
-    frame: &Frame,
-    asked: &[Base],
+/// What they are held against.
+struct Held<'a> {
+    scene: &'a Scene,
+    frame: &'a Frame<'a>,
+    asked: &'a [Base],
     formulation: &'static Formulation,
-    review: &mut Review,
-) -> Result<(), Trouble> {
-    let case = Case::<C>::new(frame, false)?;
-    let is_right = |case: &Case<C>| case.broken().is_empty() && asked.iter().any(|base| case.is(base));
-    review.numbers = Some(if C::PROVES { Numbers::Field } else { Numbers::Floats });
-    review.broken = case.broken();
-    if is_right(&case) {
-        review.verdict = Verdict::Right;
-        return Ok(());
-    }
-    if Case::new(frame, true).is_ok_and(|case| is_right(&case)) {
-        let absent = frame.absent();
-        if !absent.is_empty() {
-            review.verdict = Verdict::Right;
-            review.notes.push(format!("for the numbers of the scene: {} stand in none of these", absent.join(", ")));
-            return Ok(());
-        }
-        review.notes.push("for the numbers of the scene, and not for others, they agree".into());
-    }
-    review.verdict = Verdict::Wrong;
-    review.explanations = explanations(scene, frame.reading, &case, asked, formulation);
-    Ok(())
 }
+
+impl Held<'_> {
+    fn decide_at_random<C: Number>(&self, review: &mut Review) -> Result<(), Trouble> {
+        let case = Case::<C>::new(self.frame, false)?;
+        let own = Case::new(self.frame, true).ok();
+        review.numbers = Some(if C::PROVES { Numbers::Field } else { Numbers::Floats });
+        self.decide(&case, own.as_ref(), review);
+        Ok(())
+    }
+
+    /// Decides by `case`; `own` has the scene's numbers for its parameters.
+    fn decide<C: Number>(&self, case: &Case<C>, own: Option<&Case<C>>, review: &mut Review) {
+        let is_right =
+            |case: &Case<C>| case.broken().is_empty() && self.asked.iter().any(|base| case.is(base));
+        review.numbers.get_or_insert(Numbers::Floats);
+        review.broken = case.broken();
+        review.verdict = if is_right(case) { Verdict::Right } else { Verdict::Wrong };
+        if review.verdict == Verdict::Wrong && own.is_some_and(is_right) {
+            let absent = self.frame.absent();
+            if absent.is_empty() {
+                review.notes.push("for the numbers of the scene, and not for others, they agree".into());
+            } else {
+                review.verdict = Verdict::Right;
+                review.notes.push(format!("for the numbers of the scene: {} stand in none of these", absent.join(", ")));
+            }
+        }
+        if review.verdict == Verdict::Wrong {
+            review.explanations = explanations(self.scene, self.frame.reading, case, self.asked, self.formulation);
+        }
+    }
+
+    fn points(&self, rows: &[Row], tolerance: f64) -> Vec<Point<Bounded>> {
+        let largest = |of: &dyn Fn(&Row) -> f64| rows.iter().map(of).fold(0.0, |most: f64, x| most.max(x.abs()));
+        let number = |value: f64, size: f64| Bounded { value, magnitude: size.max(value.abs()) * tolerance / ROUND_OFF };
+        let of = |row: &Row| {
+            let inputs = self.frame.reading.parameters.iter().map(|p| Bounded::from_f64(p.1));
+            let q = (0..row.q.len()).map(|i| number(row.q[i], largest(&|row| row.q[i])));
+            let v = (0..row.q.len()).map(|i| number(row.v[i], largest(&|row| row.v[i])));
+            let all: Vec<Bounded> = inputs.chain([Bounded::from_f64(row.t)]).chain(q).chain(v).collect();
+            let a = (0..row.q.len()).map(|i| number(row.a[i], largest(&|row| row.a[i])));
+            Point { inputs: constants(&all), accelerations: a.collect(), broken: Vec::new() }
+        };
+        rows.iter().map(of).collect()
+    }
+
+    /// Accelerations of both sides at the first point where they differ, and its state.
+    fn differences(&self, points: &[Point<Bounded>], state: &mut Vec<(String, f64)>) -> Vec<Difference> {
+        let (frame, g) = (self.frame, &self.frame.reading.system.graph);
+        for point in points {
+            let right = |base: &Base| {
+                let signs = base.signs(frame).into_iter().next()?;
+                base.accelerations(&mut base.program(frame).ok()?, point, &signs)
+            };
+            let Some(right) = self.asked.iter().find_map(right) else { continue };
+            let pairs = frame.reading.coordinates.iter().zip(point.accelerations.iter().zip(&right));
+            let differs: Vec<Difference> = pairs
+                .filter(|(_, (a, b))| !(**a - **b).vanishes())
+                .map(|(c, (a, b))| Difference { name: g.name(c[2]), theirs: a.value, right: b.value })
+                .collect();
+            if !differs.is_empty() {
+                let moving = frame.inputs.iter().zip(&point.inputs).skip(frame.reading.parameters.len());
+                *state = moving.map(|(&s, x)| (g.name(s), x.coefficient(0).value)).collect();
+                return differs;
+            }
+        }
+        Vec::new()
+    }
+}
+
+/// What of its magnitude may be round-off in a [`Bounded`].
+const ROUND_OFF: f64 = 1e-11;
 
 /// Whose equations they are, by the fewest mistakes.
 fn explanations<C: Number>(
@@ -226,31 +331,4 @@ fn explanations<C: Number>(
         found = with(&mut wrong.iter(), false, true);
     }
     found
-}
-
-/// Accelerations of both sides at the start, or at another state where they differ there.
-fn differences(review: &mut Review, frame: &Frame, asked: &[Base]) {
-    for seed in 0..10 {
-        let drawn = frame.draw::<Bounded>(seed, u32::from(seed > 0), true).and_then(|inputs| frame.at(inputs));
-        let Ok(point) = drawn else { continue };
-        let right = |base: &Base| {
-            let signs = base.signs(frame).into_iter().next()?;
-            base.accelerations(&mut base.program(frame).ok()?, &point, &signs)
-        };
-        let Some(right) = asked.iter().find_map(right) else { continue };
-        let g = &frame.reading.system.graph;
-        let pairs = frame.reading.coordinates.iter().zip(point.accelerations.iter().zip(&right));
-        let differs = pairs.filter(|(_, (a, b))| !(**a - **b).vanishes());
-        review.differences = differs
-            .map(|(c, (a, b))| Difference { name: g.name(c[2]), theirs: a.value, right: b.value })
-            .collect();
-        if !review.differences.is_empty() {
-            let moving = frame.reading.parameters.len()..;
-            let values = frame.inputs.iter().zip(&point.inputs).collect::<Vec<_>>();
-            let state = values[moving].iter().map(|(s, x)| (g.name(**s), x.coefficient(0).value));
-            review.state = state.collect();
-            review.at_start = seed == 0 && frame.reading.map.is_empty() && frame.on_leaf.is_empty();
-            return;
-        }
-    }
 }
