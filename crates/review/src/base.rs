@@ -74,7 +74,8 @@ impl Base {
         }
         let own = &reading.system.graph;
         let states = states.iter().map(|&s| own.symbol(&g.name(s))).collect();
-        let outputs = reading.of_scene(own, &own.adopt(g, &outputs));
+        let outputs = if std::ptr::eq(own, g) { outputs } else { own.adopt(g, &outputs) };
+        let outputs = reading.of_scene(own, &outputs);
         Some(Base { words, outputs, rows: rows.len(), others: others.len(), states, plain })
     }
 
@@ -199,23 +200,34 @@ pub(crate) fn substituted(scene: &Scene, reading: &Reading, terms: &[Expr]) -> V
     bases
 }
 
-/// The scene with one constraint written wrong: in its rate and in the reaction, or in one of them.
-pub(crate) fn with_constraint(reading: &Reading, i: usize, wrong: Expr, what: &str) -> Vec<Base> {
-    let mut constraints = reading.system.constraints.clone();
-    constraints[i] = wrong;
-    let right = &reading.system.constraints;
-    let of = |formulation: &Formulation, kept: &[Expr], reacts: &[Expr], place: &str| {
-        let system = System {
-            constraints: kept.to_vec(),
-            virtual_conditions: reacts.to_vec(),
-            ..reading.system.clone()
-        };
-        let equations = (formulation.derive)(&system, &Derivation::default()).ok()?;
-        Base::new(vec![format!("{what} of constraint {} {place}", i + 1)], reading, &equations)
+/// The scene with one constraint written wrong: in its rate and in the reaction, or in one of them, or with
+/// the rate of its coefficients left out besides; and how often what was written wrong.
+pub(crate) fn with_constraints(reading: &Reading, wrong: Vec<(usize, Expr, String)>) -> Vec<Base> {
+    let system = &reading.system;
+    let (g, v, flow) = (&system.graph, system.velocities(), system.flow());
+    let (momenta, slopes) = (g.gradient(system.lagrangian, &v), g.gradient(system.lagrangian, &system.positions()));
+    let balances = system.balances(&momenta, &[&slopes, &system.forces], &flow);
+    let lambda = system.multipliers("lambda", "");
+    let still: Vec<(Symbol, Expr)> = flow.iter().copied().filter(|(s, _)| !v.contains(s)).collect();
+    let base = |reacts: &[Expr], kept: &[Expr], words: Vec<String>| {
+        let reaction = g.transpose_vec(&g.jacobian(reacts, &v), &g.variables(&lambda));
+        let balances = balances.iter().zip(&reaction).map(|(&row, &r)| g.sub(row, r));
+        let rows: Vec<Expr> = balances.chain(kept.iter().copied()).collect();
+        Base::of(words, reading, g, &rows, (&lambda, &[]), true)
     };
-    let both = of(deltaq::CHETAEV, &constraints, &constraints, "").into_iter();
-    let reaction = of(deltaq::PRESCRIBED, right, &constraints, "in its reaction only");
-    let rate = of(deltaq::PRESCRIBED, &constraints, right, "in its rate only");
-    both.chain(reaction).chain(rate).collect()
+    let right = g.total_derivatives(&system.constraints, &flow);
+    let mut bases = Vec::new();
+    for (i, f, what) in wrong {
+        let mut constraints = system.constraints.clone();
+        constraints[i] = f;
+        let rates = g.total_derivatives(&constraints, &flow);
+        let driven = g.total_derivatives(&constraints, &still);
+        let frozen: Vec<Expr> = rates.iter().zip(driven).map(|(&rate, driven)| g.sub(rate, driven)).collect();
+        let said = |more: &str| format!("{what} in constraint {}{more}", i + 1);
+        bases.extend(base(&constraints, &rates, vec![said("")]));
+        bases.extend(base(&constraints, &right, vec![said(", in its reaction only")]));
+        bases.extend(base(&system.constraints, &rates, vec![said(", in its rate only")]));
+        bases.extend(base(&constraints, &frozen, vec![said(""), Law::MissingRate.words().to_owned()]));
+    }
+    bases
 }
-

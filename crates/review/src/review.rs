@@ -6,7 +6,7 @@ use scene::Scene;
 use symbolic::{Bounded, Scalar, Symbol};
 
 use crate::atoms::{Atom, atoms, pieces, wrong_constraints};
-use crate::base::{Base, formulated, substituted, with_constraint};
+use crate::base::{Base, formulated, substituted, with_constraints};
 use crate::case::{Case, split};
 use crate::frame::{Frame, Point, Trouble};
 use crate::number::{Number, constants};
@@ -290,10 +290,7 @@ fn explanations<C: Number>(
     let exact = |bases: &mut dyn Iterator<Item = &Base>| -> Vec<Vec<String>> {
         bases.filter(|base| case.is(base)).map(|base| base.words.clone()).collect()
     };
-    let found = exact(&mut others.iter().chain(substituted.iter().map(|(base, _)| base)));
-    if !found.is_empty() {
-        return found;
-    }
+    let mut found = exact(&mut others.iter().chain(substituted.iter().map(|(base, _)| base)));
     let atoms: Vec<Atom> = atoms(reading);
     let (called, columns) = split(&atoms);
     let columns = case.columns(&columns);
@@ -306,7 +303,7 @@ fn explanations<C: Number>(
         };
         bases.filter(|base| base.plain).flat_map(explained).collect()
     };
-    let mut found = with(&mut asked.iter(), false, false);
+    found.extend(with(&mut asked.iter(), false, false));
     if found.is_empty() {
         let names: Vec<_> = pieces.iter().map(|(called, _)| called).collect();
         for (base, columns) in &substituted {
@@ -320,8 +317,7 @@ fn explanations<C: Number>(
     }
     let mut wrong: Vec<Base> = Vec::new();
     if found.is_empty() && formulation == deltaq::CHETAEV {
-        let bases = wrong_constraints(&reading.system).into_iter();
-        wrong = bases.flat_map(|(i, f, what)| with_constraint(reading, i, f, &what)).collect();
+        wrong = with_constraints(reading, wrong_constraints(&reading.system));
         found = exact(&mut wrong.iter());
     }
     if found.is_empty() {

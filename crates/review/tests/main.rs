@@ -1,3 +1,4 @@
 //! Equations that are right and wrong, and what is said of them.
 
-mod disc;
+mod drawn;
+mod support;
