@@ -76,6 +76,10 @@ fn words(scene: &str, file: &str, found: &Review, title: &str) -> String {
             line(format!("  {:<10} {:>14.6e} in the place of {:>14.6e}", d.name, d.theirs, d.right));
         }
     }
+    for c in &found.coefficients {
+        let (name, monomial) = (&c.name, &c.monomial);
+        line(format!("  in {name}, before {monomial}: {:.6e} in the place of {:.6e}", c.theirs, c.right));
+    }
     if !found.unknowns.is_empty() {
         line(format!("Taken for multipliers and other unknowns: {}.", found.unknowns.join(", ")));
     }
@@ -95,10 +99,14 @@ fn value(scene: &str, file: &str, found: &Review) -> Value {
     let numbers = found.numbers.map(|numbers| if numbers == Numbers::Field { "field" } else { "floats" });
     let differences = found.differences.iter();
     let differences = differences.map(|d| json!({ "name": d.name, "theirs": d.theirs, "right": d.right }));
+    let coefficient = |c: &review::Coefficient| {
+        json!({ "name": c.name, "monomial": c.monomial, "theirs": c.theirs, "right": c.right })
+    };
+    let coefficients = found.coefficients.iter().map(coefficient);
     let state: serde_json::Map<String, Value> = found.state.iter().map(|(name, x)| (name.clone(), json!(x))).collect();
     json!({
         "scene": scene, "file": file, "formulation": found.asked, "verdict": verdict, "numbers": numbers,
         "explanations": found.explanations, "broken": found.broken, "state": state, "at_start": found.at_start,
-        "differences": differences.collect::<Vec<_>>(), "unknowns": found.unknowns, "notes": found.notes,
+        "differences": differences.collect::<Vec<_>>(), "coefficients": coefficients.collect::<Vec<_>>(), "unknowns": found.unknowns, "notes": found.notes,
     })
 }

@@ -37,17 +37,16 @@ impl Called {
     /// The words for the factor `1 + κ` in the place of 1; nothing where it is no such mistake.
     pub(crate) fn words(&self, kappa: f64) -> Option<String> {
         match self {
-            Called::Term(term, place) | Called::Part(term, place) => Some(if kappa == -1.0 {
-                format!("`{term}` is missing {place}")
-            } else if kappa == -2.0 {
-                format!("`{term}` has the wrong sign {place}")
-            } else if kappa == 1.0 {
-                format!("`{term}` is counted twice {place}")
-            } else if kappa == -0.5 {
-                format!("`{term}` is counted half {place}")
-            } else {
-                format!("`{term}` is counted {} times {place}", 1.0 + kappa)
-            }),
+            Called::Term(term, place) | Called::Part(term, place) => {
+                let what = match kappa {
+                    -1.0 => "is missing".to_owned(),
+                    -2.0 => "has the wrong sign".to_owned(),
+                    1.0 => "is counted twice".to_owned(),
+                    -0.5 => "is counted half".to_owned(),
+                    _ => format!("is counted {} times", 1.0 + kappa),
+                };
+                Some(if place.is_empty() { format!("`{term}` {what}") } else { format!("`{term}` {what} {place}") })
+            }
             Called::LeftOut(words) => (kappa == -1.0).then(|| words.clone()),
             Called::Turned(words) => (kappa == -2.0).then(|| words.clone()),
             Called::Whole(words) => (kappa == 1.0).then(|| words.clone()),
@@ -92,8 +91,7 @@ pub(crate) fn pieces(system: &System) -> Vec<(Called, Expr)> {
     }
     let several = alike.len() > 1;
     for (factors, terms) in alike.into_iter().filter(|(_, terms)| terms.len() > 1 && several) {
-        let name = format!("part of T with {}", g.plain(g.product(&factors)));
-        pieces.push((Called::Part(name, "in L".into()), g.sum(&terms)));
+        pieces.push((Called::Part(g.plain(g.product(&factors)), "in L, wherever it stands in T".into()), g.sum(&terms)));
     }
     let term = |&t: &Expr| match g.expanded_terms(t) {
         1 => (Called::Term(g.plain(t), "in L".into()), t),
@@ -115,7 +113,8 @@ fn misprints(system: &System, t: Expr, place: &str, all: bool) -> Vec<(Called, E
             continue;
         }
         let mut add = |words: String, other: Expr| {
-            found.push((Called::Whole(format!("{words} `{}` {place}", g.plain(t))), g.sub(other, t)));
+            let words = format!("{words} `{}` {place}", g.plain(t));
+            found.push((Called::Whole(words.trim_end().to_owned()), g.sub(other, t)));
         };
         add(format!("factor {} is dropped in", g.plain(factor)), g.div(t, factor));
         if let [s] = symbols.iter().copied().collect::<Vec<Symbol>>()[..] {
@@ -232,10 +231,10 @@ pub(crate) fn wrong_constraints(system: &System) -> Vec<(usize, Expr, String)> {
         for &t in terms.iter().filter(|_| terms.len() > 1) {
             for (kappa, factor) in [(-1.0, g.integer(-1)), (-2.0, g.integer(-2)), (1.0, g.one()), (-0.5, g.ratio(-1, 2))] {
                 let words = Called::Term(g.plain(t), String::new()).words(kappa).unwrap_or_default();
-                found.push((i, g.add(f, g.mul(factor, t)), words.trim_end().to_owned()));
+                found.push((i, g.add(f, g.mul(factor, t)), words));
             }
             for (called, change) in misprints(system, t, "", true) {
-                found.push((i, g.add(f, change), called.words(1.0).unwrap_or_default().trim_end().to_owned()));
+                found.push((i, g.add(f, change), called.words(1.0).unwrap_or_default()));
             }
         }
     }

@@ -1,8 +1,10 @@
 //! Equations that theirs may be: a formulation of the scene, or of the scene with a mistake in it.
 
+use std::collections::HashMap;
+
 use decision::exact::Exact;
 use equations::{Derivation, Equations, Formulation, Role};
-use mechanics::System;
+use mechanics::{DisplacementParameter, System};
 use scene::Scene;
 use symbolic::{CompileError, Evaluator, Expr, Graph, Symbol};
 
@@ -43,18 +45,33 @@ impl Base {
         let unknowns = equations.unknowns();
         let others: Vec<Symbol> = unknowns.iter().copied().filter(|z| !accelerations.contains(z)).collect();
         let known = [system.positions(), system.velocities()].concat();
-        let mut states = Vec::new();
+        let start = equations.removal.as_ref().map(|removal| &removal.start);
+        let (mut states, mut follow) = (Vec::new(), HashMap::new());
         for state in equations.states.iter().filter(|state| !known.contains(&state.symbol)) {
-            match state.role {
-                Role::Multiplier | Role::MemoryCostate => states.push(state.symbol),
+            match (state.role, start.and_then(|start| start.get(&state.symbol))) {
+                (Role::Multiplier | Role::MemoryCostate, _) => states.push(state.symbol),
+                (Role::DisplacementParameter | Role::ParameterRate, Some(&e)) => _ = follow.insert(state.symbol, e),
                 _ => return None,
             }
         }
         let mut rows: Vec<Expr> = equations.blocks.iter().flat_map(|b| b.residuals.clone()).collect();
         let plain = rows.len() == system.dimension() + system.constraints.len();
-        if equations.removal.is_some() {
-            rows.extend(g.total_derivatives(&system.constraints, &system.flow()));
+        if let Some(removal) = &equations.removal {
+            // q̈ by the parametrization
+            let mut flow: Vec<(Symbol, Expr)> = vec![(system.time, g.one())];
+            let pairs = |u: &DisplacementParameter| [(u.symbol, g.variable(u.rate)), (u.rate, g.variable(u.second_rate))];
+            flow.extend(removal.parameters.iter().flat_map(pairs));
+            flow.extend(removal.memory.iter().map(|w| (w.symbol, w.rate)));
+            let rates = g.total_derivatives(&removal.coordinates, &flow);
+            let second = |e: &Expr| removal.parameters.iter().any(|u| g.depends_on(*e, u.second_rate));
+            if rates.iter().any(second) {
+                return None;
+            }
+            let moved = g.total_derivatives(&rates, &flow);
+            rows.extend(moved.iter().zip(&accelerations).map(|(&e, &a)| g.sub(e, g.variable(a))));
+            rows.retain(|&e| !g.is_zero(e));
         }
+        rows = g.substitute_all(&rows, &follow);
         Base::of(words, reading, g, &rows, (&others, &states), plain)
     }
 

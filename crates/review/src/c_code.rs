@@ -122,6 +122,20 @@ fn functions(text: &str) -> Vec<Function<'_>> {
     found
 }
 
+/// The parts of a list, separated by commas outside of brackets.
+fn top_level(list: &str) -> Vec<&str> {
+    let (mut depth, mut from, mut parts) = (0, 0, Vec::new());
+    for (i, c) in list.char_indices() {
+        depth += i32::from("([".contains(c)) - i32::from(")]".contains(c));
+        if c == ',' && depth == 0 {
+            parts.push(&list[from..i]);
+            from = i + 1;
+        }
+    }
+    parts.push(&list[from..]);
+    parts
+}
+
 impl Converter<'_> {
     fn fault(&self, line: usize, what: String) -> ReviewError {
         ReviewError::Unreadable { place: format!("{}:{line}", self.file), what }
@@ -169,6 +183,13 @@ impl Converter<'_> {
         }
         if ["for", "while", "do ", "switch", "else", "goto"].iter().any(|word| statement.starts_with(word)) {
             return Err(self.fault(line, format!("`{statement}` is not read: assignments in a row are")));
+        }
+        // several declarations in one
+        if let Some(list) = statement.trim_start_matches("const ").strip_prefix("double ").filter(|s| !s.contains('{')) {
+            let parts = top_level(list);
+            if parts.len() > 1 {
+                return parts.into_iter().try_for_each(|part| self.statement(part.trim(), line, depth));
+            }
         }
         let Some((left, right)) = statement.split_once('=') else {
             if statement.contains('(') {

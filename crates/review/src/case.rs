@@ -129,7 +129,7 @@ fn named<C: Number>(called: &Called, kappa: C) -> Option<(usize, String)> {
     let kappa = kappa.fraction().filter(|&kappa| kappa != 0.0)?;
     let usual = [-1.0, -2.0, 1.0, -0.5].contains(&kappa);
     let odd = usize::from(!usual) + usize::from(matches!(called, Called::Part(..)));
-    called.words(kappa).map(|words| (odd, words.trim_end().to_owned()))
+    called.words(kappa).map(|words| (odd, words))
 }
 
 fn one<C: Number>(stack: &Stack<C>, called: &[&Called], found: &mut Vec<(usize, Vec<String>)>) {

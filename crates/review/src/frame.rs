@@ -150,8 +150,23 @@ impl<'r> Frame<'r> {
         }
         let (n, first) = (self.reading.coordinates.len(), self.reading.parameters.len() + 1);
         self.solve(&self.leaf, &mut inputs, first..first + n)?;
-        self.solve(&self.velocities, &mut inputs, first + n..first + 2 * n)?;
+        self.hold(&mut inputs)?;
         Ok(inputs)
+    }
+
+    /// Moves velocities until the constraints hold.
+    pub(crate) fn hold<C: Number>(&self, inputs: &mut [At<C>]) -> Result<(), Trouble> {
+        let (n, first) = (self.reading.coordinates.len(), self.reading.parameters.len() + 1);
+        self.solve(&self.velocities, inputs, first + n..first + 2 * n)
+    }
+
+    /// Places of velocities that constraints linear in them leave free at a position.
+    pub(crate) fn free_velocities<C: Number>(&self, inputs: &[At<C>]) -> Option<Vec<usize>> {
+        let n = self.reading.coordinates.len();
+        let outputs = values(&mut self.evaluator(&self.velocities).ok()?, inputs).ok()?;
+        let mut rows = self.velocities.rows(&outputs);
+        let pivots = eliminate(&mut rows, 0, n);
+        Some((0..n).filter(|j| !pivots.contains(j)).collect())
     }
 
     /// Parameters of `L`, `f` and `Q` that stand in none of their equations.

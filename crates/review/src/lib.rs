@@ -34,6 +34,7 @@ mod error;
 mod frame;
 mod latex;
 mod laws;
+mod monomials;
 mod number;
 mod reading;
 mod review;
@@ -45,6 +46,7 @@ use scene::Scene;
 
 pub use error::ReviewError;
 pub use laws::Law;
+pub use monomials::Coefficient;
 pub use review::{Asked, Difference, Numbers, Review, Verdict, states};
 pub use substitution::SUBSTITUTION;
 

@@ -12,6 +12,7 @@ use crate::frame::{Frame, Point, Trouble};
 use crate::number::{Number, constants};
 use crate::reading::{Line, Reading, read};
 use crate::ReviewError;
+use crate::monomials::{Coefficient, differing};
 
 /// Whether equations are right.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -64,6 +65,8 @@ pub struct Review {
     pub at_start: bool,
     /// Accelerations there that differ.
     pub differences: Vec<Difference>,
+    /// Where nothing explains them: coefficients that differ there.
+    pub coefficients: Vec<Coefficient>,
     /// Names that were taken for multipliers and other unknowns.
     pub unknowns: Vec<String>,
     /// Remarks: what was taken from the scene, on which leaf it holds, why nothing can be told.
@@ -110,6 +113,7 @@ pub(crate) fn review(
         state: Vec::new(),
         at_start: false,
         differences: Vec::new(),
+        coefficients: Vec::new(),
         unknowns: reading.multipliers.iter().chain(reading.states.iter().map(|s| &s[0])).map(name).collect(),
         notes: Vec::new(),
     };
@@ -158,6 +162,10 @@ pub(crate) fn review(
         let points: Vec<Point<Bounded>> = drawn.into_iter().collect();
         review.differences = held.differences(&points, &mut review.state);
         if !review.differences.is_empty() {
+            if review.explanations.is_empty() {
+                let found = asked.iter().zip(&points).map(|(base, point)| differing(&frame, base, &point.inputs));
+                review.coefficients = found.flatten().collect();
+            }
             review.at_start = seed == 0 && frame.reading.map.is_empty() && frame.on_leaf.is_empty();
             break;
         }
@@ -290,7 +298,7 @@ fn explanations<C: Number>(
     let exact = |bases: &mut dyn Iterator<Item = &Base>| -> Vec<Vec<String>> {
         bases.filter(|base| case.is(base)).map(|base| base.words.clone()).collect()
     };
-    let mut found = exact(&mut others.iter().chain(substituted.iter().map(|(base, _)| base)));
+    let mut found = exact(&mut substituted.iter().map(|(base, _)| base).chain(&others));
     let atoms: Vec<Atom> = atoms(reading);
     let (called, columns) = split(&atoms);
     let columns = case.columns(&columns);
