@@ -7,7 +7,6 @@ use anyhow::{Context, Result};
 use program::{Answer, TextOrJson, pretty};
 use review::{Asked, Numbers, Review, Verdict, review};
 use scene::table_text;
-use serde_json::{Value, json};
 
 use crate::cli::ReviewArguments;
 
@@ -35,7 +34,7 @@ pub fn run(arguments: &ReviewArguments) -> Result<Answer> {
     let found = review(&scene, &file, &text, &Asked { formulation, wheres, tolerance: arguments.tolerance })?;
     let text = match arguments.format {
         TextOrJson::Text => words(&scene.name, &file, &found, formulation.title),
-        TextOrJson::Json => pretty("review", &value(&scene.name, &file, &found)),
+        TextOrJson::Json => pretty("review", &found.value(&scene.name, &file)),
     };
     let undecided = || format!("nothing can be told: {}", found.notes.join("; "));
     let complaint = (found.verdict == Verdict::Undecided).then(undecided);
@@ -88,25 +87,4 @@ fn words(scene: &str, file: &str, found: &Review, title: &str) -> String {
     }
     line(format!("Compared {}.", numbers(found)));
     text
-}
-
-fn value(scene: &str, file: &str, found: &Review) -> Value {
-    let verdict = match found.verdict {
-        Verdict::Right => "right",
-        Verdict::Wrong => "wrong",
-        Verdict::Undecided => "undecided",
-    };
-    let numbers = found.numbers.map(|numbers| if numbers == Numbers::Field { "field" } else { "floats" });
-    let differences = found.differences.iter();
-    let differences = differences.map(|d| json!({ "name": d.name, "theirs": d.theirs, "right": d.right }));
-    let coefficient = |c: &review::Coefficient| {
-        json!({ "name": c.name, "monomial": c.monomial, "theirs": c.theirs, "right": c.right })
-    };
-    let coefficients = found.coefficients.iter().map(coefficient);
-    let state: serde_json::Map<String, Value> = found.state.iter().map(|(name, x)| (name.clone(), json!(x))).collect();
-    json!({
-        "scene": scene, "file": file, "formulation": found.asked, "verdict": verdict, "numbers": numbers,
-        "explanations": found.explanations, "broken": found.broken, "state": state, "at_start": found.at_start,
-        "differences": differences.collect::<Vec<_>>(), "coefficients": coefficients.collect::<Vec<_>>(), "unknowns": found.unknowns, "notes": found.notes,
-    })
 }

@@ -41,6 +41,7 @@ mod review;
 pub mod substitution;
 mod table;
 mod text;
+mod value;
 
 use scene::Scene;
 
