@@ -8,8 +8,8 @@ use deltaq::{
 };
 use integrate::{Method, Projection};
 use pages::{membership::value as membership_value, scene_page, summary, verdicts};
-use serde_json::{Value, json};
 use review::substitution::SUBSTITUTION;
+use serde_json::{Value, json};
 use validation::report::{AuditReport, BicycleReport, overview, referees_section};
 
 /// A scene in all formulations, the control among them.

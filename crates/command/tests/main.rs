@@ -21,6 +21,7 @@ mod memory;
 mod output;
 mod prove_command;
 mod read_back;
+mod review_command;
 mod shell;
 mod singularities;
 mod support;

@@ -25,7 +25,8 @@ impl System {
     ) -> PyResult<String> {
         let asked = Asked { formulation: arguments::formulation(formulation)?, wheres, tolerance };
         let (scene, interrupt) = (self.scene()?, Interrupt::default());
-        let work = move || review(&scene, &file, &text, &asked).map(|found| found.value(&scene.name, &file).to_string());
+        let work =
+            move || review(&scene, &file, &text, &asked).map(|found| found.value(&scene.name, &file).to_string());
         background::run(py, &interrupt, work)?.map_err(|fault| errors::DeltaqError::new_err(fault.to_string()))
     }
 

@@ -91,7 +91,8 @@ pub(crate) fn pieces(system: &System) -> Vec<(Called, Expr)> {
     }
     let several = alike.len() > 1;
     for (factors, terms) in alike.into_iter().filter(|(_, terms)| terms.len() > 1 && several) {
-        pieces.push((Called::Part(g.plain(g.product(&factors)), "in L, wherever it stands in T".into()), g.sum(&terms)));
+        pieces
+            .push((Called::Part(g.plain(g.product(&factors)), "in L, wherever it stands in T".into()), g.sum(&terms)));
     }
     let term = |&t: &Expr| match g.expanded_terms(t) {
         1 => (Called::Term(g.plain(t), "in L".into()), t),
@@ -229,7 +230,9 @@ pub(crate) fn wrong_constraints(system: &System) -> Vec<(usize, Expr, String)> {
         };
         found.extend(system.positions().into_iter().filter_map(turned));
         for &t in terms.iter().filter(|_| terms.len() > 1) {
-            for (kappa, factor) in [(-1.0, g.integer(-1)), (-2.0, g.integer(-2)), (1.0, g.one()), (-0.5, g.ratio(-1, 2))] {
+            for (kappa, factor) in
+                [(-1.0, g.integer(-1)), (-2.0, g.integer(-2)), (1.0, g.one()), (-0.5, g.ratio(-1, 2))]
+            {
                 let words = Called::Term(g.plain(t), String::new()).words(kappa).unwrap_or_default();
                 found.push((i, g.add(f, g.mul(factor, t)), words));
             }

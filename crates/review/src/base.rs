@@ -59,7 +59,8 @@ impl Base {
         if let Some(removal) = &equations.removal {
             // q̈ by the parametrization
             let mut flow: Vec<(Symbol, Expr)> = vec![(system.time, g.one())];
-            let pairs = |u: &DisplacementParameter| [(u.symbol, g.variable(u.rate)), (u.rate, g.variable(u.second_rate))];
+            let pairs =
+                |u: &DisplacementParameter| [(u.symbol, g.variable(u.rate)), (u.rate, g.variable(u.second_rate))];
             flow.extend(removal.parameters.iter().flat_map(pairs));
             flow.extend(removal.memory.iter().map(|w| (w.symbol, w.rate)));
             let rates = g.total_derivatives(&removal.coordinates, &flow);
@@ -99,7 +100,8 @@ impl Base {
     /// The program for numbers of one kind, from the inputs of a frame, accelerations and states.
     pub(crate) fn program<C: Number>(&self, frame: &Frame) -> Result<Evaluator<At<C>>, CompileError> {
         let accelerations = frame.reading.coordinates.iter().map(|c| c[2]);
-        let inputs: Vec<Symbol> = frame.inputs.iter().copied().chain(accelerations).chain(self.states.clone()).collect();
+        let inputs: Vec<Symbol> =
+            frame.inputs.iter().copied().chain(accelerations).chain(self.states.clone()).collect();
         Ok(Evaluator::new(frame.reading.system.graph.compile(&inputs, &self.outputs, &<_>::default())?))
     }
 

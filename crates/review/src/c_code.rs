@@ -185,7 +185,8 @@ impl Converter<'_> {
             return Err(self.fault(line, format!("`{statement}` is not read: assignments in a row are")));
         }
         // several declarations in one
-        if let Some(list) = statement.trim_start_matches("const ").strip_prefix("double ").filter(|s| !s.contains('{')) {
+        if let Some(list) = statement.trim_start_matches("const ").strip_prefix("double ").filter(|s| !s.contains('{'))
+        {
             let parts = top_level(list);
             if parts.len() > 1 {
                 return parts.into_iter().try_for_each(|part| self.statement(part.trim(), line, depth));
@@ -232,7 +233,11 @@ impl Converter<'_> {
             }
             return self.function(which, depth + 1);
         }
-        if text.contains("return") { Ok(()) } else { Err(self.fault(line, format!("the function `{name}` is not there"))) }
+        if text.contains("return") {
+            Ok(())
+        } else {
+            Err(self.fault(line, format!("the function `{name}` is not there")))
+        }
     }
 
     fn solve(&mut self, arguments: &[&str], line: usize) -> Result<(), ReviewError> {

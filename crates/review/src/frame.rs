@@ -123,7 +123,8 @@ impl<'r> Frame<'r> {
             return Err(reading.equations.iter().find(bent).map_or(String::new(), |e| e.text.clone()));
         }
         let parameters = reading.parameters.iter().map(|p| p.0);
-        let inputs: Vec<Symbol> = parameters.chain([reading.system.time]).chain(q.clone()).chain(v.clone()).chain(states.clone()).collect();
+        let inputs: Vec<Symbol> =
+            parameters.chain([reading.system.time]).chain(q.clone()).chain(v.clone()).chain(states.clone()).collect();
         let values = reading.parameters.iter().map(|p| p.1);
         let centres = values.chain(inputs[reading.parameters.len()..].iter().map(|&s| start(s))).collect();
         Ok(Frame {
@@ -262,7 +263,8 @@ impl<'r> Frame<'r> {
             return Ok(Vec::new());
         }
         // those without unknowns are constraints, each of which holds or not
-        let alone = |i: &usize| outputs[linear.count + i * linear.unknowns..][..linear.unknowns].iter().all(|x| x.vanishes());
+        let alone =
+            |i: &usize| outputs[linear.count + i * linear.unknowns..][..linear.unknowns].iter().all(|x| x.vanishes());
         let broken = (0..linear.count).filter(|i| alone(i) && !outputs[*i].vanishes());
         Ok(broken.map(|i| self.kinematic_text[i].clone()).collect())
     }

@@ -8,11 +8,37 @@ use crate::ReviewError;
 use crate::reading::Line;
 
 /// What only arranges.
-const BLANKS: [&str; 14] =
-    ["quad", "qquad", "left", "right", "bigl", "bigr", "Bigl", "Bigr", "big", "Big", "nonumber", "displaystyle", "limits", "hfill"];
+const BLANKS: [&str; 14] = [
+    "quad",
+    "qquad",
+    "left",
+    "right",
+    "bigl",
+    "bigr",
+    "Bigl",
+    "Bigr",
+    "big",
+    "Big",
+    "nonumber",
+    "displaystyle",
+    "limits",
+    "hfill",
+];
 const FUNCTIONS: [(&str, &str); 14] = [
-    ("sin", "sin"), ("cos", "cos"), ("tan", "tan"), ("cot", "cot"), ("sec", "sec"), ("csc", "csc"), ("sinh", "sinh"),
-    ("cosh", "cosh"), ("tanh", "tanh"), ("exp", "exp"), ("ln", "ln"), ("log", "ln"), ("arcsin", "asin"), ("arctan", "atan"),
+    ("sin", "sin"),
+    ("cos", "cos"),
+    ("tan", "tan"),
+    ("cot", "cot"),
+    ("sec", "sec"),
+    ("csc", "csc"),
+    ("sinh", "sinh"),
+    ("cosh", "cosh"),
+    ("tanh", "tanh"),
+    ("exp", "exp"),
+    ("ln", "ln"),
+    ("log", "ln"),
+    ("arcsin", "asin"),
+    ("arctan", "atan"),
 ];
 
 /// The equations of `text`; `names` are those that the scene and their side have.

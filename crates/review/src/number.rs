@@ -73,9 +73,9 @@ impl Number for Bounded {
     }
 
     fn fraction(self) -> Option<f64> {
-        (1..=12).map(|d| (self.value * f64::from(d)).round() / f64::from(d)).find(|x| {
-            (self - Self::from_f64(*x)).may_be_zero()
-        })
+        (1..=12)
+            .map(|d| (self.value * f64::from(d)).round() / f64::from(d))
+            .find(|x| (self - Self::from_f64(*x)).may_be_zero())
     }
 }
 

@@ -156,9 +156,8 @@ pub(crate) fn read(scene: &Scene, lines: &[Line], wheres: &[String]) -> Result<R
     let mut parameters: Vec<(Symbol, f64)> = free.iter().map(|p| (p.symbol, p.value)).collect();
     let mut map: HashMap<Symbol, Expr> = HashMap::new();
     let moves = |name: &str| {
-        let primed = |text: &str| {
-            names_in(text).iter().any(|(n, at)| *n == name && text[at + n.len()..].starts_with('\''))
-        };
+        let primed =
+            |text: &str| names_in(text).iter().any(|(n, at)| *n == name && text[at + n.len()..].starts_with('\''));
         lines.iter().any(|line| line.text.split('=').any(primed))
     };
     for (own, formula) in &mapped {

@@ -5,14 +5,14 @@ use equations::Formulation;
 use scene::Scene;
 use symbolic::{Bounded, Scalar, Symbol};
 
+use crate::ReviewError;
 use crate::atoms::{Atom, atoms, pieces, wrong_constraints};
 use crate::base::{Base, formulated, substituted, with_constraints};
 use crate::case::{Case, split};
 use crate::frame::{Frame, Point, Trouble};
+use crate::monomials::{Coefficient, differing};
 use crate::number::{Number, constants};
 use crate::reading::{Line, Reading, read};
-use crate::ReviewError;
-use crate::monomials::{Coefficient, differing};
 
 /// Whether equations are right.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -222,8 +222,7 @@ impl Held<'_> {
 
     /// Decides by `case`; `own` has the scene's numbers for its parameters.
     fn decide<C: Number>(&self, case: &Case<C>, own: Option<&Case<C>>, review: &mut Review) {
-        let is_right =
-            |case: &Case<C>| case.broken().is_empty() && self.asked.iter().any(|base| case.is(base));
+        let is_right = |case: &Case<C>| case.broken().is_empty() && self.asked.iter().any(|base| case.is(base));
         review.numbers.get_or_insert(Numbers::Floats);
         review.broken = case.broken();
         review.verdict = if is_right(case) { Verdict::Right } else { Verdict::Wrong };
@@ -233,7 +232,9 @@ impl Held<'_> {
                 review.notes.push("for the numbers of the scene, and not for others, they agree".into());
             } else {
                 review.verdict = Verdict::Right;
-                review.notes.push(format!("for the numbers of the scene: {} stand in none of these", absent.join(", ")));
+                review
+                    .notes
+                    .push(format!("for the numbers of the scene: {} stand in none of these", absent.join(", ")));
             }
         }
         if review.verdict == Verdict::Wrong {
@@ -243,7 +244,8 @@ impl Held<'_> {
 
     fn points(&self, rows: &[Row], tolerance: f64) -> Vec<Point<Bounded>> {
         let largest = |of: &dyn Fn(&Row) -> f64| rows.iter().map(of).fold(0.0, |most: f64, x| most.max(x.abs()));
-        let number = |value: f64, size: f64| Bounded { value, magnitude: size.max(value.abs()) * tolerance / ROUND_OFF };
+        let number =
+            |value: f64, size: f64| Bounded { value, magnitude: size.max(value.abs()) * tolerance / ROUND_OFF };
         let of = |row: &Row| {
             let inputs = self.frame.reading.parameters.iter().map(|p| Bounded::from_f64(p.1));
             let q = (0..row.q.len()).map(|i| number(row.q[i], largest(&|row| row.q[i])));

@@ -23,7 +23,8 @@ pub(crate) fn rows(system: &System, file: &str, text: &str) -> Result<Vec<Row>, 
     let rows = table.rows();
     let step = rows.len().div_ceil(MOST).max(1);
     let row = |row: usize| -> Result<Row, TableError> {
-        let of = |places: &[usize]| places.iter().map(|&place| table.number(row, place)).collect::<Result<Vec<f64>, _>>();
+        let of =
+            |places: &[usize]| places.iter().map(|&place| table.number(row, place)).collect::<Result<Vec<f64>, _>>();
         let t = time.map_or(Ok(0.0), |time| table.number(row, time))?;
         Ok(Row { t, q: of(&q)?, v: of(&v)?, a: of(&a)? })
     };

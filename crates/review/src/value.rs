@@ -15,9 +15,8 @@ impl Review {
         let numbers = self.numbers.map(|numbers| if numbers == Numbers::Field { "field" } else { "floats" });
         let differences = self.differences.iter();
         let differences = differences.map(|d| json!({ "name": d.name, "theirs": d.theirs, "right": d.right }));
-        let coefficient = |c: &Coefficient| {
-            json!({ "name": c.name, "monomial": c.monomial, "theirs": c.theirs, "right": c.right })
-        };
+        let coefficient =
+            |c: &Coefficient| json!({ "name": c.name, "monomial": c.monomial, "theirs": c.theirs, "right": c.right });
         let coefficients = self.coefficients.iter().map(coefficient);
         let state: Map<String, Value> = self.state.iter().map(|(name, x)| (name.clone(), json!(x))).collect();
         json!({

@@ -116,7 +116,8 @@ fn case(scene: &Scene, seed: u64) -> Option<(String, Vec<String>)> {
 
 /// Whether an explanation speaks of each mistake.
 fn names(found: &Review, made: &[String]) -> bool {
-    let speaks = |words: &[String]| made.iter().all(|term| words.iter().any(|own| own.contains(term.trim_start_matches('-'))));
+    let speaks =
+        |words: &[String]| made.iter().all(|term| words.iter().any(|own| own.contains(term.trim_start_matches('-'))));
     found.explanations.iter().any(|words| speaks(words))
 }
 
@@ -147,6 +148,8 @@ fn mistakes_drawn_at_random_are_named() {
             println!("{k} {} {made:?} -> {:?} {:?} {:?}", scene.name, found.explanations, found.notes, clock.elapsed());
         }
     }
-    println!("{wrong} wrong, {explained} explained, {named} with the term, {without} without effect; slowest {slowest:?}");
+    println!(
+        "{wrong} wrong, {explained} explained, {named} with the term, {without} without effect; slowest {slowest:?}"
+    );
     assert!(20 * explained >= 19 * wrong && wrong > 0, "{explained} of {wrong}");
 }

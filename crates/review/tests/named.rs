@@ -80,7 +80,14 @@ fn numbers_of_the_scene_are_enough_where_theirs_have_no_names() {
 fn tables_of_accelerations_are_reviewed_in_floats() {
     let scene = catalogue::find("sleigh", &[]).unwrap();
     // by hand: u' = a w², w' = −m a u w/(I + m a²) along the blade
-    let value = |name: &str| scene.system.expression(name).ok().and_then(|e| scene.system.graph.evaluate(e, &scene.system.parameter_values()).ok()).unwrap();
+    let value = |name: &str| {
+        scene
+            .system
+            .expression(name)
+            .ok()
+            .and_then(|e| scene.system.graph.evaluate(e, &scene.system.parameter_values()).ok())
+            .unwrap()
+    };
     let (m, a, i) = (value("m"), value("a"), value("I"));
     for (sign, verdict) in [(1.0, Verdict::Right), (-1.0, Verdict::Wrong)] {
         let mut table = String::from("t,x,y,phi,x',y',phi',x'',y'',phi''\n");

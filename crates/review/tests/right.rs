@@ -96,7 +96,8 @@ fn every_scene_is_right_as_it_is_shown() {
             lines.collect::<String>()
         };
         let settings = deltaq::Settings::default();
-        let prepared = deltaq::prepare(deltaq::setting(&scene), equations.clone(), &choice.constants, &settings).unwrap();
+        let prepared =
+            deltaq::prepare(deltaq::setting(&scene), equations.clone(), &choice.constants, &settings).unwrap();
         let code = deltaq::code(&scene, &prepared, deltaq::Language::C).unwrap();
         for (file, text) in [("a.txt", lines(&|e| g.plain(e))), ("a.tex", lines(&|e| g.latex(e))), ("a.c", code)] {
             let found = review(&scene, file, &text, &Asked::default()).unwrap();
@@ -133,5 +134,8 @@ fn quasi_velocities_leaves_and_logarithms() {
     let wrong = right.replace("- x/sqrt", "+ x/sqrt");
     let found = review(&scene, "log", &wrong, &Asked::default()).unwrap();
     assert_eq!(found.verdict, Verdict::Wrong, "{found:?}");
-    assert!(found.explanations.iter().any(|words| words[0].contains("sqrt") && words[0].contains("wrong sign")), "{found:?}");
+    assert!(
+        found.explanations.iter().any(|words| words[0].contains("sqrt") && words[0].contains("wrong sign")),
+        "{found:?}"
+    );
 }

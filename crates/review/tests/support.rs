@@ -46,7 +46,11 @@ pub fn text(system: &System, derivation: &Derivation, random: &mut SplitMix) -> 
         let parameter = system.parameters.first().map_or(g.one(), |p| g.variable(p.symbol));
         let scale = if random.bits() % 4 == 0 { g.div(scale, parameter) } else { scale };
         let [left, right] = [row, g.sum(&parts)].map(|e| g.plain(g.mul(scale, e)));
-        lines.push(if random.bits() % 2 == 0 { format!("{left} = {right}") } else { format!("0 = {right} - ({left})") });
+        lines.push(if random.bits() % 2 == 0 {
+            format!("{left} = {right}")
+        } else {
+            format!("0 = {right} - ({left})")
+        });
     }
     lines.extend(derivation.rates.iter().map(|&f| format!("{} = 0", g.plain(f))));
     for i in (1..lines.len()).rev() {
@@ -57,7 +61,24 @@ pub fn text(system: &System, derivation: &Derivation, random: &mut SplitMix) -> 
 
 /// Scenes whose equations have images in a field.
 pub const SYSTEMS: [&str; 20] = [
-    "sledge", "ball-in-cone", "three-cylinders", "particle", "heisenberg", "sleigh", "disc", "turntable", "bowl",
-    "planar-body", "coin-on-incline", "mobile-robot", "falling-disc", "two-wheeled-carriage", "unicycle-in-potential",
-    "turning-knife-edge", "nonholonomic-oscillator", "snakeboard", "roller-racer", "sledge-with-friction",
+    "sledge",
+    "ball-in-cone",
+    "three-cylinders",
+    "particle",
+    "heisenberg",
+    "sleigh",
+    "disc",
+    "turntable",
+    "bowl",
+    "planar-body",
+    "coin-on-incline",
+    "mobile-robot",
+    "falling-disc",
+    "two-wheeled-carriage",
+    "unicycle-in-potential",
+    "turning-knife-edge",
+    "nonholonomic-oscillator",
+    "snakeboard",
+    "roller-racer",
+    "sledge-with-friction",
 ];

@@ -111,7 +111,9 @@ impl Case {
         }
         let by_coordinates = removed.iter().find(|r| r.removal.name == "coordinates").or(removed.first());
         let control = match by_coordinates.filter(|_| !system.has_forces()) {
-            Some(Removed { removal, .. }) => Some((removal.clone(), run(review::substitution::derive(system, removal), &[])?)),
+            Some(Removed { removal, .. }) => {
+                Some((removal.clone(), run(review::substitution::derive(system, removal), &[])?))
+            }
             None => None,
         };
         Ok(Case {
