@@ -64,7 +64,8 @@ impl Number for Bounded {
         if bits == 0 {
             return Jet::constant(Self::from_f64(centre), None);
         }
-        let size = if centre == 0.0 { 1.0 } else { centre.abs() };
+        // what is round-off at the start is drawn like 0
+        let size = if centre.abs() < 1e-12 { 1.0 } else { centre.abs() };
         Jet::constant(Self::from_f64(centre + 0.4 * size * (2.0 * random.unit() - 1.0)), None)
     }
 

@@ -1,11 +1,11 @@
 //! Mistakes drawn at random are named, with their terms.
 
 use mechanics::System;
-use review::{Asked, Review, Verdict, review};
+use review::{Asked, Review, Verdict, review, states};
 use scene::Scene;
 use symbolic::{Expr, SplitMix};
 
-use crate::support::{Derivation, SYSTEMS, below, derive, text};
+use crate::support::{Derivation, SYSTEMS, accelerations, below, derive, text};
 
 /// Cases of the usual run; `REVIEW_CASES` sets another number.
 const CASES: u64 = 40;
@@ -97,8 +97,9 @@ fn spoil(system: &mut System, late: &mut Option<Derivation>, random: &mut SplitM
     }
 }
 
-/// A derivation with one or two mistakes: its text, and what they are about.
-fn case(scene: &Scene, seed: u64) -> Option<(String, Vec<String>)> {
+/// A derivation with one or two mistakes: its text, what they are about, and whether accelerations differ in
+/// doubles, where these are determined.
+fn case(scene: &Scene, seed: u64) -> (String, Vec<String>, Option<bool>) {
     let mut random = SplitMix::new(seed);
     (0..4).for_each(|_| _ = random.bits());
     let mut system = scene.system.clone();
@@ -111,7 +112,13 @@ fn case(scene: &Scene, seed: u64) -> Option<(String, Vec<String>)> {
         }
     }
     let derivation = late.unwrap_or_else(|| derive(&system));
-    Some((text(&system, &derivation, &mut random), made))
+    let right = derive(&scene.system);
+    let differ = |state: &mechanics::State| {
+        let (a, b) = (accelerations(&system, &derivation, state)?, accelerations(&scene.system, &right, state)?);
+        Some(a.iter().zip(&b).any(|(a, b)| (a - b).abs() > 1e-7 * (1.0 + b.abs())))
+    };
+    let differ: Option<Vec<bool>> = states(scene).iter().map(differ).collect();
+    (text(&system, &derivation, &mut random), made, differ.map(|all| all.contains(&true)))
 }
 
 /// Whether an explanation speaks of each mistake.
@@ -124,15 +131,19 @@ fn names(found: &Review, made: &[String]) -> bool {
 #[test]
 fn mistakes_drawn_at_random_are_named() {
     let cases = std::env::var("REVIEW_CASES").ok().and_then(|n| n.parse().ok()).unwrap_or(CASES);
-    let (mut wrong, mut explained, mut named, mut without) = (0, 0, 0, 0);
+    let (mut wrong, mut explained, mut named, mut without, mut judged) = (0, 0, 0, 0, 0);
     let mut slowest = std::time::Duration::ZERO;
     let first = std::env::var("REVIEW_FIRST").ok().and_then(|n| n.parse().ok()).unwrap_or(0);
     for k in first..first + cases {
         let scene = catalogue::find(SYSTEMS[(k % SYSTEMS.len() as u64) as usize], &[]).unwrap();
-        let Some((text, made)) = case(&scene, 1000 + k) else { continue };
+        let (text, made, differ) = case(&scene, 1000 + k);
         let clock = std::time::Instant::now();
         let found = review(&scene, "drawn", &text, &Asked::default()).unwrap();
         slowest = slowest.max(clock.elapsed());
+        if let Some(differ) = differ.filter(|_| !found.notes.iter().any(|note| note.contains("not for others"))) {
+            judged += 1;
+            assert_eq!(found.verdict == Verdict::Wrong, differ, "{k} {} {made:?}\n{text}\n{found:?}", scene.name);
+        }
         if std::env::var("REVIEW_SHOW").is_ok() {
             println!("{text}\n{made:?}\n{found:#?}");
         }
@@ -149,7 +160,7 @@ fn mistakes_drawn_at_random_are_named() {
         }
     }
     println!(
-        "{wrong} wrong, {explained} explained, {named} with the term, {without} without effect; slowest {slowest:?}"
+        "{judged} judged in doubles, {wrong} wrong, {explained} explained, {named} with the term, {without} without effect; slowest {slowest:?}"
     );
     assert!(20 * explained >= 19 * wrong && wrong > 0, "{explained} of {wrong}");
 }

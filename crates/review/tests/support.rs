@@ -82,3 +82,37 @@ pub const SYSTEMS: [&str; 20] = [
     "roller-racer",
     "sledge-with-friction",
 ];
+
+/// `q̈` of a derivation at a state, in doubles, by elimination with pivots; nothing where it is not determined.
+pub fn accelerations(system: &System, of: &Derivation, state: &mechanics::State) -> Option<Vec<f64>> {
+    let (g, n, h) = (&system.graph, system.dimension(), of.rates.len());
+    let equations = [&of.rows[..], &of.rates].concat();
+    let a = system.accelerations();
+    let mut values = system.values_at(state);
+    values.extend(system.parameter_values());
+    let number = |e: Expr, values: &_| g.evaluate(e, values).ok();
+    let mut rows = Vec::new();
+    for (k, &e) in equations.iter().enumerate() {
+        let slope = |&s: &symbolic::Symbol| number(g.derivative(e, s), &values);
+        let mut row: Vec<f64> = a.iter().map(slope).collect::<Option<_>>()?;
+        let reacts = |j: usize| if k < n { number(g.neg(of.reactions[j][k]), &values) } else { Some(0.0) };
+        row.extend((0..h).map(reacts).collect::<Option<Vec<f64>>>()?);
+        let mut still = values.clone();
+        still.extend(a.iter().map(|&s| (s, 0.0)));
+        row.push(-number(e, &still)?);
+        rows.push(row);
+    }
+    for k in 0..n + h {
+        let best = (k..n + h).max_by(|&i, &j| rows[i][k].abs().total_cmp(&rows[j][k].abs()))?;
+        rows.swap(k, best);
+        let pivot = rows[k].clone();
+        if pivot[k].abs() < 1e-10 {
+            return None;
+        }
+        for (_, row) in rows.iter_mut().enumerate().filter(|(i, _)| *i != k) {
+            let factor = row[k] / pivot[k];
+            row.iter_mut().zip(&pivot).for_each(|(x, p)| *x -= factor * p);
+        }
+    }
+    Some((0..n).map(|i| rows[i][n + h] / rows[i][i]).collect())
+}
