@@ -52,7 +52,7 @@ fn numbers(found: &Review) -> &'static str {
 fn words(scene: &str, file: &str, found: &Review, title: &str) -> String {
     let mut text = match found.verdict {
         Verdict::Right => format!("right: {file} has the {title} motions of {scene} from every start\n"),
-        Verdict::Wrong => format!("wrong: {file} has not the {title} motions of {scene}\n"),
+        Verdict::Wrong => format!("wrong: {file} does not have the {title} motions of {scene}\n"),
         Verdict::Undecided => String::from("cannot tell\n"),
     };
     let mut line = |words: String| _ = writeln!(text, "  {words}");

@@ -7,12 +7,11 @@ use crate::base::Base;
 use crate::frame::{Frame, Point, Trouble};
 use crate::number::{Number, constants, values};
 
-/// Points at which equations are compared.
-const POINTS: usize = 4;
 /// Draws until as many are found.
 const DRAWS: u64 = 60;
 /// Sizes of the integers that are drawn in a field, as powers of two: exact sines of large ones may not fit.
-const BITS: [u32; 3] = [20, 8, 3];
+/// Beside, at how many points equations are compared.
+const BITS: [(u32, usize); 3] = [(20, 4), (8, 10), (3, 24)];
 /// Explanations of the same equations that are told.
 const TOLD: usize = 6;
 
@@ -37,10 +36,10 @@ impl<'f, C: Number> Case<'f, C> {
     /// The [`Trouble`] of the first point, where there are not enough without.
     pub(crate) fn new(frame: &'f Frame<'f>, own: bool) -> Result<Self, Trouble> {
         let mut trouble = None;
-        for bits in if C::PROVES { &BITS[..] } else { &BITS[..1] } {
+        for &(bits, count) in if C::PROVES { &BITS[..] } else { &BITS[..1] } {
             let mut points = Vec::new();
             for seed in 1..=DRAWS {
-                match frame.draw(seed, *bits, own).and_then(|inputs| frame.at(inputs)) {
+                match frame.draw(seed, bits, own).and_then(|inputs| frame.at(inputs)) {
                     Ok(point) => points.push(point),
                     Err(found @ Trouble::NoPoint(_)) if C::PROVES => {
                         trouble.get_or_insert(found);
@@ -49,7 +48,7 @@ impl<'f, C: Number> Case<'f, C> {
                     Err(Trouble::NoPoint(found)) => _ = trouble.get_or_insert(Trouble::NoPoint(found)),
                     Err(other) => return Err(other),
                 }
-                if points.len() == POINTS {
+                if points.len() == count {
                     return Ok(Case { frame, points });
                 }
             }

@@ -6,7 +6,7 @@
 //! **Right** are equations with the accelerations of the scene, `q̈(q, v, t, p)` on `f = 0`. Multipliers are
 //! eliminated on both sides, constraints differentiated. Where everything is rational in variables, sines,
 //! cosines and exponentials, this is compared at random points of a field of `p ≈ 2^60` residues, parameters
-//! `p` being random, too: a difference is proved, equality wrong with a chance below 1e-15. Roots, logarithms,
+//! `p` being random, too: a difference is proved, equality at all of them would else be an accident. Roots, logarithms,
 //! constraints that are not linear in `v`, and states on a leaf of a position constraint have no such points:
 //! there, floats with bands of round-off decide ([`Numbers::Floats`]).
 //!
@@ -68,7 +68,8 @@ impl Notation {
     /// That of a file, by the end of its name, or else by its text.
     pub fn of(file: &str, text: &str) -> Notation {
         let end = file.rsplit('.').next().unwrap_or_default();
-        let header = text.lines().find(|line| !line.trim().is_empty()).unwrap_or_default();
+        let says = |line: &&str| !line.trim().is_empty() && !line.trim_start().starts_with('#');
+        let header = text.lines().find(says).unwrap_or_default();
         match end {
             "csv" => Notation::Table,
             "c" | "h" | "cpp" => Notation::C,

@@ -28,7 +28,7 @@ pub enum Verdict {
 /// By which numbers it was decided.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Numbers {
-    /// Residues: a difference is proved; what is equal is so but for a chance of less than 1e-15.
+    /// Residues: a difference is proved; equality at all points would else be an accident.
     Field,
     /// Floats with bands of round-off.
     Floats,
