@@ -1,8 +1,8 @@
 //! Single mistakes as what they add to the rows of a derivation.
 //!
-//! A mistake in a term `τ` of `L`, of a balance or of a constraint's rate adds `κ` times a known column to the
-//! rows: `κ = −1` where it is dropped, `−2` where its sign is turned, `1` where it is counted twice. So no
-//! derivation is tried for each: which columns make up the residual is a question of linear algebra.
+//! A mistake in a term `τ` of `L`, of a balance or of a constraint's rate adds `κ` times a known column to
+//! the rows: `κ = −1` where it is dropped, `−2` where its sign is turned, `1` where it is counted twice. So
+//! no derivation is tried for each: which columns make up the residual is a question of linear algebra.
 
 use std::collections::BTreeMap;
 
@@ -191,26 +191,19 @@ pub(crate) fn atoms(reading: &Reading) -> Vec<Atom> {
             found.push((Called::Whole(words), rows(&[(i, system.forces[i]), (j, force)])));
         }
     }
-    for (i, balance) in system.balances(&momenta, &[&gradient, &system.forces], &flow).into_iter().enumerate() {
-        let place = format!("in the equation for {}", name(i));
-        for t in terms_of(g, balance) {
-            found.push((Called::Term(g.plain(t), place.clone()), rows(&[(i, t)])));
-        }
-    }
-    for (j, &rate) in rates.iter().enumerate() {
-        let place = format!("in the rate of constraint {}", j + 1);
-        for t in terms_of(g, rate) {
-            found.push((Called::Term(g.plain(t), place.clone()), rows(&[(n + j, t)])));
-        }
+    let balance = system.balances(&momenta, &[&gradient, &system.forces], &flow);
+    let named = (0..n).map(|i| format!("in the equation for {}", name(i)));
+    let places: Vec<String> = named.chain((1..=h).map(|j| format!("in the rate of constraint {j}"))).collect();
+    let terms: Vec<Vec<Expr>> = balance.iter().chain(&rates).map(|&e| terms_of(g, e)).collect();
+    for (i, terms) in terms.iter().enumerate() {
+        found.extend(terms.iter().map(|&t| (Called::Term(g.plain(t), places[i].clone()), rows(&[(i, t)]))));
     }
     for t in terms_of(g, system.lagrangian) {
         found.extend(misprints(system, t, "of L", false).into_iter().map(|(called, l)| (called, balances(l))));
     }
-    for (i, balance) in system.balances(&momenta, &[&gradient, &system.forces], &flow).into_iter().enumerate() {
-        let place = format!("in the equation for {}", name(i));
-        for t in terms_of(g, balance) {
-            found.extend(misprints(system, t, &place, true).into_iter().map(|(called, e)| (called, rows(&[(i, e)]))));
-        }
+    for (i, terms) in terms.iter().enumerate() {
+        let wrong = terms.iter().flat_map(|&t| misprints(system, t, &places[i], true));
+        found.extend(wrong.map(|(called, e)| (called, rows(&[(i, e)]))));
     }
     found.retain(|(_, column)| column.iter().any(|&e| !g.is_zero(e)));
     let of = |(called, column): (Called, Vec<Expr>)| Atom { called, column: reading.of_scene(g, &column) };

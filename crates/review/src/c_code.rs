@@ -1,5 +1,5 @@
-//! A C function `y' = F(t, y)` as lines in the notation of scenes: assignments in a row, calls of functions of
-//! the same file with the same names, and `solve(n, a, b)` for `a z = b`.
+//! A C function `y' = F(t, y)` as lines in the notation of scenes: assignments in a row, calls of functions
+//! of the same file with the same names, and `solve(n, a, b)` for `a z = b`.
 
 use std::collections::HashMap;
 
@@ -218,7 +218,8 @@ impl Converter<'_> {
         Ok(())
     }
 
-    /// A call: of a function of the file, or of `solve`; conditions under which there is no answer do not count.
+    /// A call of a function of the file, or of `solve`; conditions under which there is no answer do not
+    /// count.
     fn call(&mut self, text: &str, line: usize, depth: usize) -> Result<(), ReviewError> {
         let inner = text.trim().trim_start_matches('(');
         let Some((name, arguments)) = inner.split_once('(') else { return Ok(()) };

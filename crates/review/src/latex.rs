@@ -65,8 +65,8 @@ pub(crate) fn lines(g: &Graph, names: &[String], file: &str, text: &str) -> Resu
     Ok(lines)
 }
 
-/// Equations with the lines at which they begin: they end at `\\`, at the end of an environment or formula, at
-/// an empty line, and before a line with a further `=`.
+/// Equations with the lines at which they begin: they end at `\\`, at the end of an environment or formula,
+/// at an empty line, and before a line with a further `=`.
 fn pieces(text: &str) -> Vec<(usize, String)> {
     let mut pieces: Vec<(usize, String)> = vec![(1, String::new())];
     for (number, line) in (1..).zip(text.lines()) {

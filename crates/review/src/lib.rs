@@ -1,30 +1,30 @@
 //! # What is wrong with these equations of motion?
 //!
-//! Given: a scene, `L(q, v, t)`, `f(q, v, t) = 0`, `Q`, and somebody's equations, with any multipliers, in any
-//! order, scaled and combined, perhaps in other coordinates.
+//! Given: a scene, `L(q, v, t)`, `f(q, v, t) = 0`, `Q`, and somebody's equations, with any multipliers, in
+//! any order, scaled and combined, perhaps in other coordinates.
 //!
 //! **Right** are equations with the accelerations of the scene, `q̈(q, v, t, p)` on `f = 0`. Multipliers are
 //! eliminated on both sides, constraints differentiated. Where everything is rational in variables, sines,
 //! cosines and exponentials, this is compared at random points of a field of `p ≈ 2^60` residues, parameters
-//! `p` being random, too: a difference is proved, equality at all of them would else be an accident. Roots, logarithms,
-//! constraints that are not linear in `v`, and states on a leaf of a position constraint have no such points:
-//! there, floats with bands of round-off decide ([`Numbers::Floats`]).
+//! `p` being random, too: a difference is proved, equality at all of them would else be an accident. Roots,
+//! logarithms, constraints that are not linear in `v`, and states on a leaf of a position constraint have no
+//! such points: there, floats with bands of round-off decide ([`Numbers::Floats`]).
 //!
-//! **Wrong.** Let `R = E − Q − Aᵀλ, ḟ` be the rows of the right derivation at *their* accelerations, `Z` what
-//! is left of rows when `λ` is eliminated. One mistake in a term adds `κ` times a known column `u`:
+//! **Wrong.** Let `R = (E − Q − Aᵀλ, ḟ)` be the rows of the right derivation at *their* accelerations, `Z R`
+//! what is left of rows when `λ` is eliminated. A mistake in one term adds `κ` times a known column `u`:
 //!
 //! ```text
 //! Z R = −κ Z u            κ = −1: dropped, −2: wrong sign, 1: twice, −½: half
 //! ```
 //!
 //! with the same `κ` at every point. So single mistakes, and pairs by determinants, are found without
-//! deriving anything again: terms of `L` and of the balances, factors and powers in them, `∂L/∂q` or the rate
-//! of the mass matrix left out, forces on other coordinates, the rate of the constraint's rows. Other rows are
-//! those of other formulations, of the constraint put into `L` ([`substitution`]), and of constraints with one
-//! mistake in them. What is found reproduces their equations exactly. Several mistakes may give the same ones:
-//! all such readings are told, up to six.
+//! deriving anything again: terms of `L` and of the balances, factors and powers in them, `∂L/∂q` or the
+//! rate of the mass matrix left out, forces on other coordinates, the rate of the constraint's rows. Other
+//! rows are those of other formulations, of the constraint put into `L` ([`substitution`]), and of
+//! constraints with one mistake in them. What is found reproduces their equations at every point. Several
+//! mistakes may give the same ones: such readings are told, up to six of a kind.
 //!
-//! **What is not told.** Three mistakes; mistakes on bodies that change no term but its meaning.
+//! **What is not told.** Three mistakes; mistakes in `L` itself, which the scene has, too.
 
 mod atoms;
 mod base;

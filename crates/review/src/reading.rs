@@ -131,7 +131,8 @@ impl Scope for Names<'_> {
     }
 }
 
-/// Reads `lines`; `wheres` are formulas `NAME = …` for coordinates and parameters of the scene in their names.
+/// Reads `lines`; `wheres` are formulas `NAME = …` for coordinates and parameters of the scene, in their
+/// names.
 ///
 /// # Errors
 /// [`ReviewError`] with the place.

@@ -181,8 +181,8 @@ pub(crate) struct Row {
     pub(crate) a: Vec<f64>,
 }
 
-/// States `(t, q, v)` of the scene on its constraints, drawn at random, at which a program can be asked for its
-/// accelerations.
+/// States `(t, q, v)` of the scene on its constraints, drawn at random, at which a program can be asked for
+/// its accelerations.
 pub fn states(scene: &Scene) -> Vec<mechanics::State> {
     let Ok(reading) = read(scene, &[], &[]) else { return Vec::new() };
     let Ok(frame) = Frame::new(&reading, &|s| start_of(scene, s)) else { return Vec::new() };

@@ -22,7 +22,8 @@ impl Review {
         json!({
             "scene": scene, "file": file, "formulation": self.asked, "verdict": verdict, "numbers": numbers,
             "explanations": self.explanations, "broken": self.broken, "state": state, "at_start": self.at_start,
-            "differences": differences.collect::<Vec<_>>(), "coefficients": coefficients.collect::<Vec<_>>(), "unknowns": self.unknowns, "notes": self.notes,
+            "differences": differences.collect::<Vec<_>>(), "coefficients": coefficients.collect::<Vec<_>>(),
+            "unknowns": self.unknowns, "notes": self.notes,
         })
     }
 }

@@ -3,7 +3,7 @@
 use mechanics::System;
 use review::{Asked, Review, Verdict, review, states};
 use scene::Scene;
-use symbolic::{Expr, SplitMix};
+use symbolic::{Expr, SplitMix, faults};
 
 use crate::support::{Derivation, SYSTEMS, accelerations, below, derive, text};
 
@@ -163,4 +163,29 @@ fn mistakes_drawn_at_random_are_named() {
         "{judged} judged in doubles, {wrong} wrong, {explained} explained, {named} with the term, {without} without effect; slowest {slowest:?}"
     );
     assert!(20 * explained >= 19 * wrong && wrong > 0, "{explained} of {wrong}");
+}
+
+/// One operation of a derivation goes wrong, wherever: what comes of it is explained nearly always, and never
+/// called right where doubles say that it is not.
+#[test]
+fn what_the_injector_spoils_is_explained() {
+    let (mut wrong, mut explained) = (0, 0);
+    let cases = std::env::var("REVIEW_CASES").ok().and_then(|n| n.parse().ok()).unwrap_or(CASES);
+    for k in 0..cases {
+        let scene = catalogue::find(SYSTEMS[(k % SYSTEMS.len() as u64) as usize], &[]).unwrap();
+        let mut random = SplitMix::new(9 + k);
+        let fresh = || scene.system.clone();
+        let (_, chances) = faults::chances(|| derive(&fresh()));
+        let which = below(&mut random, chances.len());
+        let system = fresh();
+        let derivation = faults::spoiled(which, chances.len(), || derive(&system));
+        let theirs = text(&system, &derivation, &mut random);
+        let found = review(&scene, "spoiled", &theirs, &Asked::default()).unwrap();
+        if found.verdict == Verdict::Wrong {
+            wrong += 1;
+            explained += usize::from(!found.explanations.is_empty());
+        }
+    }
+    println!("{wrong} wrong, {explained} explained");
+    assert!(wrong > 0 && 100 * explained >= 85 * wrong, "{explained} of {wrong}");
 }

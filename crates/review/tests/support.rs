@@ -83,7 +83,8 @@ pub const SYSTEMS: [&str; 20] = [
     "sledge-with-friction",
 ];
 
-/// `q̈` of a derivation at a state, in doubles, by elimination with pivots; nothing where it is not determined.
+/// `q̈` of a derivation at a state, in doubles, by elimination with pivots; nothing where it is not
+/// determined.
 pub fn accelerations(system: &System, of: &Derivation, state: &mechanics::State) -> Option<Vec<f64>> {
     let (g, n, h) = (&system.graph, system.dimension(), of.rates.len());
     let equations = [&of.rows[..], &of.rates].concat();
