@@ -98,6 +98,10 @@ impl<'f, C: Number> Case<'f, C> {
     pub(crate) fn is(&self, base: &Base) -> bool {
         let Ok(mut program) = base.program::<C>(self.frame) else { return false };
         let mut agrees = |point: &Point<C>, signs: &[bool]| {
+            let left = base.residuals(&mut program, point, &point.accelerations, signs, &[]);
+            if left.is_ok_and(|left| left.residual.iter().any(|r| !r.vanishes())) {
+                return false;
+            }
             let right = base.accelerations(&mut program, point, signs);
             right.is_some_and(|a| a.iter().zip(&point.accelerations).all(|(&a, &b)| (a - b).vanishes()))
         };

@@ -284,6 +284,9 @@ impl Held<'_> {
 /// What of its magnitude may be round-off in a [`Bounded`].
 const ROUND_OFF: f64 = 1e-11;
 
+/// Pairs of a constraint written wrong and another mistake beyond which they are not tried.
+const MOST: usize = 4_000_000;
+
 /// Whose equations they are, by the fewest mistakes.
 fn explanations<C: Number>(
     scene: &Scene,
@@ -333,7 +336,7 @@ fn explanations<C: Number>(
     if found.is_empty() {
         found = with(&mut asked.iter(), true, false);
     }
-    if found.is_empty() {
+    if found.is_empty() && wrong.len() * atoms.len() <= MOST {
         found = with(&mut wrong.iter(), false, true);
     }
     found
