@@ -81,12 +81,10 @@ impl<'f, C: Number> Case<'f, C> {
     }
 
     /// The residual of `base` and of the columns in it, with these signs of unknowns.
-    fn stack(&self, base: &Base, signs: &[bool], columns: Option<&Columns<C>>) -> Option<Stack<C>> {
+    fn stack(&self, base: &Base, signs: &[bool], columns: &Columns<C>) -> Option<Stack<C>> {
         let mut program = base.program(self.frame).ok()?;
-        let none = Vec::new();
-        let mut stack = Stack { residual: Vec::new(), columns: vec![Vec::new(); columns.map_or(0, |c| c[0].len())] };
-        for (i, point) in self.points.iter().enumerate() {
-            let columns = columns.map_or(&none, |columns| &columns[i]);
+        let mut stack = Stack { residual: Vec::new(), columns: vec![Vec::new(); columns[0].len()] };
+        for (point, columns) in self.points.iter().zip(columns) {
             let found = base.residuals(&mut program, point, &point.accelerations, signs, columns).ok()?;
             stack.residual.extend(found.residual);
             stack.columns.iter_mut().zip(found.columns).for_each(|(all, own)| all.extend(own));
@@ -116,7 +114,7 @@ impl<'f, C: Number> Case<'f, C> {
         columns: &Columns<C>,
         pairs: bool,
     ) -> Vec<Vec<String>> {
-        let stacks = base.signs(self.frame).into_iter().filter_map(|signs| self.stack(base, &signs, Some(columns)));
+        let stacks = base.signs(self.frame).into_iter().filter_map(|signs| self.stack(base, &signs, columns));
         let mut found: Vec<(usize, Vec<String>)> = Vec::new();
         for stack in stacks {
             if pairs { two(&stack, called, &mut found) } else { one(&stack, called, &mut found) }
@@ -139,10 +137,13 @@ fn one<C: Number>(stack: &Stack<C>, called: &[&Called], found: &mut Vec<(usize, 
     for (column, called) in stack.columns.iter().zip(called) {
         let open = (0..column.len()).filter(|&i| !column[i].vanishes());
         let Some(place) = open.max_by(|&a, &b| column[a].weight().total_cmp(&column[b].weight())) else { continue };
-        let Some(over) = column[place].inverse() else { continue };
-        let kappa = -(stack.residual[place] * over);
-        let fits = stack.residual.iter().zip(column).all(|(&r, &u)| (r + kappa * u).vanishes());
-        if let Some((odd, words)) = fits.then(|| named(called, kappa)).flatten() {
+        // in proportion; quotients are dear in a field
+        let (r, u) = (stack.residual[place], column[place]);
+        if stack.residual.iter().zip(column).any(|(&own, &x)| !(own * u - r * x).vanishes()) {
+            continue;
+        }
+        let Some(over) = u.inverse() else { continue };
+        if let Some((odd, words)) = named(called, -(r * over)) {
             found.push((odd, vec![words]));
         }
     }
