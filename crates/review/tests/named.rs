@@ -140,3 +140,37 @@ fn what_cannot_be_read_is_refused_with_its_place() {
         assert_eq!((found.verdict, &found.notes[0][..]), (Verdict::Undecided, said), "{found:?}");
     }
 }
+
+/// Texts with letters lost, doubled and exchanged: read or refused, in time, and no panic.
+#[test]
+fn nonsense_is_read_or_refused() {
+    let scene = catalogue::find("sleigh", &[]).unwrap();
+    let latex = "\\begin{aligned} m \\ddot{x} &= -N_{1} \\sin \\varphi \\\\ m\\ddot y &= \\frac{N_1}{1}\\cos{\\varphi}, \\\\ \
+                 I \\ddot{\\varphi} &= \\left(a^{2} - \\dot\\varphi\\right) N_1 \\sqrt{2} \\end{aligned}";
+    let c = "#define N 3\nint f_rates(double t, const double y[6], const par *p, double d[6])\n{\n  const double s = sin(y[2]), c = cos(y[2]);\n  \
+             double m[4] = {p->m, 1.0e-3, s, 2.5f};\n  d[0] = y[3]; d[1] = y[4]; d[2] = y[5]; /* é */\n  d[3] = (double)s*c; d[4] = m[0]; d[5] = pow(s, 2); \n  \
+             if (solve(2, m, &d[3])) return 1;\n  return 0;\n}\n";
+    let text = "w = x'*cos(phi) # é\nm*x'' - N*sin(phi) = 0; m*y'' == N*cos(phi)\nphi'' = w^2\n";
+    let csv = "t,x,y,phi,x',y',phi',x'',y'',phi''\n0,1,2,3,4,5,6,7,8,9\n0,1,2,3,4,5,6,7,8,9\n";
+    let mut random = symbolic::SplitMix::new(3);
+    for (file, whole) in [("a.tex", latex), ("a.c", c), ("a.txt", text), ("a.csv", csv)] {
+        let _ = review(&scene, file, whole, &Asked::default());
+        for _ in 0..400 {
+            let mut letters: Vec<char> = whole.chars().collect();
+            for _ in 0..1 + crate::support::below(&mut random, 4) {
+                let (i, j) = (
+                    crate::support::below(&mut random, letters.len()),
+                    crate::support::below(&mut random, letters.len()),
+                );
+                match crate::support::below(&mut random, 4) {
+                    0 => _ = letters.remove(i),
+                    1 => letters.swap(i, j),
+                    2 => letters.insert(i, letters[j]),
+                    _ => letters.truncate(i.max(9)),
+                }
+            }
+            let spoiled: String = letters.into_iter().collect();
+            let _ = review(&scene, file, &spoiled, &Asked::default());
+        }
+    }
+}
