@@ -14,7 +14,7 @@ from ._sympy import text
 
 def review(
     system: System,
-    theirs: object,
+    theirs: Any,
     *,
     where: Mapping[str, object] | None = None,
     formulation: str = "chetaev",
@@ -33,12 +33,14 @@ def review(
     >>> deltaq.review(sledge, "x'' = 0\\ny'' = 0\\nphi'' = 0")["verdict"]
     'wrong'
     """
-    file, words = "theirs", theirs
-    if isinstance(theirs, Path):
+    file = "theirs"
+    if isinstance(theirs, str):
+        words = theirs
+    elif isinstance(theirs, Path):
         file, words = str(theirs), theirs.read_text("utf-8")
     elif callable(theirs):
         file, words = "theirs.csv", _table(system, theirs)
-    elif not isinstance(theirs, str):
+    else:
         words = "\n".join(_lines(theirs))
     wheres = [f"{name} = {text(formula) or formula}" for name, formula in (where or {}).items()]
     found: dict[str, Any] = json.loads(system._review(file, words, wheres, formulation, tolerance))
