@@ -8,38 +8,8 @@ use crate::ReviewError;
 use crate::reading::Line;
 
 /// What only arranges.
-const BLANKS: [&str; 14] = [
-    "quad",
-    "qquad",
-    "left",
-    "right",
-    "bigl",
-    "bigr",
-    "Bigl",
-    "Bigr",
-    "big",
-    "Big",
-    "nonumber",
-    "displaystyle",
-    "limits",
-    "hfill",
-];
-const FUNCTIONS: [(&str, &str); 14] = [
-    ("sin", "sin"),
-    ("cos", "cos"),
-    ("tan", "tan"),
-    ("cot", "cot"),
-    ("sec", "sec"),
-    ("csc", "csc"),
-    ("sinh", "sinh"),
-    ("cosh", "cosh"),
-    ("tanh", "tanh"),
-    ("exp", "exp"),
-    ("ln", "ln"),
-    ("log", "ln"),
-    ("arcsin", "asin"),
-    ("arctan", "atan"),
-];
+const BLANKS: &str = "quad qquad left right bigl bigr Bigl Bigr big Big nonumber displaystyle limits hfill";
+const FUNCTIONS: &str = "sin cos tan cot sec csc sinh cosh tanh exp ln log arcsin arctan";
 
 /// The equations of `text`; `names` are those that the scene and their side have.
 ///
@@ -52,7 +22,7 @@ pub(crate) fn lines(g: &Graph, names: &[String], file: &str, text: &str) -> Resu
     let mut lines = Vec::new();
     for (number, piece) in pieces(text) {
         let characters: Vec<char> = piece.chars().collect();
-        let mut reader = Reader { characters: &characters, at: 0, table: &table };
+        let mut reader = Reader { characters: &characters, at: 0, depth: 0, table: &table };
         let place = format!("{file}:{number}");
         let text = reader.sum(None).map_err(|what| {
             let near: String = characters[reader.at.saturating_sub(1)..].iter().take(20).collect();
@@ -109,6 +79,8 @@ fn pieces(text: &str) -> Vec<(usize, String)> {
 struct Reader<'a> {
     characters: &'a [char],
     at: usize,
+    /// Operands that are within one another.
+    depth: usize,
     table: &'a HashMap<String, String>,
 }
 
@@ -173,6 +145,16 @@ impl Reader<'_> {
     /// A number, name, group or function; nothing where a sign only arranges.
     fn operand(&mut self) -> Result<Option<String>, String> {
         let Some(c) = self.peek() else { return Err("the formula ends too early".into()) };
+        if self.depth == 200 {
+            return Err("more than 200 operands stand within one another".into());
+        }
+        self.depth += 1;
+        let found = self.operand_at(c);
+        self.depth -= 1;
+        found
+    }
+
+    fn operand_at(&mut self, c: char) -> Result<Option<String>, String> {
         let group = |reader: &mut Self, end| {
             reader.at += 1;
             reader.sum(Some(end)).map(|inner| Some(format!("({inner})")))
@@ -200,11 +182,11 @@ impl Reader<'_> {
             self.at += 1;
             return Ok(None);
         }
-        if BLANKS.contains(&command) {
+        if BLANKS.split(' ').any(|own| own == command) {
             return Ok(None);
         }
-        if let Some((_, own)) = FUNCTIONS.iter().find(|(name, _)| *name == command) {
-            return self.call(own).map(Some);
+        if FUNCTIONS.split(' ').any(|own| own == command) {
+            return self.call(&command.replace("arc", "a").replace("log", "ln")).map(Some);
         }
         match command {
             "cdot" | "times" => Ok(Some("*".into())),
@@ -221,7 +203,7 @@ impl Reader<'_> {
                 self.at += 1;
                 if command == "label" { Ok(None) } else { self.name(format!("\\mathrm{word}"), 0).map(Some) }
             }
-            "sqrt" | "int" | "sum" | "partial" | "mathrm{d}" => Err(format!("`\\{command}` is not read")),
+            "sqrt" | "int" | "sum" | "partial" => Err(format!("`\\{command}` is not read")),
             letter => self.name(format!("\\{letter}"), 0).map(Some),
         }
     }

@@ -77,6 +77,7 @@ impl Number for Bounded {
         (1..=12)
             .map(|d| (self.value * f64::from(d)).round() / f64::from(d))
             .find(|x| (self - Self::from_f64(*x)).may_be_zero())
+            .filter(|_| self.round_off() < 0.01)
     }
 }
 

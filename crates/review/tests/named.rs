@@ -122,6 +122,8 @@ fn what_cannot_be_read_is_refused_with_its_place() {
         ("a.txt", "x''' = 0", "a.txt:1:1: undefined name `x'''`"),
         ("a.txt", "x'' = y'' = 0", "a.txt:1: more than one `=` stands in the line"),
         ("a.tex", "\\ddot{x} = \\frac{1}{2 x", "a.tex:1: `}` is missing"),
+        ("a.tex", &format!("x = {}", "(".repeat(10_000)), "a.tex:1: more than 200 operands"),
+        ("a.tex", &format!("x = {}", "\\sin".repeat(10_000)), "a.tex:1: more than 200 operands"),
         ("a.tex", "\\ddot{x} = \\int x", "a.tex:1: `\\int` is not read"),
         ("a.c", "void rates(double t, double *y, double *d)\n{\n for (;;) d[0] = 1;\n}", "a.c:3: `for ("),
         ("a.c", "double x = 1;", "a.c:1: there is no function that assigns to the entries of an array"),
