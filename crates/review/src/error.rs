@@ -9,7 +9,7 @@ use symbolic::{CompileError, ParseError, ParseErrorKind};
 pub enum ReviewError {
     /// A formula that cannot be read.
     #[error("{place}:{}: {}{}{}", .error.column(), .error.kind, hint(.error), shown(.error))]
-    Formula { place: String, error: ParseError },
+    Formula { place: String, error: Box<ParseError> },
     /// Something else at a place that cannot be read.
     #[error("{place}: {what}")]
     Unreadable { place: String, what: String },

@@ -240,7 +240,7 @@ fn state(names: &Names, line: &Line) -> Result<Option<Stated>, ReviewError> {
             error.offset += offset;
             error.text = text.into();
             error.also = Box::default();
-            ReviewError::Formula { place: line.place.clone(), error }
+            ReviewError::Formula { place: line.place.clone(), error: Box::new(error) }
         })
     };
     let Some((left, right)) = text.split_once('=') else {
