@@ -144,9 +144,6 @@ fn mistakes_drawn_at_random_are_named() {
             judged += 1;
             assert_eq!(found.verdict == Verdict::Wrong, differ, "{k} {} {made:?}\n{text}\n{found:?}", scene.name);
         }
-        if std::env::var("REVIEW_SHOW").is_ok() {
-            println!("{text}\n{made:?}\n{found:#?}");
-        }
         if found.verdict != Verdict::Wrong {
             without += 1;
             println!("{k} {} {:?} {:?}: {made:?}", scene.name, found.verdict, found.notes);
@@ -154,15 +151,17 @@ fn mistakes_drawn_at_random_are_named() {
         }
         wrong += 1;
         explained += usize::from(!found.explanations.is_empty());
-        named += usize::from(names(&found, &made));
-        if !names(&found, &made) {
+        // two mistakes may be one, or one of them none
+        let simpler = found.explanations.iter().any(|words| words.len() < made.len());
+        named += usize::from(names(&found, &made) || simpler);
+        if !names(&found, &made) && !simpler {
             println!("{k} {} {made:?} -> {:?} {:?} {:?}", scene.name, found.explanations, found.notes, clock.elapsed());
         }
     }
     println!(
-        "{judged} judged in doubles, {wrong} wrong, {explained} explained, {named} with the term, {without} without effect; slowest {slowest:?}"
+        "{judged} judged in doubles, {wrong} wrong, {explained} explained, {named} with the drawn terms or fewer, {without} without effect; slowest {slowest:?}"
     );
-    assert!(20 * explained >= 19 * wrong && wrong > 0, "{explained} of {wrong}");
+    assert!(20 * named >= 19 * wrong && wrong > 0, "{named} of {wrong}");
 }
 
 /// One operation of a derivation goes wrong, wherever: what comes of it is explained nearly always, and never
