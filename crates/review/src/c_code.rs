@@ -142,12 +142,16 @@ impl Converter<'_> {
     }
 
     fn function(&mut self, which: usize, depth: usize) -> Result<(), ReviewError> {
-        let (body, first, second) = {
-            let f = &self.functions[which];
-            (f.body.to_owned(), f.line, f.arguments.iter().copied().find(|a| *a != "t").unwrap_or("").to_owned())
-        };
-        for (k, name) in self.state.clone().into_iter().enumerate() {
-            self.known.insert(format!("{second}[{k}]"), name);
+        let f = &self.functions[which];
+        let (body, first) = (f.body.to_owned(), f.line);
+        // the state, or coordinates and velocities
+        let inputs = f.arguments.split_last().map_or(&[][..], |(_, inputs)| inputs);
+        let arrays: Vec<&str> = inputs.iter().copied().filter(|a| body.contains(&format!("{a}["))).collect();
+        let half = if let [_, _] = arrays[..] { self.state.len() / 2 } else { self.state.len() };
+        for (array, names) in arrays.iter().zip(self.state.chunks(half.max(1))) {
+            for (k, name) in names.iter().enumerate() {
+                self.known.insert(format!("{array}[{k}]"), name.clone());
+            }
         }
         let mut at = 0;
         while at < body.len() {

@@ -106,6 +106,30 @@ fn tables_of_accelerations_are_reviewed_in_floats() {
 }
 
 #[test]
+fn functions_of_c_by_hand_are_read() {
+    let scene = catalogue::find("sleigh", &[]).unwrap();
+    let body = "double u = X[3]*cos(X[2]) + X[4]*sin(X[2]), w = X[5], s = a*w*w;
+        D[0] = s*cos(X[2]) - u*sin(X[2])*w; /* forwards */
+        D[1] = s*sin(X[2]); D[1] += u*w*cos(X[2]);
+        D[2] = -m*a*u*w/(I + m*pow(a, 2));";
+    let whole =
+        format!("void f(double t, const double *y, double *acc) {{ {} }}", body.replace('X', "y").replace('D', "acc"));
+    let apart = body
+        .replace("X[3]", "v[0]")
+        .replace("X[4]", "v[1]")
+        .replace("X[5]", "v[2]")
+        .replace('X', "q")
+        .replace('D', "out");
+    let apart = format!("void f(const double q[3], const double v[3], double out[3])\n{{ {apart} }}");
+    for code in [&whole, &apart] {
+        let found = review(&scene, "f.c", code, &Asked::default()).unwrap();
+        assert_eq!(found.verdict, Verdict::Right, "{code}: {found:?}");
+    }
+    let found = review(&scene, "f.c", &whole.replace("+= u*w", "-= u*w"), &Asked::default()).unwrap();
+    assert_eq!(found.verdict, Verdict::Wrong);
+}
+
+#[test]
 fn where_nothing_explains_them_coefficients_are_told() {
     let found = of("sleigh", "phi'' = x'*phi'\nx'' = 3*x'*phi'\ny'' = x'^2");
     assert_eq!((found.verdict, found.explanations.len()), (Verdict::Wrong, 0));
