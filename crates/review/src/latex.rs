@@ -25,7 +25,7 @@ pub(crate) fn lines(g: &Graph, names: &[String], file: &str, text: &str) -> Resu
         let mut reader = Reader { characters: &characters, at: 0, depth: 0, table: &table };
         let place = format!("{file}:{number}");
         let text = reader.sum(None).map_err(|what| {
-            let near: String = characters[reader.at.saturating_sub(1)..].iter().take(20).collect();
+            let near: String = characters.iter().skip(reader.at.saturating_sub(1)).take(20).collect();
             ReviewError::Unreadable { place: place.clone(), what: format!("{what}, near `{}`", near.trim()) }
         })?;
         if !text.trim().is_empty() {
@@ -68,11 +68,12 @@ fn pieces(text: &str) -> Vec<(usize, String)> {
                     *first = number;
                 }
                 piece.push(' ');
-                piece.push_str(part.trim_end_matches([',', '.']));
+                piece.push_str(part);
             }
         }
     }
-    pieces.retain(|(_, piece)| !piece.trim().is_empty());
+    // the rest is words
+    pieces.retain(|(_, piece)| piece.contains('='));
     pieces
 }
 
@@ -93,6 +94,7 @@ impl Reader<'_> {
     }
 
     fn word(&mut self, part: impl Fn(char) -> bool) -> String {
+        self.at = self.at.min(self.characters.len());
         let from = self.at;
         while self.characters.get(self.at).is_some_and(|&c| part(c)) {
             self.at += 1;
@@ -108,7 +110,9 @@ impl Reader<'_> {
                 self.at += 1;
                 return Ok(text);
             }
-            if "+-=*/".contains(c) {
+            if ",.;".contains(c) && end.is_none() {
+                self.at += 1;
+            } else if "+-=*/".contains(c) {
                 self.at += 1;
                 text.push(c);
                 operand = false;
@@ -270,8 +274,9 @@ impl Reader<'_> {
         }
         self.at += 1;
         if self.peek() != Some('{') {
+            let sign = self.peek().map_or_else(String::new, String::from);
             self.at += 1;
-            return format!("_{}", self.characters[self.at - 1]);
+            return format!("_{sign}");
         }
         self.at += 1;
         let mut depth = 1;

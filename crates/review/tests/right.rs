@@ -107,6 +107,22 @@ fn every_scene_is_right_as_it_is_shown() {
 }
 
 #[test]
+fn latex_of_papers_is_read() {
+    let theirs = r"\documentclass{article}
+\begin{document} Its equations are
+\begin{align}
+ m \ddot{x} &= m a \left(\ddot\phi \sin\phi + \dot\phi^2 \cos\phi\right) - N_1 \sin\phi, \\
+ m\,\ddot y &= -ma(\ddot{\varphi}\cos{\varphi} - \dot{\varphi}^{2}\sin\varphi) + N_{1}\cos\varphi, \label{eq:y}\\
+ \frac{I + ma^2}{2}\,\ddot\phi &= \tfrac12 m a\,(\ddot x\sin\phi - \ddot y\cos\phi),\\
+ \dot y\cos\phi &= \dot x \sin\phi .
+\end{align}
+\end{document}";
+    let sleigh = catalogue::find("sleigh", &[]).unwrap();
+    let found = review(&sleigh, "a.tex", theirs, &Asked::default()).unwrap();
+    assert_eq!((found.verdict, &found.unknowns[..]), (Verdict::Right, &["N_1".to_string()][..]), "{found:?}");
+}
+
+#[test]
 fn quasi_velocities_leaves_and_logarithms() {
     let sleigh = catalogue::find("sleigh", &[]).unwrap();
     let kane = "phi' = w\nx' = u*cos(phi)\ny' = u*sin(phi)\nu' = a*w^2\nw' = -m*a*u*w/(I + m*a^2)";
