@@ -339,5 +339,13 @@ fn explanations<C: Number>(
     if found.is_empty() && wrong.len() * atoms.len() <= MOST {
         found = with(&mut wrong.iter(), false, true);
     }
+    // other removals may give the same
+    let mut told = Vec::new();
+    found.retain(|words| {
+        !told.contains(words) && {
+            told.push(words.clone());
+            true
+        }
+    });
     found
 }
