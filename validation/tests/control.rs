@@ -11,7 +11,7 @@ fn compared(name: &str, forged: fn(&mut Run, &mut Run)) -> Comparison {
     let scene = catalogue::find(name, &[("duration".into(), 0.5.into())]).expect("built in");
     let settings = Settings::default();
     let choices = choices(&scene);
-    let mut control = substitution::run(&scene, &choices, &settings).expect("a removal");
+    let mut control = review::substitution::run(&scene, &choices, &settings).expect("a removal");
     let choice = choices.into_iter().next().expect("Chetaev's");
     let mut chetaev = Run { outcome: solve_choice(&scene, &choice, &settings), choice };
     forged(&mut chetaev, &mut control);

@@ -98,7 +98,7 @@ fn a_removal_without_costates_is_said_to_be_substitution() {
         println!("{name}: {why}");
         for run in &mut comparison.runs {
             let (Some(removal), Ok(motion)) = (&run.choice.removal, &mut run.outcome) else { continue };
-            let equations = substitution::derive(&comparison.scene.system, removal);
+            let equations = review::substitution::derive(&comparison.scene.system, removal);
             let setting = setting(&comparison.scene);
             let Ok(mut wrong) = solve(setting, equations, &ConstantsRule::Zero, &Settings::default()) else { continue };
             let gap = compare_motions(motion, &mut wrong, &mut metric).expect("a gap");

@@ -8,15 +8,15 @@ use deltaq::{
 };
 use integrate::{Method, Projection};
 use pages::{membership::value as membership_value, scene_page, summary, verdicts};
+use review::substitution::SUBSTITUTION;
 use serde_json::{Value, json};
-use substitution::SUBSTITUTION;
 use validation::report::{AuditReport, BicycleReport, overview, referees_section};
 
 /// A scene in all formulations, the control among them.
 fn compared(name: &str, duration: f64, settings: &Settings) -> Comparison {
     let scene = catalogue::find(name, &[("duration".into(), duration.into())]).expect("built in");
     let choices = choices(&scene);
-    let control = substitution::run(&scene, &choices, settings).into_iter().collect();
+    let control = review::substitution::run(&scene, &choices, settings).into_iter().collect();
     compare_unfitted(scene, choices, control, settings).expect("compared")
 }
 

@@ -8,6 +8,7 @@ mod integrals;
 mod judge;
 mod linearize;
 mod range;
+mod review;
 mod scenes;
 
 use std::path::PathBuf;
@@ -29,6 +30,7 @@ pub use judge::JudgeArguments;
 pub use linearize::{LinearizeArguments, TableFormat};
 use program::{Common, Output, TextOrJson, by_name};
 pub use range::{MOST_MEMBERS, Range};
+pub use review::ReviewArguments;
 pub use scenes::{CheckArguments, NewArguments, Overrides, SceneArguments, ShowArguments};
 
 /// The methods of time stepping that are built in.
@@ -39,7 +41,7 @@ pub const METHODS: &[Method] = &diffsol_methods::EVERY;
 pub const METHODS: &[Method] = &Method::ALL;
 
 /// What exit codes mean, below the help of the program.
-const EXIT_CODES: &str = "Exit codes: 0 for an answer to be trusted, 1 where it cannot be written, 2 for bad input, 3 for an answer \
+const EXIT_CODES: &str = "Exit codes: 0 for an answer to be trusted, 1 where it cannot be written or `review` finds equations wrong, 2 for bad input, 3 for an answer \
 that is not to be trusted or that there is not, 4 where results contradict each other, 5 where a computation breaks off. \
 4 and 5 are faults of deltaq: please report them.";
 
@@ -89,6 +91,8 @@ pub enum Command {
     Integrals(IntegralsArguments),
     /// Say which law a program integrates, from motions that it made: slip, epsilon and drag with errors.
     Judge(JudgeArguments),
+    /// Say whether somebody's equations of motion are right, and if not, what is wrong with them.
+    Review(ReviewArguments),
     /// Fit unknown numbers to films: estimates with intervals, and which formulation the films support.
     Fit(FitArguments),
     /// Choose the film to be made that tells two formulations apart best, or shows a number best.

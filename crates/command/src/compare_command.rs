@@ -96,7 +96,7 @@ fn compared(
     );
     // the control judges the harness, which is for pages and machines
     let wanted = arguments.output.format == TextOrJson::Json || arguments.output.out.is_some() || arguments.markdown;
-    let control = if wanted && only.is_empty() { substitution::run(&scene, &choices, settings) } else { None };
+    let control = if wanted && only.is_empty() { review::substitution::run(&scene, &choices, settings) } else { None };
     let extent = if wanted { Extent::Everything } else { Extent::Answer };
     let mut comparison = Comparison::new(scene, extent, settings)?;
     for choice in choices {

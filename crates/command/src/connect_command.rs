@@ -33,7 +33,7 @@ pub(crate) fn run(arguments: &ConnectArguments) -> Result<Answer> {
         TextOrJson::Text => text(&scene, name, &aim, &found),
         TextOrJson::Json => pretty("connect", &json_of(&scene, name, &aim, &found)),
     };
-    Ok(Answer { text, complaint })
+    Ok(Answer { text, complaint, ..Answer::default() })
 }
 
 fn text(scene: &Scene, formulation: &str, aim: &Aim, found: &Connections) -> String {

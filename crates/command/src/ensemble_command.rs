@@ -84,7 +84,7 @@ pub(crate) fn run(arguments: &EnsembleArguments, quiet: bool) -> Result<Answer> 
     reads_on = reads_on && sink.write(&answers.end(&seconds))?;
     let file = if reads_on { sink.close()? } else { None };
     let text = file.map_or(String::new(), |path| format!("{} members in {}\n", members.count(), path.display()));
-    Ok(Answer { text, complaint })
+    Ok(Answer { text, complaint, ..Answer::default() })
 }
 
 /// Multipliers vary only where a motion starts from those of the scene.

@@ -53,7 +53,7 @@ pub fn run(arguments: &FitArguments) -> Result<Answer> {
         TextOrJson::Text => text(&films, &rows),
         TextOrJson::Json => pretty("fit", &fit_value(&scene, &films, &rows)),
     };
-    Ok(Answer { text, complaint })
+    Ok(Answer { text, complaint, ..Answer::default() })
 }
 
 /// A contradiction has an exit code of its own.

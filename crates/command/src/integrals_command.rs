@@ -35,7 +35,7 @@ pub fn run(arguments: &IntegralsArguments, quiet: bool) -> Result<Answer> {
     }
     let told = |file: &str| format!("{}: the answers are in {file}\n", scene.name);
     let text = keep(arguments.out.as_deref(), text, told)?;
-    Ok(Answer { text, complaint })
+    Ok(Answer { text, complaint, ..Answer::default() })
 }
 
 /// Writes certificates, and says which there are not and why.

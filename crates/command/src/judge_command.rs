@@ -53,7 +53,7 @@ pub fn run(arguments: &JudgeArguments) -> Result<Answer> {
             pretty("judge", &json!({ "scene": scene.name, "motions": motions, "order": order.map(order_value) }))
         }
     };
-    Ok(Answer { text, complaint })
+    Ok(Answer { text, complaint, ..Answer::default() })
 }
 
 fn numbers(j: &Judgement) -> [(&'static str, &'static str, Option<Number>); 4] {

@@ -1,7 +1,7 @@
 //! The `deltaq` command. Exit code 1 where the answer cannot be written, 2 for bad input; `solve` gives 0
 //! only for a trajectory to trust, 3 where the integration had to stop or its error estimate is too large;
 //! `ensemble` likewise, for any member; `prove` gives 3 without a certificate, `judge` where no law fits,
-//! `fit` where no formulation does; 4 where results contradict each other, and 5 where a computation breaks
+//! `fit` where no formulation does; `review` 1 for wrong equations, and 3 where nothing can be told; 4 where results contradict each other, and 5 where a computation breaks
 //! off: both are faults of the program.
 
 mod bench_command;
@@ -19,6 +19,7 @@ mod integrals_command;
 mod judge_command;
 mod linearize_command;
 mod prove_command;
+mod review_command;
 mod scene_commands;
 mod schema;
 mod show_command;
@@ -62,6 +63,7 @@ fn run(cli: Cli) -> Result<Answer> {
         Command::Design(arguments) => return design_command::run(&arguments),
         Command::Fit(arguments) => return fit_command::run(&arguments),
         Command::Judge(arguments) => return judge_command::run(&arguments),
+        Command::Review(arguments) => return review_command::run(&arguments),
         Command::Prove(arguments) => return prove_command::run(&arguments),
         Command::Connect(arguments) => return connect_command::run(&arguments),
         Command::Ensemble(arguments) => return ensemble_command::run(&arguments, quiet),

@@ -55,5 +55,9 @@ pub fn run(arguments: &ProveArguments) -> Result<Answer> {
         Some(Ok(membership)) => membership_sentence(membership),
         Some(Err(error)) => format!("Whether some μ₀ gives Chetaev's motion is undecided: {error}."),
     };
-    Ok(Answer { text, complaint: Some(format!("no certificate for {}: {reason}. {sentence}", scene.name)) })
+    Ok(Answer {
+        text,
+        complaint: Some(format!("no certificate for {}: {reason}. {sentence}", scene.name)),
+        ..Answer::default()
+    })
 }

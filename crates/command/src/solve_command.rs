@@ -112,7 +112,7 @@ pub(crate) fn run(arguments: &SolveArguments, quiet: bool) -> Result<Answer> {
             pretty("solve", &value)
         }
     };
-    Ok(Answer { text, complaint })
+    Ok(Answer { text, complaint, ..Answer::default() })
 }
 
 /// What is not done by then has a progress bar.

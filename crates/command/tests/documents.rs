@@ -22,6 +22,9 @@ fn runs_as_printed(name: &str) {
     fs::create_dir(&inputs).expect("the folder in which commands run");
     fs::write(inputs.join("disc-on-slope.toml"), DISC).expect("the scene");
     fs::copy(root.join("docs/robot-film.csv"), inputs.join("robot-film.csv")).expect("the film");
+    for theirs in fs::read_dir(root.join("docs/derivations")).expect("equations").flatten() {
+        fs::copy(theirs.path(), inputs.join(theirs.file_name())).expect("equations");
+    }
     trycmd::TestCases::new().case(&page).run();
 }
 
@@ -38,6 +41,11 @@ fn the_guide_is_true() {
 #[test]
 fn the_robot_is_true() {
     runs_as_printed("docs/robot.md");
+}
+
+#[test]
+fn the_page_of_wrong_derivations_is_true() {
+    runs_as_printed("docs/derivations.md");
 }
 
 /// Keys are those of the reader, and the pieces of scenes are pieces of scenes that are read by other tests.

@@ -22,6 +22,7 @@ mod output;
 mod patience;
 mod prove_command;
 mod read_back;
+mod review_command;
 mod shell;
 mod singularities;
 mod support;

@@ -8,7 +8,7 @@ use crate::support::{all_may_be_left, answer, command, commands, elsewhere, none
 const BAD: &str = concat!(env!("CARGO_TARGET_TMPDIR"), "/bad.toml");
 
 /// One call of every command.
-const ANSWERS: [&[&str]; 20] = [
+const ANSWERS: [&[&str]; 21] = [
     &["new"],
     &["check", "sledge"],
     &["solve", "sledge", "-f", "chetaev", "--times", "0,1"],
@@ -22,6 +22,7 @@ const ANSWERS: [&[&str]; 20] = [
     &["prove", "sledge", "--out", "-"],
     &["integrals", "suslov"],
     &["judge", "sledge", concat!(env!("CARGO_MANIFEST_DIR"), "/tests/sledge.csv")],
+    &["review", "sleigh", concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/derivations/right.txt")],
     &[
         "fit",
         "sledge",

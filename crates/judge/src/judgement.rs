@@ -1,5 +1,6 @@
 //! The judgement on one table: laws side by side, numbers, constraint, integrals.
 
+use review::Law;
 use scene::Scene;
 
 use crate::balance::{Balance, Instant};
@@ -7,31 +8,6 @@ use crate::laws::{FirstOrder, Misfit, as_force, first_order, left_out, misfits, 
 use crate::regression::{Number, rms};
 use crate::substituted::substituted;
 use crate::{JudgeError, Samples};
-
-/// A law of motion.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Law {
-    /// Chetaev's, with ε, slip and drag of any size.
-    Chetaev,
-    /// Chetaev's reaction, and `A a = 0` in the place of `ḟ = 0`.
-    MissingRate,
-    /// The vakonomic law, for some `μ₀`.
-    Vakonomic,
-    /// The constraint put into `L`.
-    Substitution,
-}
-
-impl Law {
-    /// Its word.
-    pub fn name(self) -> &'static str {
-        match self {
-            Law::Chetaev => "chetaev",
-            Law::MissingRate => "missing-rate",
-            Law::Vakonomic => "vakonomic",
-            Law::Substitution => "substitution",
-        }
-    }
-}
 
 /// Residual of a law on the motion.
 #[derive(Clone, Debug, PartialEq)]

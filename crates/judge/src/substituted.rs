@@ -34,7 +34,7 @@ fn left_by(scene: &Scene, removal: &Removal, instants: &[Instant]) -> Result<Opt
     let memory: Option<Vec<usize>> = removal.memory.iter().map(|w| w.coordinate).collect();
     let (Some(parameters), Some(memory)) = (parameters, memory) else { return Ok(None) };
     let g = &system.graph;
-    let residuals = substitution::residuals(system, removal);
+    let residuals = review::substitution::residuals(system, removal);
     let seconds: Vec<Symbol> = removal.parameters.iter().map(|u| u.second_rate).collect();
     let outputs = [&residuals[..], g.jacobian(&residuals, &seconds).entries()].concat();
     let own = removal.parameters.iter().flat_map(|u| [u.symbol, u.rate, u.second_rate]);

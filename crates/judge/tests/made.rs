@@ -105,7 +105,7 @@ fn a_constraint_put_into_the_lagrangian_is_named() {
             "#
         );
         let scene = Scene::parse("across", &text).unwrap();
-        let run = substitution::run(&scene, &choices(&scene), &Settings::default()).unwrap();
+        let run = review::substitution::run(&scene, &choices(&scene), &Settings::default()).unwrap();
         let found = judge(&scene, &samples(&mut run.outcome.unwrap(), 1.0), 0.01).unwrap();
         println!("{:?}, of {:?}, noise {:.1e}", found.fitting, found.laws, found.noise);
         assert_eq!(found.fitting, [Law::Substitution]);
@@ -123,7 +123,7 @@ fn where_the_lagrangian_has_no_memory_variable_substitution_is_a_vakonomic_motio
             c.removal.as_ref().is_some_and(plain)
         })
         .collect();
-    let run = substitution::run(&scene, &all, &Settings::default()).unwrap();
+    let run = review::substitution::run(&scene, &all, &Settings::default()).unwrap();
     let found = judge(&scene, &samples(&mut run.outcome.unwrap(), 0.4), 0.01).unwrap();
     assert_eq!(found.fitting, [Law::Vakonomic, Law::Substitution], "{:?}", found.laws);
 }

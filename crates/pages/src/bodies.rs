@@ -9,7 +9,7 @@ use scenery::Drawn;
 use crate::pictures::{drawn, style};
 use deltaq::words::short;
 use program::File;
-use substitution::SUBSTITUTION;
+use review::substitution::SUBSTITUTION;
 
 /// The bodies of `[view]` under the formulations, but not under the control; none for a scene without bodies.
 ///

@@ -11,7 +11,7 @@ use scene::Scene;
 use crate::family::family;
 use picture::{Axis, Curve, Panel, Picture, Style};
 use program::File;
-use substitution::SUBSTITUTION;
+use review::substitution::SUBSTITUTION;
 
 /// Dots on a path, at most, and instants drawn from one to the next.
 const DOTS: f64 = 12.0;

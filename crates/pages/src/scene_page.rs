@@ -13,7 +13,7 @@ use crate::{membership, tables};
 use deltaq::words::Headline;
 use deltaq::words::{precise, short};
 use program::File;
-use substitution::SUBSTITUTION;
+use review::substitution::SUBSTITUTION;
 
 /// The page of a scene and its pictures, with paths in the folder of reports.
 ///

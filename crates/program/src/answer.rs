@@ -8,16 +8,19 @@ use anyhow::{Context, Result};
 use serde_json::Value;
 
 /// How a command ended: the text to print, and whether it can be trusted.
+#[derive(Default)]
 pub struct Answer {
     /// For standard output.
     pub text: String,
     /// Why it cannot be trusted, for standard error.
     pub complaint: Option<String>,
+    /// Whether the answer is no, to a question that a script asks.
+    pub is_no: bool,
 }
 
 impl From<String> for Answer {
     fn from(text: String) -> Answer {
-        Answer { text, complaint: None }
+        Answer { text, ..Answer::default() }
     }
 }
 

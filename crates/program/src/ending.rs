@@ -40,7 +40,7 @@ fn printed(answer: &Answer) -> ExitCode {
         return failed(&error);
     }
     match &answer.complaint {
-        None => ExitCode::SUCCESS,
+        None => ExitCode::from(u8::from(answer.is_no)),
         Some(complaint) => {
             complain(&format!("deltaq: {complaint}"));
             ExitCode::from(3)

@@ -22,6 +22,7 @@ mod proof;
 mod questions;
 mod reading;
 mod residuals;
+mod review;
 mod scene_text;
 mod sensitivities;
 mod shared;

@@ -70,7 +70,7 @@ SHORT = {
     ("_Fitted", "unknowns"): lambda f: f.unknowns(0),
 }
 # written in Python, of what others have
-OTHERS = {"plot", "animate", "to_arrow", "to_pandas", "to_xarray", "_fit", "_design", "_certificate", "_integrals"}
+OTHERS = {"plot", "animate", "to_arrow", "to_pandas", "to_xarray", "_fit", "_design", "_certificate", "_integrals", "_review", "_review_states"}
 
 
 def calls(thing):

@@ -146,6 +146,38 @@ impl Graph {
         squared.into_iter().filter(|&e| self.arena.borrow().term_count(e) > 1).collect()
     }
 
+    /// The terms of a sum, each with its coefficient; `e` alone where it is none.
+    ///
+    /// ```
+    /// let g = symbolic::Graph::new();
+    /// let (x, y) = (g.variable(g.symbol("x")), g.variable(g.symbol("y")));
+    /// let terms = g.terms(g.sub(g.mul(g.integer(3), x), y));
+    /// assert_eq!(terms.iter().map(|&e| g.plain(e)).collect::<Vec<_>>(), ["3*x", "-y"]);
+    /// ```
+    pub fn terms(&self, e: Expr) -> Vec<Expr> {
+        let mut arena = self.arena.borrow_mut();
+        let Node::Sum(constant, terms) = arena.node(e).clone() else { return vec![e] };
+        let constant = (!constant.is_zero()).then(|| arena.number(constant));
+        let terms: Vec<Expr> = terms.iter().map(|&(term, c)| arena.scale(c, term)).collect();
+        terms.into_iter().chain(constant).collect()
+    }
+
+    /// The factors of a product with their exponents in them, without the number before it.
+    pub fn factors(&self, e: Expr) -> Vec<Expr> {
+        let mut arena = self.arena.borrow_mut();
+        match arena.node(e).clone() {
+            Node::Sum(c, terms) if c.is_zero() && terms.len() == 1 => {
+                drop(arena);
+                self.factors(terms[0].0)
+            }
+            Node::Product(factors) => {
+                factors.iter().map(|&factor| arena.power_product(Number::ONE, vec![factor])).collect()
+            }
+            Node::Number(_) => Vec::new(),
+            _ => vec![e],
+        }
+    }
+
     /// The factors of a product that have such an exponent in it.
     fn bases(&self, e: Expr, wanted: impl Fn(&Rational) -> bool) -> Vec<Expr> {
         match self.arena.borrow().node(e) {

@@ -16,7 +16,7 @@ use super::finding::{Finding, Findings, Word};
 use super::found_out::referee;
 use super::recipe::Recipe;
 use crate::realization::{constraint_jacobian, numbers};
-use substitution::SUBSTITUTION;
+use review::substitution::SUBSTITUTION;
 
 /// Tolerances tried one after the other: what round-off does not allow is asked for less sharply.
 const TOLERANCES: [f64; 3] = [1e-11, 1e-9, 1e-7];
@@ -111,7 +111,9 @@ impl Case {
         }
         let by_coordinates = removed.iter().find(|r| r.removal.name == "coordinates").or(removed.first());
         let control = match by_coordinates.filter(|_| !system.has_forces()) {
-            Some(Removed { removal, .. }) => Some((removal.clone(), run(substitution::derive(system, removal), &[])?)),
+            Some(Removed { removal, .. }) => {
+                Some((removal.clone(), run(review::substitution::derive(system, removal), &[])?))
+            }
             None => None,
         };
         Ok(Case {

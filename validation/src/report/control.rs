@@ -3,7 +3,7 @@
 use deltaq::words::{enumerate, short};
 use deltaq::{CHETAEV, Comparison, Metric, Setting, Verdict, setting};
 use random::{FoundOut, Unjudged, Word, found_out, referee};
-use substitution::SUBSTITUTION;
+use review::substitution::SUBSTITUTION;
 
 /// The control on one scene.
 pub struct Control {

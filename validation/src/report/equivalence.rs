@@ -60,7 +60,7 @@ impl Asked {
         let end = scene.start.t + scene.duration;
         let found = if self.control {
             let removal = Removal::by_coordinates(&scene.system, &scene.start)?;
-            let curve = substitution::derive(&scene.system, &removal);
+            let curve = review::substitution::derive(&scene.system, &removal);
             let constants = vec![0.0; curve.free_constants.len()];
             let vakonomic = choices(&scene).into_iter().find(|choice| choice.formulation == VAKONOMIC);
             let family = vakonomic.context("no vakonomic formulation")?;

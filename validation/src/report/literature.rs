@@ -123,7 +123,7 @@ impl Case {
         let scene = self.asked.scene(&BTreeMap::new())?;
         let (choices, settings) = (choices(&scene), Settings::default());
         let chetaev = choices.iter().find(|choice| choice.formulation == CHETAEV).context("no such formulation")?;
-        let control = substitution::run(&scene, &choices, &settings).context("no control")?;
+        let control = review::substitution::run(&scene, &choices, &settings).context("no control")?;
         let [mut one, mut other] = [solve_choice(&scene, chetaev, &settings)?, control.outcome?];
         let end = scene.start.t + scene.duration;
         ensure!(one.end() >= end && other.end() >= end, "a motion ends before {end}");

@@ -8,6 +8,7 @@
     steady = system.linearize(find=True)          # Linearization: eigenvalues about a steady motion
     fit = system.fit(film, free=["g"], sigma=1e-3)      # FilmFit: which formulation a film supports, numbers with intervals
     comparison = system.compare()                 # Comparison: pairs with verdicts, fits of the free constants
+    found = deltaq.review(system, equations)      # are these equations of motion right, and if not, whose are they?
     where = deltaq.sweep(system, {"k": [0.5, 1.0]})     # Sweep: where two motions part, on all cores or a cluster
     table = deltaq.ensemble(system, vary={"g": [1.6]})  # a table of Arrow, or Parquet files
 
@@ -65,6 +66,7 @@ from ._native import (
 )
 from ._films import FilmFit, FormulationFit, Profile, designs
 from ._proof import Proof
+from ._review import review
 from ._sweep import Sweep, ensemble, sweep
 from ._sympy import from_sympy
 
@@ -116,6 +118,7 @@ __all__ = [
     "from_sympy",
     "load",
     "parse",
+    "review",
     "sweep",
 ]
 

@@ -35,7 +35,7 @@ pub struct SceneReport {
 fn compared(scene: Scene, settings: &Settings) -> Result<Comparison> {
     let name = scene.name.clone();
     let choices = choices(&scene);
-    let control = substitution::run(&scene, &choices, settings).into_iter().collect();
+    let control = review::substitution::run(&scene, &choices, settings).into_iter().collect();
     compare_unfitted(scene, choices, control, settings).with_context(|| format!("scene `{name}`"))
 }
 

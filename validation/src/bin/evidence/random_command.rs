@@ -62,7 +62,7 @@ fn told(batch: &Batch, records: &[Record], seconds: Option<f64>, arguments: &Ran
     };
     let json = || json!({ "batch": batch, "summary": summary, "open": open, "counterexamples": paths });
     let text = arguments.output.answer("random", || Ok(files), text, json)?;
-    Ok(Answer { text, complaint: random_complaint(summary.total()) })
+    Ok(Answer { text, complaint: random_complaint(summary.total()), ..Answer::default() })
 }
 
 /// Where the time went.
@@ -88,7 +88,7 @@ fn one(batch: &Batch, index: u64, arguments: &RandomArguments) -> Result<Answer>
     };
     let json = || json!({ "batch": batch, "record": record, "scene": scene.to_toml() });
     let text = arguments.output.answer("random-system", || Ok(vec![file(&scene)]), text, json)?;
-    Ok(Answer { text, complaint: random_complaint(summary.total()) })
+    Ok(Answer { text, complaint: random_complaint(summary.total()), ..Answer::default() })
 }
 
 /// `T5`; what must hold within each formulation has no theorem.

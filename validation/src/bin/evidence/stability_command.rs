@@ -22,5 +22,5 @@ pub(crate) fn run(arguments: &StabilityArguments, quiet: bool) -> Result<Answer>
     let (answers, seconds) = (report.answers(), clock.elapsed().as_secs_f64());
     let text = || report.text() + &format!("\n{answers} cells, {seconds:.1} s\n");
     let text = arguments.output.answer("stability", || report.files(), text, || json!({ "cells": report.json() }))?;
-    Ok(Answer { text, complaint: report.complaint() })
+    Ok(Answer { text, complaint: report.complaint(), ..Answer::default() })
 }
