@@ -104,7 +104,7 @@ fn what_is_one_in_floats_alone_is_not_taken_for_it() {
         for scene in [true, false].map(|as_parameter| form(a, as_parameter)) {
             assert_eq!(scene.system.parameters.first().map_or(1.0, |p| p.value), 1.0, "{a}");
             let found = integrability(&scene).expect("linear");
-            assert_eq!(found, Integrability::Nonintegrable { depth: 1 }, "{a}: {found}");
+            assert!(matches!(found, Integrability::Nonintegrable { depth: 1, .. }), "{a}: {found}");
         }
     }
 }
@@ -116,8 +116,11 @@ fn what_is_zero_is_zero_as_a_parameter_as_well() {
             for as_parameter in [true, false] {
                 let scene = constrained(f, a, as_parameter);
                 let found = integrability(&scene).expect("a verdict");
-                let right =
-                    if is_zero { found.is_integrable() } else { found == Integrability::Nonintegrable { depth: 1 } };
+                let right = if is_zero {
+                    found.is_integrable()
+                } else {
+                    matches!(found, Integrability::Nonintegrable { depth: 1, .. })
+                };
                 assert!(right, "{f}, A = {a}, {as_parameter}: {found}");
                 let every = matches!(answer(&scene), Some(Answer::SomeProved | Answer::Some { settled: true, .. }));
                 assert!(every || !is_zero, "{f}, A = {a}, {as_parameter}");
