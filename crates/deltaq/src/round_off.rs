@@ -13,8 +13,8 @@ use crate::{Motion, Prepared, Setting, Settings, SolveError};
 pub(crate) const STRETCHES: usize = 32;
 pub(crate) const FEW: usize = 4;
 const BETWEEN: f64 = 8.0;
-/// At least so many ends of steps are looked at besides, a like number of steps apart.
-const ENDS: usize = 16;
+/// So many ends of steps are looked at besides, or all, a like number of steps apart.
+const ENDS: usize = 64;
 /// Fraction of a stopped motion that is checked: just before a singularity all terms are large.
 pub(crate) const BEFORE_THE_END: f64 = 0.9;
 
@@ -118,7 +118,7 @@ impl Motion {
         let (start, part) = (self.start(), if self.is_complete() { 1.0 } else { BEFORE_THE_END });
         let length = (self.end() - start).abs();
         let ends = self.step_times();
-        let number = stretches.max(ENDS).min(ends.len());
+        let number = ENDS.min(ends.len());
         let ends = (1..=number).map(|k| ends[k * ends.len() / number - 1]);
         let ends = ends.filter(|t| (t - start).abs() <= part * length).map(|t| self.kept_before(t));
         let grid = self.grid(stretches).into_iter().map(|t| self.kept_before(start + part * (t - start)));

@@ -133,7 +133,10 @@ fn a_brief_cancellation_is_seen_wherever_it_is() {
                 assert_eq!(judge, "completed");
                 doubted += usize::from(status != "completed");
                 let known = (0..3).all(|i| (end[i] - truth[i]).abs() <= 10.0 * estimate[i] + 1e-12);
-                assert!(known || status != "completed", "{width}, {middle}, {duration}: {end:?} {truth:?} {estimate:?}");
+                assert!(
+                    known || status != "completed",
+                    "{width}, {middle}, {duration}: {end:?} {truth:?} {estimate:?}"
+                );
             }
         }
     }
