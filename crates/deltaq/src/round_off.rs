@@ -112,8 +112,8 @@ impl Motion {
         found
     }
 
-    /// Time, states and the sums of terms behind their rates at equidistant instants and at ends of steps, more
-    /// where these are short, up to the first at which they cannot be evaluated.
+    /// Time, states and the sums of terms behind their rates at equidistant instants and at ends of steps,
+    /// more where these are short, up to the first at which they cannot be evaluated.
     fn terms_along(&mut self, stretches: usize) -> Vec<Looked> {
         let (start, part) = (self.start(), if self.is_complete() { 1.0 } else { BEFORE_THE_END });
         let length = (self.end() - start).abs();

@@ -213,8 +213,8 @@ fn no_member_changes_branches_silently() {
     }
 }
 
-/// A robot with two drive wheels and a castor; the constraints as they are written for each wheel, or five of them
-/// that are independent at every heading.
+/// A robot with two drive wheels and a castor; the constraints as they are written for each wheel, or five
+/// of them that are independent at every heading.
 fn robot(constraints: &str, duration: f64) -> Scene {
     let text = format!(
         "title = \"robot\"\n[parameters]\nb = 0.17\nr = 0.08\na = 0.22\ne = 0.04\nrc = 0.03\n[coordinates]\n\
@@ -236,8 +236,8 @@ const EACH_WHEEL: &str = "\"CR' - r*right'*c\", \"CL' - r*left'*c\", \"CC' - rc*
 const INDEPENDENT: &str = "\"dot(CR', c) - r*right'\", \"dot(CR', n)\", \"dot(CL', c) - r*left'\", \"(CC' - rc*roll'*k).x\", \
                            \"(CC' - rc*roll'*k).y\"";
 
-/// Two wheels on one axle cannot both slip: one of the four rows follows from the others, and which one may be left
-/// out changes with the heading. The judge is the same robot by rows that are independent everywhere.
+/// Two wheels on one axle cannot both slip: one of the four rows follows from the others, and which one may
+/// be left out changes with the heading. The judge is the same robot by rows that are independent everywhere.
 #[test]
 fn dependent_rows_of_constant_rank_are_changed_on_the_way() {
     let (written, judge) = (robot(EACH_WHEEL, 40.0), robot(INDEPENDENT, 40.0));
