@@ -239,8 +239,9 @@ fn a_motion_looked_at_after_whole_periods_only_has_its_size() {
     assert!(estimate.relative < 1e-8, "{estimate:?}");
 }
 
-/// A constraint nonlinear in the velocities whose multiplier changes by much where the impulse of a step is small:
-/// steps of 0.01 are short enough, and their errors fall with the square of the step. The judge is the time loop.
+/// A constraint nonlinear in the velocities whose multiplier changes by much where the impulse of a step is
+/// small: steps of 0.01 are short enough, and errors fall with the square of the step. The judge is the time
+/// loop.
 #[test]
 fn steps_are_as_long_as_their_impulses_allow() {
     let text = "title = \"quadric\"\n[coordinates]\nx = { start = -0.5 }\ny = { start = 0.4375 }\nz = { start = 0 }\n\
