@@ -174,8 +174,8 @@ fn going_on(
     Some((by, next))
 }
 
-/// The system with the constraints that are well apart at these points, of those that depend; and multipliers that
-/// give the same momenta with them.
+/// The system with the constraints that are well apart at these points, of those that depend; and
+/// multipliers that give the same momenta with them.
 fn other_rows(system: &System, points: &mut [Point; 2]) -> Option<System> {
     if system.redundant.is_empty() {
         return None;

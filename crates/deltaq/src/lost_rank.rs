@@ -29,8 +29,8 @@ pub(crate) fn watch_rank(equations: &mut Equations, system: &System) {
     });
 }
 
-/// The rows whose rank may fall along a motion. A row with a column of its own, in which it has a constant other
-/// than zero, adds one to the rank of the others everywhere; and a row of constant length has rank 1.
+/// The rows whose rank may fall along a motion. A row with a column of its own, in which it has a constant
+/// other than zero, adds one to the rank of the others everywhere; and a row of constant length has rank 1.
 fn rows_at_stake(system: &System, jacobian: &Matrix) -> Vec<usize> {
     let (g, values) = (&system.graph, system.parameter_values());
     let is_constant = |e: Expr| g.symbols_of(e).iter().all(|symbol| values.contains_key(symbol));

@@ -13,8 +13,8 @@ use crate::{Motion, Prepared, Setting, Settings, SolveError};
 pub(crate) const STRETCHES: usize = 32;
 pub(crate) const FEW: usize = 4;
 const BETWEEN: f64 = 8.0;
-/// As many ends of steps are looked at for each of them, a like number of steps apart.
-const OF_STEPS: usize = 4;
+/// So many ends of steps are looked at besides, or all, a like number of steps apart.
+const ENDS: usize = 64;
 /// Fraction of a stopped motion that is checked: just before a singularity all terms are large.
 pub(crate) const BEFORE_THE_END: f64 = 0.9;
 
@@ -112,13 +112,13 @@ impl Motion {
         found
     }
 
-    /// Time, states and the sums of terms behind their rates at equidistant instants and at ends of steps, more
-    /// where these are short, up to the first at which they cannot be evaluated.
+    /// Time, states and the sums of terms behind their rates at equidistant instants and at ends of steps,
+    /// more where these are short, up to the first at which they cannot be evaluated.
     fn terms_along(&mut self, stretches: usize) -> Vec<Looked> {
         let (start, part) = (self.start(), if self.is_complete() { 1.0 } else { BEFORE_THE_END });
         let length = (self.end() - start).abs();
         let ends = self.step_times();
-        let number = (OF_STEPS * stretches).min(ends.len());
+        let number = ENDS.min(ends.len());
         let ends = (1..=number).map(|k| ends[k * ends.len() / number - 1]);
         let ends = ends.filter(|t| (t - start).abs() <= part * length).map(|t| self.kept_before(t));
         let grid = self.grid(stretches).into_iter().map(|t| self.kept_before(start + part * (t - start)));

@@ -208,11 +208,13 @@ fn dependent_constraints_at_the_start() {
     }
     let error = compare(scene.clone(), choices(&scene), Vec::new(), &Settings::default()).err().expect("not refused");
     assert!(matches!(error, SolveError::Removal(RemovalError::Dependent { .. })), "{error}");
-    // a scene refuses them before
+    // a scene leaves out what follows from the others, and refuses what depends at the start only
     let edge = "\"y'*cos(phi) - x'*sin(phi)\"";
     let removals = SLEDGE.find("[removal").expect("there are some")..SLEDGE.find("[run]").expect("there is one");
-    let text = SLEDGE.replace(&SLEDGE[removals], "").replace(edge, &format!("{edge}, {edge}"));
-    let error = Scene::parse("sledge", &text).unwrap_err();
+    let with = |other: &str| SLEDGE.replace(&SLEDGE[removals.clone()], "").replace(edge, &format!("{edge}, {other}"));
+    let twice = Scene::parse("sledge", &with(edge)).unwrap_or_else(|e| panic!("{e}"));
+    assert_eq!((twice.system.constraints.len(), twice.system.redundant.len()), (1, 1));
+    let error = Scene::parse("sledge", &with("\"y'*cos(phi) - x'*sin(phi) + x*phi'\"")).unwrap_err();
     assert!(matches!(*error.kind, SceneErrorKind::Start(StartError::DependentConstraints { .. })), "{error}");
 }
 

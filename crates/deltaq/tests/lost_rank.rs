@@ -213,8 +213,8 @@ fn no_member_changes_branches_silently() {
     }
 }
 
-/// A robot with two drive wheels and a castor; the constraints as they are written for each wheel, or five of them
-/// that are independent at every heading.
+/// A robot with two drive wheels and a castor; the constraints as they are written for each wheel, or five
+/// of them that are independent at every heading.
 fn robot(constraints: &str, duration: f64) -> Scene {
     let text = format!(
         "title = \"robot\"\n[parameters]\nb = 0.17\nr = 0.08\na = 0.22\ne = 0.04\nrc = 0.03\n[coordinates]\n\
@@ -236,8 +236,8 @@ const EACH_WHEEL: &str = "\"CR' - r*right'*c\", \"CL' - r*left'*c\", \"CC' - rc*
 const INDEPENDENT: &str = "\"dot(CR', c) - r*right'\", \"dot(CR', n)\", \"dot(CL', c) - r*left'\", \"(CC' - rc*roll'*k).x\", \
                            \"(CC' - rc*roll'*k).y\"";
 
-/// Two wheels on one axle cannot both slip: one of the four rows follows from the others, and which one may be left
-/// out changes with the heading. The judge is the same robot by rows that are independent everywhere.
+/// Two wheels on one axle cannot both slip: one of the four rows follows from the others, and which one may
+/// be left out changes with the heading. The judge is the same robot by rows that are independent everywhere.
 #[test]
 fn dependent_rows_of_constant_rank_are_changed_on_the_way() {
     let (written, judge) = (robot(EACH_WHEEL, 40.0), robot(INDEPENDENT, 40.0));
@@ -285,4 +285,46 @@ fn redundant_positions_leave_a_degree_of_freedom() {
     // and where rows depend at the start only, they do not follow from one another
     let text = text.replace("y = { start = 1 }", "y = { start = 0 }").replace("x = { start = 0 }", "x = { start = 1 }");
     Scene::parse("cranks", &text).expect_err("a place where the rank falls");
+}
+
+/// One constraint, however it is written: every form stops at x = 1, at one time and in the same words.
+#[test]
+fn writings_of_one_constraint_have_one_end() {
+    let writings = [
+        "(x - 1)*(z' - y*x')",
+        "(1 - x)*(z' - y*x')",
+        "(1 - x)*(y*x' - z')",
+        "x*z' - z' - x*y*x' + y*x'",
+        "z'*(x - 1) + (1 - x)*y*x'",
+        "(x^2 - 1)/(1 + x)*(z' - y*x')",
+        "(x - 1)^3*(z' - y*x')",
+        "(exp(x - 1) - 1)*(z' - y*x')",
+        "sin(x - 1)*(y*x' - z')",
+        "1e6*(2 - 2*x)*(z' - y*x')",
+        "log(x)*(z' - y*x')",
+        "(sqrt(x) - 1)*(z' - y*x')*exp(y)",
+        "z'*x - (z' + y*x'*(x - 1))",
+        "(1 - x)*z' + y*x'*x - y*x'",
+    ];
+    for formulation in [deltaq::CHETAEV, deltaq::VAKONOMIC, deltaq::REMOVED_CONSTRAINT] {
+        let mut first: Option<(f64, String)> = None;
+        for writing in writings {
+            let text = format!(
+                "title = \"writings\"\n[coordinates]\nx = {{ start = 0.125 }}\ny = {{ start = 0.25 }}\nz = {{ start = 0 }}\n\
+                 [system]\nlagrangian = \"(x'^2 + y'^2 + z'^2 - y^2)/2\"\nconstraints = [\"{writing}\"]\n\
+                 [start.velocities]\n\"x'\" = 0.75\n\"y'\" = 0.25\n[run]\nduration = 2\n"
+            );
+            let scene = Scene::parse("writings", &text).unwrap_or_else(|e| panic!("{text}: {e}"));
+            let choice = choices(&scene).into_iter().find(|c| c.formulation == formulation).expect("a choice");
+            for form in [deltaq::Form::Suited, deltaq::Form::Named] {
+                let motion =
+                    solve_choice(&scene, &choice, &Settings { form, ..Settings::default() }).expect("a motion");
+                let Ending::Stopped { t, cause } = motion.ending else { panic!("{}, {writing}", choice.label) };
+                let (before, words) = first.get_or_insert((t, cause.clone()));
+                assert_eq!(*words, cause, "{}, {writing}", choice.label);
+                assert!((*before - t).abs() < 1e-3, "{}, {writing}: {t}, {before}", choice.label);
+                assert!(cause.starts_with("constraint 1 says nothing of the velocities at x = 1, "), "{cause}");
+            }
+        }
+    }
 }

@@ -101,8 +101,9 @@ fn a_pendulum_leaves_its_top() {
     assert!(error < 1e-2 * truth.abs() && error < estimated && estimated < 0.1 * truth.abs(), "{error}, {estimated}");
 }
 
-/// A force that is a difference of large terms for a short time, wherever that is: an estimate knows it, or there is
-/// none. The judge is the same force without the difference, `2/ε² (1 − cos(ε x)) = x²` up to 1e-16 of it.
+/// A force that is a difference of large terms for a short time, wherever that is: an estimate knows it, or
+/// there is none. The judge is the same force without the difference, `2/ε² (1 − cos(ε x)) = x²` up to 1e-16
+/// of it.
 #[test]
 fn a_brief_cancellation_is_seen_wherever_it_is() {
     let mut doubted = 0;

@@ -238,3 +238,26 @@ fn a_motion_looked_at_after_whole_periods_only_has_its_size() {
     assert_eq!(estimate.status(&motion), ("completed", None), "{estimate:?}");
     assert!(estimate.relative < 1e-8, "{estimate:?}");
 }
+
+/// A constraint nonlinear in the velocities whose multiplier changes by much where the impulse of a step is
+/// small: steps of 0.01 are short enough, and errors fall with the square of the step. The judge is the time
+/// loop.
+#[test]
+fn steps_are_as_long_as_their_impulses_allow() {
+    let text = "title = \"quadric\"\n[coordinates]\nx = { start = -0.5 }\ny = { start = 0.4375 }\nz = { start = 0 }\n\
+                [system]\nlagrangian = \"(x'^2 + y'^2)/2 + 19*(x*y' - x'*y)/16 - 13*(x^2 + y^2 + z^2)/32 + \
+                11*z'*sin(x)/16\"\nconstraints = [\"z'^2 - (x'^2 + y'^2)/4 - 1/16\"]\n[start]\n\
+                guess = { \"z'\" = 1 }\n[start.velocities]\n\"x'\" = 0.6875\n\"y'\" = -0.75\n[run]\nduration = 4\n";
+    let scene = Scene::parse("quadric", text).unwrap_or_else(|e| panic!("{e}"));
+    let choice = &choices(&scene)[0];
+    let truth = solve_choice(&scene, choice, &Settings::default()).expect("a motion").at(4.0).expect("its end");
+    let off = |step: f64| {
+        let steps = Steps { step, composition: Composition::Second };
+        let mut motion = solve_by_steps(&scene, choice, steps, &Settings::default()).expect("a motion");
+        let end = motion.at(4.0).expect("its end");
+        let apart = end.coordinates.iter().zip(&truth.coordinates).map(|(a, b)| (a - b).abs());
+        apart.fold(0.0, f64::max)
+    };
+    let [coarse, fine] = [off(0.01), off(0.005)];
+    assert!(coarse < 1e-4 && (3.0..5.0).contains(&(coarse / fine)), "{coarse:e} {fine:e}");
+}

@@ -117,8 +117,8 @@ impl Iteration {
     }
 }
 
-/// What the correction of the multipliers does to the equations of the rates, over what these make of them: of
-/// a short step the multipliers may change by much and move nothing.
+/// What the correction of the multipliers does to the equations of the rates, over what these make of them:
+/// of a short step the multipliers may change by much and move nothing.
 fn impulses(jacobian: &[f64], z: &[f64], correction: &[f64], rates: usize) -> f64 {
     let rows = || jacobian.chunks_exact(z.len()).take(rates);
     let sum = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>().abs();

@@ -278,11 +278,6 @@ impl Compiled {
         self.sizes.guards
     }
 
-    /// Whether other pivots might be taken ([`Equations::chart`]).
-    pub fn has_chart(&self) -> bool {
-        self.guards.values().len() > self.guards() || self.rows.as_ref().is_some_and(|rows| rows.replaceable)
-    }
-
     /// Values of the guards, whose zeros are singularities; where there is room for one more, after them the
     /// sum of the squares of the chart's coefficients, which those of redundant rows are, too.
     pub fn guard_values(&mut self, t: f64, y: &[f64], values: &mut [f64]) {
@@ -296,26 +291,6 @@ impl Compiled {
                 *size += rows.dependence(&self.inputs);
             }
         }
-    }
-
-    /// Rows and columns of [`Equations::rows`]; `(0, 0)` where there are none.
-    pub fn rank(&self) -> (usize, usize) {
-        self.rows.as_ref().map_or((0, 0), |rows| rows.shape)
-    }
-
-    /// The entries of [`Equations::rows`] at `(t, y)`, row-major.
-    ///
-    /// # Errors
-    /// As [`Compiled::rates`].
-    pub fn rows(&mut self, t: f64, y: &[f64], entries: &mut [f64]) -> Result<(), EvaluationFailure> {
-        self.load(t, y);
-        if self.rows.as_ref().is_some_and(|rows| rows.need_unknowns) {
-            self.solve_instant(t, y)?;
-        }
-        if let Some(rows) = &mut self.rows {
-            entries.copy_from_slice(rows.program.evaluate(&self.inputs[..rows.inputs]));
-        }
-        Ok(())
     }
 
     /// The matrices `∂R/∂z` of the blocks at `(t, y)`, row-major; of those that are not linear at the last

@@ -182,8 +182,8 @@ pub struct Equations {
     pub guards: Vec<Expr>,
     /// Those of the guards at which formulas, as they were written, cease to have values.
     pub domains: Vec<Expr>,
-    /// `A = ∂f/∂v` of the constraints of the system in `(t, y, z)`: where it loses rank along a motion, several
-    /// motions go on, or none. `None` where it is constant, or there is no constraint.
+    /// `A = ∂f/∂v` of the constraints of the system in `(t, y, z)`: where it loses rank along a motion,
+    /// several motions go on, or none. `None` where it is constant, or there is no constraint.
     pub rows: Option<ConstraintRows>,
     /// By which pivots they were derived, where these may become small along a motion and others be taken;
     /// never where the outputs are other coordinates than those of the system.

@@ -31,8 +31,8 @@ impl Rows {
         Ok(Some(Rows { program, shape, need_unknowns, inputs: inputs.len(), replaceable }))
     }
 
-    /// `1/det(N Nᵀ)` of the rows `N`, made of length 1: 1 where they are orthogonal, and large where they nearly
-    /// depend.
+    /// `1/det(N Nᵀ)` of the rows `N`, made of length 1: 1 where they are orthogonal, and large where they
+    /// nearly depend.
     pub(crate) fn dependence(&mut self, inputs: &[f64]) -> f64 {
         let (h, n) = self.shape;
         let entries = DMatrix::from_row_slice(h, n, self.program.evaluate(&inputs[..self.inputs]));

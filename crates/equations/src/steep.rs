@@ -1,10 +1,11 @@
 //! Quantities that may change within less than a step: rapidly varying functions, jumping angles, vanishing
-//! divisors.
+//! divisors, ranks.
 
 use std::collections::{HashMap, HashSet};
 
 use symbolic::{Expr, Range, Steep, Symbol};
 
+use crate::blocks::EvaluationFailure;
 use crate::compiled::Compiled;
 use crate::equations::Equations;
 
@@ -104,5 +105,30 @@ impl Compiled {
     pub fn divided(&mut self, t: f64, y: &[f64], values: &mut [f64]) {
         self.load(t, y);
         values.copy_from_slice(self.divisors.evaluate(&self.inputs[..self.sizes.known()]));
+    }
+
+    /// Rows and columns of [`Equations::rows`]; `(0, 0)` where there are none.
+    pub fn rank(&self) -> (usize, usize) {
+        self.rows.as_ref().map_or((0, 0), |rows| rows.shape)
+    }
+
+    /// The entries of [`Equations::rows`] at `(t, y)`, row-major.
+    ///
+    /// # Errors
+    /// As [`Compiled::rates`].
+    pub fn rows(&mut self, t: f64, y: &[f64], entries: &mut [f64]) -> Result<(), EvaluationFailure> {
+        self.load(t, y);
+        if self.rows.as_ref().is_some_and(|rows| rows.need_unknowns) {
+            self.solve_instant(t, y)?;
+        }
+        if let Some(rows) = &mut self.rows {
+            entries.copy_from_slice(rows.program.evaluate(&self.inputs[..rows.inputs]));
+        }
+        Ok(())
+    }
+
+    /// Whether other pivots might be taken ([`Equations::chart`]).
+    pub fn has_chart(&self) -> bool {
+        self.guards.values().len() > self.guards() || self.rows.as_ref().is_some_and(|rows| rows.replaceable)
     }
 }

@@ -138,8 +138,8 @@ pub trait Problem {
         Ok(())
     }
 
-    /// Rows h and columns n of a matrix `B(t, y)` that has rank h along every solution: where it has not, several
-    /// solutions go on, or none, and the integration ends. `(0, 0)` where there is none.
+    /// Rows h and columns n of a matrix `B(t, y)` that has rank h along every solution: where it has not,
+    /// several solutions go on, or none, and the integration ends. `(0, 0)` where there is none.
     fn rank(&self) -> (usize, usize) {
         (0, 0)
     }

@@ -24,8 +24,8 @@ use crate::options::{Method, Options};
 use crate::poles::may_vanish;
 use crate::system::{Failure, System};
 
-/// A minimum where `p` turns counts as zero up to this many roots of the tolerance, within these limits. Errors
-/// of other methods are so many times the tolerance, of solutions as smooth.
+/// A minimum where `p` turns counts as zero up to this many roots of the tolerance, within these limits.
+/// Errors of other methods are so many times the tolerance, of solutions as smooth.
 const ROOTS: f64 = 10.0;
 const LEAST: f64 = 1e-6;
 const MOST: f64 = 1e-2;
@@ -36,8 +36,8 @@ const SAME: f64 = 0.9;
 /// A minimum is judged where |p| is this many times as large again, and forgotten where it is so many times.
 const PASSED: f64 = 2.0;
 const FORGOTTEN: f64 = 16.0;
-/// A run that can go no farther has come to a loss of rank where |p| would vanish, as it falls, within this part
-/// of the time so far.
+/// A run that can go no farther has come to a loss of rank where |p| would vanish, as it falls, within this
+/// part of the time so far.
 const NEAR: f64 = 1e-3;
 /// A minimum is seen against what |p| was within so many of the longest steps before it.
 const STEPS: f64 = 4.0;
@@ -136,7 +136,8 @@ fn cosine(p: &[f64], q: &[f64], h: usize) -> f64 {
     determinant
 }
 
-/// Whether `p` may vanish in a step at whose begin, in whose middle and at whose end it has these sizes and rows.
+/// Whether `p` may vanish in a step at whose begin, in whose middle and at whose end it has these sizes and
+/// rows.
 pub(crate) fn may_lose(sizes: [f64; 3], rows: [&[f64]; 3], h: usize) -> bool {
     let turns = |p: &[f64], q: &[f64]| apart(p, q) >= 1.0 && cosine(p, q, h) <= 0.0;
     may_vanish(sizes.map(|size| size * size)) || turns(rows[0], rows[1]) || turns(rows[1], rows[2])

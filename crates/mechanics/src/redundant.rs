@@ -10,8 +10,8 @@ use crate::{SingularValues, System};
 /// Singular values under this part of the largest are zero at the start, and behind a way from it.
 const AT_START: f64 = 1e-9;
 const BEHIND: f64 = 1e-5;
-/// Ways in random directions that the constraints allow, each as long as changes their matrix by this part, in
-/// steps that double.
+/// Ways in random directions that the constraints allow, each as long as changes their matrix by this part,
+/// in steps that double.
 const WAYS: u64 = 6;
 const CHANGE: f64 = 0.05;
 const FIRST: f64 = 1e-6;
@@ -21,9 +21,9 @@ const NEARLY: f64 = 0.7;
 
 impl System {
     /// Indices of constraints that all others follow from, in their order, where some do: of `A v + b = 0`,
-    /// linear in the velocities, whose `[A b]` has less than full rank at `(t, q)` and, as far as six ways along
-    /// which `A dq + b dt = 0` tell, no more elsewhere. `None` where all are independent, or where they depend
-    /// at this place only.
+    /// linear in the velocities, whose `[A b]` has less than full rank at `(t, q)` and, as far as six ways
+    /// along which `A dq + b dt = 0` tell, no more elsewhere. `None` where all are independent, or where
+    /// they depend at this place only.
     ///
     /// ```
     /// # let mut system = mechanics::System::new(Default::default(), &[("x", "m"), ("y", "m"), ("z", "m")]);

@@ -241,8 +241,8 @@ impl System {
         momenta.iter().enumerate().map(|(i, &p)| g.sub(g.total_derivative(p, flow), on(i))).collect()
     }
 
-    /// New symbols, one per constraint: `stem_1`, `stem_2`, …, by [`System::constraint_numbers`], each with these
-    /// primes.
+    /// New symbols, one per constraint: `stem_1`, `stem_2`, …, by [`System::constraint_numbers`], each with
+    /// these primes.
     pub fn multipliers(&self, stem: &str, primes: &str) -> Vec<Symbol> {
         let numbers = self.constraint_numbers().into_iter();
         numbers.map(|i| fresh_symbol(&self.graph, &format!("{stem}_{i}{primes}"))).collect()

@@ -6,7 +6,8 @@ use super::section::Section;
 use crate::{SceneError, SceneErrorKind, format};
 use mechanics::{ConstantsRule, MemoryVariable};
 
-/// `μ₀`, given one per constraint; zero where the scene says nothing, and of constraints that follow from others.
+/// `μ₀`, given one per constraint; zero where the scene says nothing, and of constraints that follow from
+/// others.
 pub(super) fn multipliers(context: &Context) -> Result<Vec<f64>, SceneError> {
     let (system, numbers) = (&context.system, context.system.constraint_numbers());
     let expected = numbers.len() + system.redundant.len();

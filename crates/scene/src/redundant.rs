@@ -3,8 +3,8 @@
 use super::context::Context;
 use crate::{SceneError, SceneErrorKind};
 
-/// Leaves out what [`mechanics::System::independent_constraints`] finds to follow from the rest. What remains has to
-/// leave something to move.
+/// Leaves out what [`mechanics::System::independent_constraints`] finds to follow from the rest. What
+/// remains has to leave something to move.
 pub(super) fn leave_out(context: &mut Context) -> Result<(), SceneError> {
     let values = context.values_at_rest();
     let t = values.get(&context.system.time).copied().unwrap_or(0.0);
