@@ -58,7 +58,7 @@ pub enum Inertia {
     /// Principal moments along x, y and z.
     Diagonal([Written; 3]),
     /// Rows of the matrix.
-    Full([[Written; 3]; 3]),
+    Full(Box<[[Written; 3]; 3]>),
 }
 
 /// How a body is joined.

@@ -88,7 +88,8 @@ pub(crate) fn written(turns: &[Turn]) -> String {
             factors.push(format!("rotation({word}{angles})"));
         }
         factors.extend(next);
-        (word.clear(), angles.clear());
+        word.clear();
+        angles.clear();
     };
     for turn in turns {
         match &turn.axis {

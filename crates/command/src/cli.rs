@@ -56,8 +56,8 @@ pub struct Cli {
     /// Options of every command.
     #[command(flatten)]
     pub common: Common,
-    /// Seconds that each question of algebra may take (a proof, integrals of one degree, brackets, eigenvalues) before
-    /// it stays open; 0 for no bound.
+    /// Seconds that each question of algebra may take (a proof, integrals of one degree, brackets,
+    /// eigenvalues) before it stays open; 0 for no bound.
     #[arg(long, global = true, value_name = "SECONDS", default_value_t = 10)]
     pub patience: u32,
 }

@@ -1,8 +1,8 @@
 //! The `deltaq` command. Exit code 1 where the answer cannot be written, 2 for bad input; `solve` gives 0
 //! only for a trajectory to trust, 3 where the integration had to stop or its error estimate is too large;
 //! `ensemble` likewise, for any member; `prove` gives 3 without a certificate, `judge` where no law fits,
-//! `fit` where no formulation does; `review` 1 for wrong equations, and 3 where nothing can be told; 4 where results contradict each other, and 5 where a computation breaks
-//! off: both are faults of the program.
+//! `fit` where no formulation does; `review` 1 for wrong equations, and 3 where nothing can be told; 4 where
+//! results contradict each other, and 5 where a computation breaks off: both are faults of the program.
 
 mod bench_command;
 mod cli;

@@ -96,8 +96,8 @@ fn dependent_constraints_are_refused() {
     let (start, end) = (GOOD.find("[removal").expect("there"), GOOD.find("[run]").expect("there"));
     let good = GOOD.replace(&GOOD[start..end], "");
     accepted(&good);
-    // twice the same, which follows from the other; as much at the start only, no velocity at all, positions on which
-    // the start is not
+    // twice the same, which follows from the other; as much at the start only, no velocity at all, positions
+    // on which the start is not
     accepted(&good.replacen("\"z' - y*x'\"", "\"z' - y*x'\", \"2*z' - 2*y*x'\"", 1));
     for (bad, words) in [
         ("\"z' - y*x'\", \"z' - y*x' + x*y'\"", "dependent"),

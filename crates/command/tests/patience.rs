@@ -1,11 +1,12 @@
-//! Questions that would take minutes, or all of the memory, stay open and say why; what else is asked is answered.
+//! Questions that would take minutes, or all of the memory, stay open and say why; what else is asked is
+//! answered.
 
 use std::fmt::Write;
 
 use crate::support::answer;
 
-/// `n` bodies in a row: as a chain of pendulums, in whose energy every velocity meets every other one, or each coupled with
-/// the next one only.
+/// `n` bodies in a row: as a chain of pendulums, in whose energy every velocity meets every other one, or
+/// each coupled with the next one only.
 fn row(n: usize, is_chain: bool) -> String {
     let mut text = "title = \"Row\"\n[parameters]\nm = 1\ng = 9.8\n[coordinates]\n".to_owned();
     (0..n).for_each(|i| _ = writeln!(text, "q{i} = {{ unit = \"rad\", start = {} }}", 0.1 + 0.01 * i as f64));

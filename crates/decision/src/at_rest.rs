@@ -8,8 +8,8 @@ use crate::start::ExactStart;
 
 impl ExactStart {
     /// Whether nothing moves from here on, exactly: all velocities are zero, neither time nor a term without
-    /// velocities stands in linear constraints, and reactions `λ` balance `∂L/∂q + Q + Aᵀ λ = 0`. Then `C = 0`,
-    /// and every `μ₀` gives this motion (theorem 3, iv). `false` where fractions do not tell.
+    /// velocities stands in linear constraints, and reactions `λ` balance `∂L/∂q + Q + Aᵀ λ = 0`. Then
+    /// `C = 0`, and every `μ₀` gives this motion (theorem 3, iv). `false` where fractions do not tell.
     pub fn is_at_rest(&self) -> bool {
         let (system, g) = (&self.system, &self.system.graph);
         let is_linear =

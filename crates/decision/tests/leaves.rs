@@ -66,7 +66,7 @@ duration = 1
     assert!(matches!(found, Finding::Contained { rank: 0, .. }), "{found:?}");
     // as a constraint on velocities it has all leaves
     let found = held(&text.replace("\"w\",", "\"w'\",")).almost_every_start;
-    assert_eq!(none(&found).1, true, "{found:?}");
+    assert!(none(&found).1, "{found:?}");
 }
 
 /// A sphere, a rod between two points, a paraboloid; and what no random point is found on.

@@ -31,8 +31,8 @@ pub struct Comparison {
     /// Which motions are motions of another formulation for some values of its constants. Removals by
     /// coordinates are left out: their family is the vakonomic one.
     pub decided: Vec<Decided>,
-    /// What the vakonomic motion needs and contacts cannot exert; `None` inside if nothing, or outside where the
-    /// scene has no bodies or there is no such motion.
+    /// What the vakonomic motion needs and contacts cannot exert; `None` inside if nothing, or outside where
+    /// the scene has no bodies or there is no such motion.
     pub beyond: Option<Option<Beyond>>,
 }
 

@@ -14,13 +14,14 @@
 //! motions, of different action; what was found is all that is known.
 //!
 //! A time t is conjugate to t₀ if `det ∂q(t)/∂x = 0`: neighbouring motions from q(t₀) meet there to first
-//! order. With `W = ∂²(L + μ·f)/∂v²` positive on ker A along a vakonomic motion (Legendre) and none up to t₁ it is
-//! a local minimum of the action (Jacobi), with W negative a maximum; with one before t₁, or W indefinite, it is
-//! neither; with the first at t₁ nothing is said. Nothing is said of a curve that is a motion for several μ₀: it has
-//! an abnormal lift.
+//! order. With `W = ∂²(L + μ·f)/∂v²` positive on ker A along a vakonomic motion (Legendre) and none up to t₁
+//! it is a local minimum of the action (Jacobi), with W negative a maximum; with one before t₁, or W
+//! indefinite, it is neither; with the first at t₁ nothing is said. Nothing is said of a curve that is a
+//! motion for several μ₀: it has an abnormal lift.
 //!
-//! Where the constraints are integrable every μ₀ gives the same motion, and none is unknown: the coordinates that
-//! belong to v_free are aimed at, the others follow, or the end is on another leaf, which no motion reaches.
+//! Where the constraints are integrable every μ₀ gives the same motion, and none is unknown: the coordinates
+//! that belong to v_free are aimed at, the others follow, or the end is on another leaf, which no motion
+//! reaches.
 
 mod action;
 mod conjugate;

@@ -182,8 +182,8 @@ impl<'a> Pairing<'a> {
     }
 
     /// Vakonomic motions are Chetaev's for every `μ₀` where the constraints are integrable (theorem 3):
-    /// `f = g dh/dt` with an invertible `g`, and for `dh/dt` the equations contain `μ` as a rate only, `−λ`. At
-    /// rest they do so, too.
+    /// `f = g dh/dt` with an invertible `g`, and for `dh/dt` the equations contain `μ` as a rate only, `−λ`.
+    /// At rest they do so, too.
     fn theorem(&self, start: &ExactStart, end: f64) -> Option<&'static str> {
         if self.curve.formulation != CHETAEV.name || self.family.formulation() != VAKONOMIC.name {
             return None;

@@ -283,8 +283,8 @@ const MARTINET: &str = "title = \"Martinet\"\n[coordinates]\nx = { start = 0 }\n
     [system]\nlagrangian = \"(x'^2 + y'^2)/2\"\nconstraints = [\"z' - x^2*y'/2\"]\n[start.velocities]\n\"x'\" = 0.5\n\
     \"y'\" = 0.2\n[run]\nduration = 2\n";
 
-/// The straight line on x = 0 of the flat Martinet plane is a motion for every μ₀, and the shortest: it is one
-/// curve, and conjugate times say nothing of it.
+/// The straight line on x = 0 of the flat Martinet plane is a motion for every μ₀, and the shortest: it is
+/// one curve, and conjugate times say nothing of it.
 #[test]
 fn an_abnormal_curve_is_one_and_has_no_statement() {
     let all = found_in(MARTINET, &aim(&[("x", 0.0), ("y", 1.0), ("z", 0.0)], 2.0, 8));
@@ -309,7 +309,8 @@ fn a_hanging_chain_is_a_maximum() {
     assert!((chain.unknowns[0] - 1.5 / (0.5 / a).cosh()).abs() < 1e-10, "{}", chain.unknowns[0]);
 }
 
-/// A pendulum by a velocity constraint, x x' + y y' = 0: on its circle every μ₀ does, off it there is no motion.
+/// A pendulum by a velocity constraint, x x' + y y' = 0: on its circle every μ₀ does, off it there is no
+/// motion.
 #[test]
 fn ends_are_on_the_leaf_of_the_start_or_there_is_no_motion() {
     let text = "title = \"Pendulum\"\n[coordinates]\nx = { start = 0 }\ny = { start = -1 }\n[system]\n\

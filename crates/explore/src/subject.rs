@@ -44,8 +44,8 @@ impl Subject {
     }
 }
 
-/// The scene with the numbers that it has names for, and the other names where the scene itself is asked about: a
-/// text that is being written may have had them before.
+/// The scene with the numbers that it has names for, and the other names where the scene itself is asked
+/// about: a text that is being written may have had them before.
 fn known(question: &Question, mut overrides: Vec<(String, f64)>) -> Result<(Scene, Vec<String>), SceneError> {
     let mut unknown = Vec::new();
     loop {

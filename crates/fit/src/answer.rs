@@ -182,7 +182,8 @@ fn least(fits: &[(Choice, Fitted)]) -> Option<Fit> {
     fitted.min_by(|a, b| a.chi_squared.total_cmp(&b.chi_squared)).cloned()
 }
 
-/// The better of two fits from different starts, with the starts of both, and with those of both that led there.
+/// The better of two fits from different starts, with the starts of both, and with those of both that led
+/// there.
 fn add(known: &mut Fitted, again: Fitted) {
     let of = |fitted: &Fitted| fitted.as_ref().ok().map(|(_, fit)| (fit.chi_squared, fit.starts, fit.reached));
     let both = of(known).zip(of(&again));
@@ -201,8 +202,8 @@ fn add(known: &mut Fitted, again: Fitted) {
 }
 
 /// Families that are one have one least χ², and one that contains Chetaev's motions has none above Chetaev's:
-/// where a search has missed that, it begins again at the other's motion. Whether the latter is proved, which is
-/// asked for where Chetaev's formulation fits.
+/// where a search has missed that, it begins again at the other's motion. Whether the latter is proved, which
+/// is asked for where Chetaev's formulation fits.
 fn in_order(
     scene: &Scene,
     fits: &mut [(Choice, Fitted)],
@@ -255,7 +256,8 @@ fn keep_less(known: &mut Fitted, again: Fitted) {
 }
 
 /// Each of these fitted, from starts of the search that are counted from `first` on; over threads: what they
-/// find does not depend on how many there are. Families begin beside Chetaev's motion as well, where that is known.
+/// find does not depend on how many there are. Families begin beside Chetaev's motion as well, where that is
+/// known.
 fn fit_choices(
     scene: &Scene,
     choices: Vec<Choice>,

@@ -1,9 +1,10 @@
 //! Plain explanations: what a scene may not model, and what it would have to be for a formulation to fit.
 //!
-//! Parameters e are added to the scene that are zero in it: constant forces along lengths (a tilt of gravity),
-//! a drag `−e ∂L/∂v`, the rate of the clock, the scale of each column, an offset of the point that is filmed
-//! along a heading, and changes of parameters that are not free, inertia among them. With the Jacobian `J` of a
-//! fit and `G = ∂r/∂e`, both at its minimum, one of these takes away from χ², to first order,
+//! Parameters e are added to the scene that are zero in it: constant forces along lengths (a tilt of
+//! gravity), a drag `−e ∂L/∂v`, the rate of the clock, the scale of each column, an offset of the point that
+//! is filmed along a heading, and changes of parameters that are not free, inertia among them. With the
+//! Jacobian `J` of a fit and `G = ∂r/∂e`, both at its minimum, one of these takes away from χ², to first
+//! order,
 //!
 //! ```text
 //! |P G⁺ r|² ,     P the part of G that J does not reach            (Rao's score test) ;

@@ -223,8 +223,8 @@ pub fn fit(problem: &Problem, spread: &dyn Fn(&str) -> bool, starts: usize, know
 /// Parts of the size of an unknown by which it is moved for a second look.
 const LOOKS: [f64; 4] = [1e-2, 0.03, 0.1, 0.5];
 
-/// The least of these changes of an unknown, whose derivative is nothing, that moves residuals all the same: they
-/// are stationary there.
+/// The least of these changes of an unknown, whose derivative is nothing, that moves residuals all the same:
+/// they are stationary there.
 fn moving(problem: &Problem, best: &Minimum, i: usize) -> Option<f64> {
     let mut looked = problem.clone();
     let (here, _) = looked.weighed(&best.theta, false).ok()?;
@@ -237,8 +237,8 @@ fn moving(problem: &Problem, best: &Minimum, i: usize) -> Option<f64> {
     })
 }
 
-/// The least minimum, where one begins beside unknowns at which residuals are stationary: no derivative leads away
-/// from there.
+/// The least minimum, where one begins beside unknowns at which residuals are stationary: no derivative leads
+/// away from there.
 fn off_stationary(problem: &Problem, best: Minimum) -> Minimum {
     let Ok((_, jacobian)) = problem.clone().weighed(&best.theta, true) else { return best };
     let lengths: Vec<f64> = jacobian.column_iter().map(|column| column.norm()).collect();
@@ -260,8 +260,8 @@ fn off_stationary(problem: &Problem, best: Minimum) -> Minimum {
     least_known
 }
 
-/// An unknown at which residuals are stationary: its interval is by the profile alone, and no error is of first
-/// order.
+/// An unknown at which residuals are stationary: its interval is by the profile alone, and no error is of
+/// first order.
 fn stationary(problem: &Problem, best: &Minimum, i: usize, step: f64) -> Estimate {
     let unknown = &problem.unknowns()[i];
     let bound = unknown.bound.unwrap_or(f64::NEG_INFINITY);

@@ -1,4 +1,5 @@
-//! What is known of a formulation before its fit: where its search may begin, and which family contains which.
+//! What is known of a formulation before its fit: where its search may begin, and which family contains
+//! which.
 
 use deltaq::{
     Answer, CHETAEV, Choice, Contradicted, Pairing, VAKONOMIC, costate_names, costates_of, membership, multipliers_of,
@@ -75,8 +76,9 @@ fn begun(
     Some(start)
 }
 
-/// Starts for `family` with the numbers of Chetaev's motion and the constants of least mismatch beside its motion
-/// ([`Pairing::nearest`]) over parts of each film: those of a family that contains Chetaev's motion give it.
+/// Starts for `family` with the numbers of Chetaev's motion and the constants of least mismatch beside its
+/// motion ([`Pairing::nearest`]) over parts of each film: those of a family that contains Chetaev's motion
+/// give it.
 pub(crate) fn beside_chetaev(
     scene: &Scene,
     family: &Choice,
@@ -99,8 +101,8 @@ pub(crate) fn beside_chetaev(
     starts
 }
 
-/// The start for `to` that is the motion of the vakonomic fit, or of that of a removal by coordinates, `from`:
-/// the two families are one.
+/// The start for `to` that is the motion of the vakonomic fit, or of that of a removal by coordinates,
+/// `from`: the two families are one.
 pub(crate) fn same_motion(
     scene: &Scene,
     (from, of, fit): (&Choice, &Problem, &Fit),

@@ -231,8 +231,8 @@ impl Problem {
         identifiability(scene, choice, &self.parts, &self.unknowns)
     }
 
-    /// How far the columns of the films go from their means, over σ, as the length of a vector; as far as noise
-    /// does at least.
+    /// How far the columns of the films go from their means, over σ, as the length of a vector; as far as
+    /// noise does at least.
     pub(crate) fn extent(&self) -> f64 {
         let mut sum = 0.0;
         for film in self.films() {

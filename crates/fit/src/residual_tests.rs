@@ -13,8 +13,8 @@ const ENOUGH: usize = 12;
 /// Lags of the test of whiteness, at most.
 const LAGS: usize = 10;
 
-/// Residuals of a column that are few, the probability that is looked at again for these, and the orders that are
-/// drawn.
+/// Residuals of a column that are few, the probability that is looked at again for these, and the orders that
+/// are drawn.
 const MANY: usize = 100;
 const DOUBTED: [f64; 2] = [1e-10, 1e-2];
 const ORDERS: usize = 30_000;
@@ -88,8 +88,8 @@ pub fn residual_tests(films: &[&Film], residuals: &[Residual], unknowns: usize, 
     tests
 }
 
-/// The probability of Ljung's and Box's Q among few residuals, where that by χ² may be too small by far: the part
-/// of random orders of the same residuals that have no less.
+/// The probability of Ljung's and Box's Q among few residuals, where that by χ² may be too small by far: the
+/// part of random orders of the same residuals that have no less.
 fn exchanged(values: &[f64], found: f64, probability: f64) -> f64 {
     if !(DOUBTED[0]..DOUBTED[1]).contains(&probability) {
         return probability;

@@ -41,8 +41,7 @@ const FITS: f64 = 4.0;
 const HOPELESS: f64 = 100.0;
 /// χ² per residual above which digits of χ² are nothing to look for.
 pub(crate) const POOR: f64 = 100.0;
-/// Minima up to this many times the least are looked at to the last digit, and where residuals are many
-/// deviations.
+/// Minima up to this many times the least are looked at to the last digit; where residuals are large.
 const CLOSE: [f64; 2] = [1.5, 1.05];
 /// Two minima count as one where χ² differs by at most the first number plus the second, as a fraction of χ².
 const SAME: [f64; 2] = [0.1, 1e-3];

@@ -10,15 +10,15 @@ use crate::{Film, Fit, Problem, Question, Row, Verdict};
 
 /// Starts that have to lead to the least χ² of a formulation before it is excluded.
 const SEVERAL: usize = 2;
-/// Numbers per unknown of the first beginning of which an exclusion is asked for that no whole film settles, and the
-/// factor from one to the next.
+/// Numbers per unknown of the first beginning of which an exclusion is asked for that no whole film settles,
+/// and the factor from one to the next.
 const FIRST: usize = 2;
 const LONGER: f64 = 1.6;
 /// How much more χ² has to be above for one of several beginnings: what keeps the level for eight of them.
 const LOOKS: f64 = 4.5;
 
-/// An exclusion rests on a least χ² that several starts reach: of the whole films, or of their beginnings, which
-/// have no more minima than tell. Elsewhere the search is not settled.
+/// An exclusion rests on a least χ² that several starts reach: of the whole films, or of their beginnings,
+/// which have no more minima than tell. Elsewhere the search is not settled.
 pub(crate) fn settle(rows: &mut [Row], question: &Question) {
     let fitted = rows.iter().filter_map(|row| Some((row.fit.as_ref().ok()?, row.problem.as_ref()?)));
     let best = fitted.min_by(|a, b| a.0.chi_squared.total_cmp(&b.0.chi_squared));
@@ -72,7 +72,8 @@ pub(crate) fn by_beginning(
     None
 }
 
-/// What a plain explanation brings as near as the best fits is not excluded, and does not leave the best as the only one.
+/// What a plain explanation brings as near as the best fits is not excluded, and does not leave the best as
+/// the only one.
 pub(crate) fn explain(scene: &Scene, rows: &mut [Row], films: &[Film], question: &Question) {
     // where nothing fits: what would make it noise
     for row in rows.iter_mut().filter(|row| row.verdict == Verdict::None) {

@@ -7,8 +7,8 @@ use crate::distribution::{chi_squared_tail, normal_tails};
 use crate::question::is_law;
 use crate::{Fit, FitError, Identifiability, Problem};
 
-/// A formulation with one unknown less than that of the least χ², or with as many, is excluded where its χ² is
-/// this much above: by noise, where it is right, in one of 9,300 films.
+/// A formulation with one unknown less than that of the least χ², or with as many, is excluded where its χ²
+/// is this much above: by noise, where it is right, in one of 9,300 films.
 pub const EXCLUDED: f64 = 15.0;
 
 /// What χ² has to be above the least for an exclusion at the same level, where the other has `more ≥ 1`

@@ -1,5 +1,5 @@
-//! Exclusions that can be trusted: right formulations, nested ones, what is not modelled, estimated deviations, units,
-//! and the smallest films.
+//! Exclusions that can be trusted: right formulations, nested ones, what is not modelled, estimated
+//! deviations, units, and the smallest films.
 
 use fit::{Deviations, Film, Identifiability, Unknown, Verdict, fit_formulations, significance, threshold};
 use scene::Scene;
@@ -126,7 +126,8 @@ fn deviations_may_be_too_large_or_unknown() {
     assert!(rows[0].fit.as_ref().unwrap().tests.iter().all(|test| test.name != "chi squared"));
 }
 
-/// A scene in millimetres: what is said to be in millimetres is in its units, what is in metres is a thousand times.
+/// A scene in millimetres: what is said to be in millimetres is in its units, what is in metres is a thousand
+/// times.
 #[test]
 fn units_are_those_of_the_scene() {
     let text = DISC.replace("unit = \"m\"", "unit = \"mm\"").replace("R = 0.1", "R = 100");
@@ -159,7 +160,7 @@ fn the_smallest_films_are_answered() {
         Film { t, rows, lines, ..all.clone() }
     };
     for film in [part(0, 1), part(0, 2), part(59, 60), part(40, 60), all.clone()] {
-        let rows = fitted(&scene, &[film.clone()], &["g~9"], &[]);
+        let rows = fitted(&scene, std::slice::from_ref(&film), &["g~9"], &[]);
         for row in rows {
             let fit = row.fit.unwrap_or_else(|error| panic!("{} samples: {error}", film.t.len()));
             assert!(fit.chi_squared.is_finite() && fit.estimates.iter().all(|e| e.value.is_finite()));
@@ -195,7 +196,8 @@ fn what_is_cut_is_open() {
     assert!(matches!(&shown, Identifiability::Open(why) if why.contains("cut")), "{shown:?}");
 }
 
-/// A point on a line with the potential `e² x²/2`: at e = 0 the film is stationary in e, and shows it all the same.
+/// A point on a line with the potential `e² x²/2`: at e = 0 the film is stationary in e, and shows it all the
+/// same.
 #[test]
 fn a_stationary_unknown_is_shown() {
     let text = "title = \"Spring\"\n[parameters]\ne = 0\n[coordinates]\nx = { start = 1 }\ny = { start = 0 }\n[system]\n\

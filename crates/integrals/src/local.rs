@@ -105,8 +105,8 @@ impl Reversible {
         Ok((ring, local))
     }
 
-    /// `chart`, moved onto the leaf `g = 0` of `point` by as many coordinates as there are `g`, by Newton's steps:
-    /// each makes twice as many weights right.
+    /// `chart`, moved onto the leaf `g = 0` of `point` by as many coordinates as there are `g`, by Newton's
+    /// steps: each makes twice as many weights right.
     pub(crate) fn on_leaf(
         &self,
         point: &SeriesStart<Modular>,

@@ -281,11 +281,11 @@ impl RankWatch {
 
     /// Where |p| was largest within a step's length before `least`.
     fn reference(&self, least: &Minors, width: f64) -> Option<&Minors> {
-        let before = self.passed.iter().filter(|at| (least.t - at.t) * width > 0.0);
+        let mut before = self.passed.iter().filter(|at| (least.t - at.t) * width > 0.0);
         let own = if least.step > 0.0 { least.step } else { width.abs() };
         let length = STEPS * before.clone().map(|at| at.step).fold(own, f64::max);
         let within = before.clone().filter(|at| (least.t - at.t).abs() <= length);
-        within.max_by(|a, b| a.size.total_cmp(&b.size)).or_else(|| before.last())
+        within.max_by(|a, b| a.size.total_cmp(&b.size)).or_else(|| before.next_back())
     }
 
     fn is_loss(&self, least: &Minors, width: f64) -> bool {

@@ -29,8 +29,8 @@ pub fn weights(nodes: &[f64], at: f64) -> [Vec<f64>; 3] {
     w
 }
 
-/// The derivative of order `d` of `rows` at `t[i]`, by the `2 reach + 1` samples around it, or the first or last
-/// ones.
+/// The derivative of order `d` of `rows` at `t[i]`, by the `2 reach + 1` samples around it, or the first or
+/// last ones.
 pub fn derivative(t: &[f64], rows: &[Vec<f64>], i: usize, reach: usize, d: usize) -> Vec<f64> {
     let first = i.saturating_sub(reach).min(t.len().saturating_sub(2 * reach + 1));
     let window = first..(first + 2 * reach + 1).min(t.len());

@@ -50,8 +50,8 @@ pub struct Judgement {
     /// What of the scene is another in the motion, where that leaves less by far than Chetaev's law with its
     /// numbers: all that leave as little, the least first. They are said in the place of these.
     pub misfits: Vec<Misfit>,
-    /// `ε`, in `T`; as slip and drag only where it is a number of the law: what is left is noise, or much more
-    /// would be left without it, or it is zero within its error.
+    /// `ε`, in `T`; as slip and drag only where it is a number of the law: what is left is noise, or much
+    /// more would be left without it, or it is zero within its error.
     pub epsilon: Option<Number>,
     /// `1/N`, in `T [f]²/E`.
     pub slip: Option<Number>,

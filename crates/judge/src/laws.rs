@@ -117,7 +117,8 @@ pub struct Misfit {
 /// A parameter is off by no more than this part of itself.
 const OFF: f64 = 0.5;
 
-/// Each one alone beside Chetaev's law, by what it leaves; none for a parameter that would be off by more than half.
+/// Each one alone beside Chetaev's law, by what it leaves; none for a parameter that would be off by more
+/// than half.
 pub fn misfits(instants: &[Instant], parameters: &[(String, f64)], coordinates: &[String]) -> Vec<Misfit> {
     let count = parameters.len();
     let column = |i: &Instant, j: usize| match j.checked_sub(count) {
@@ -145,8 +146,8 @@ pub fn misfits(instants: &[Instant], parameters: &[(String, f64)], coordinates: 
 }
 
 /// What is left of the balance, rms, where `μ` moves by `Aᵀ μ̇ = C μ − (E − Q)` from the best `μ₀`, and that
-/// `μ₀`, at the first of the instants `before` the others, of which nothing else is asked; none where such a `μ`
-/// grows beyond all numbers.
+/// `μ₀`, at the first of the instants `before` the others, of which nothing else is asked; none where such a
+/// `μ` grows beyond all numbers.
 pub fn vakonomic(before: &[Instant], instants: &[Instant]) -> Option<(f64, Vec<Option<Number>>)> {
     let (first, count) = (before.len(), instants.len());
     let instants: Vec<&Instant> = before.iter().chain(instants).collect();

@@ -17,8 +17,8 @@
 //! `M⁻¹`; then the slip `1/N` follows from the observed `f`. Nothing is integrated, so that nothing grows,
 //! and no start value is asked for.
 //!
-//! They are given where what is left is noise, or where much more would be left without them. Elsewhere a number of
-//! the scene that is off, or a force that it lacks, may leave far less: then that is named.
+//! They are given where what is left is noise, or where much more would be left without them. Elsewhere a
+//! number of the scene that is off, or a force that it lacks, may leave far less: then that is named.
 //!
 //! **Other laws.** Vakonomic: `E − Q = C μ − Aᵀ μ̇` for some `μ₀`; along a motion `μ` is affine in `μ₀`.
 //! The rate of the rows left out: `A a = 0` in the place of `ḟ = 0`. The constraint put into `L`: Lindelöf's

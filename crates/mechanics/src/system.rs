@@ -179,8 +179,8 @@ impl System {
         self.parameters.iter().map(|p| (p.symbol, p.value)).collect()
     }
 
-    /// A parameter as it is written: the exact decimal of its value, or its formula; NaN for what is not known
-    /// exactly.
+    /// A parameter as it is written: the exact decimal of its value, or its formula; NaN for what is not
+    /// known exactly.
     pub fn written_parameter(&self, p: &Parameter) -> Expr {
         let g = &self.graph;
         let unknown = |e: Expr| g.as_number(e).is_some_and(f64::is_nan);

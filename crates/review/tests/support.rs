@@ -37,16 +37,16 @@ pub fn text(system: &System, derivation: &Derivation, random: &mut SplitMix) -> 
     let names = ["N", "mu", "reaction", "k", "zeta_1", "F"];
     let stem = names[below(random, names.len())];
     let unknown = |j: usize| g.variable(g.symbol(&format!("{stem}_{j}_")));
-    let sign = if random.bits() % 2 == 0 { 1 } else { -3 };
+    let sign = if random.bits().is_multiple_of(2) { 1 } else { -3 };
     let mut lines: Vec<String> = Vec::new();
     for (i, &row) in derivation.rows.iter().enumerate() {
         let reaction = derivation.reactions.iter().enumerate();
         let parts: Vec<Expr> = reaction.map(|(j, a)| g.product(&[g.integer(sign), a[i], unknown(j)])).collect();
         let scale = [g.one(), g.integer(-2), g.ratio(1, 3)][below(random, 3)];
         let parameter = system.parameters.first().map_or(g.one(), |p| g.variable(p.symbol));
-        let scale = if random.bits() % 4 == 0 { g.div(scale, parameter) } else { scale };
+        let scale = if random.bits().is_multiple_of(4) { g.div(scale, parameter) } else { scale };
         let [left, right] = [row, g.sum(&parts)].map(|e| g.plain(g.mul(scale, e)));
-        lines.push(if random.bits() % 2 == 0 {
+        lines.push(if random.bits().is_multiple_of(2) {
             format!("{left} = {right}")
         } else {
             format!("0 = {right} - ({left})")

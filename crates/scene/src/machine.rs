@@ -222,7 +222,7 @@ impl Reader<'_> {
                 let found = rows.len();
                 let rows = <[[Written; 3]; 3]>::try_from(rows)
                     .map_err(|_| entry.error(SceneErrorKind::WrongLength { what: "rows", found, expected: 3 }))?;
-                Ok(Inertia::Full(rows))
+                Ok(Inertia::Full(Box::new(rows)))
             }
             _ => Ok(Inertia::Diagonal(self.numbers(entry, EXPECTED)?)),
         }

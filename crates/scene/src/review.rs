@@ -78,10 +78,10 @@ fn masses(context: &Context) -> Vec<SceneError> {
     let mut found = Vec::new();
     for body in section.iter().flat_map(Section::entries).filter_map(|entry| entry.section().ok()) {
         let name = |what| format!("{what} of [{}]", body.path);
-        if let Some(entry) = body.get("mass") {
-            if let Some(value) = context.constant(&entry).ok().filter(|mass| *mass < 0.0) {
-                found.push(entry.error(SceneErrorKind::Remark(Remark::Negative { what: name("the mass"), value })));
-            }
+        if let Some(entry) = body.get("mass")
+            && let Some(value) = context.constant(&entry).ok().filter(|mass| *mass < 0.0)
+        {
+            found.push(entry.error(SceneErrorKind::Remark(Remark::Negative { what: name("the mass"), value })));
         }
         let Some(entry) = body.get("inertia") else { continue };
         let rows = entry.elements("").unwrap_or_default();
@@ -265,7 +265,7 @@ impl<'c> Reviewer<'c> {
             let mut values = self.values.clone();
             values.extend(system.velocities().into_iter().zip(v.iter().copied()));
             let size = 1.0 + norm(&v);
-            if system.constraints.iter().any(|&f| !(self.value(f, &values).abs() < SMALL * size)) {
+            if system.constraints.iter().any(|&f| self.value(f, &values).abs().total_cmp(&(SMALL * size)).is_ge()) {
                 continue;
             }
             let now = program.evaluate(&[&[self.start.t], &self.start.q[..], &v].concat()).to_vec();

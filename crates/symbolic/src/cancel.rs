@@ -19,8 +19,9 @@ thread_local! {
 pub(crate) struct Cancelled(usize);
 
 /// Does `work` on this thread until `is_unwanted` says so: `None` then. It is asked at every 256th
-/// expression that is made, or found to be there, and wherever [`go_on`] is called. The graphs that the work has built on are whole, with more
-/// expressions than before. Such work may be part of other such work, which may end it, too.
+/// expression that is made, or found to be there, and wherever [`go_on`] is called. The graphs that the work
+/// has built on are whole, with more expressions than before. Such work may be part of other such work, which
+/// may end it, too.
 ///
 /// ```
 /// let graph = symbolic::Graph::new();

@@ -23,5 +23,6 @@ mod second_rates;
 mod sensitivities;
 mod support;
 mod taylor;
+mod textbook_machines;
 mod theory;
 mod vectors;

@@ -14,8 +14,8 @@ pub struct ReviewArguments {
     #[command(flatten)]
     pub scene: SceneArguments,
     /// Their equations: text, one equation per line (`m*x'' = lambda*sin(phi)`; any multipliers, definitions
-    /// `name = …`); LaTeX (`.tex`); a C function of time, state and rates (`.c`); a table (`.csv`) with columns
-    /// `x`, `x'` and `x''` of each coordinate; `-` for standard input.
+    /// `name = …`); LaTeX (`.tex`); a C function of time, state and rates (`.c`); a table (`.csv`) with
+    /// columns `x`, `x'` and `x''` of each coordinate; `-` for standard input.
     pub theirs: PathBuf,
     /// A coordinate or parameter of the scene as a formula in their names: `--where "theta = q2 - pi/2"`.
     #[arg(long = "where", value_name = "NAME=FORMULA")]

@@ -9,10 +9,12 @@ const SAME: f64 = 1e-4;
 const LEAST: f64 = 1e-6;
 const MORE: f64 = 100.0;
 
-/// Unknowns of a motion, how many starts led to it, and whether others with other constants are the same curve.
+/// Unknowns of a motion, how many starts led to it, and whether others with other constants are the same
+/// curve.
 pub(super) type Exact = (Vec<f64>, usize, bool);
 
-/// Motions that are one curve, once, with the least constants: one for several constants has an abnormal lift.
+/// Motions that are one curve, once, with the least constants: one for several constants has an abnormal
+/// lift.
 pub(super) fn one_per_curve(exact: Vec<(Vec<f64>, usize)>, problem: &mut TwoPoint) -> Vec<Exact> {
     let free = problem.velocities.free.len();
     let largest = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);

@@ -10,9 +10,9 @@ const NODES: [f64; 2] = [0.211_324_865_405_187_1, 0.788_675_134_594_812_9];
 /// A function of the position is another at the end where it differs by more than this part of its terms.
 const OTHER: f64 = 1e-6;
 
-/// Why no motion leads from `start` to the coordinates `end`: a constraint that is the rate of a function of the
-/// position, `A_i·v = dh_i/dt` with `∂A_ij/∂q_k = ∂A_ik/∂q_j` identically, and h_i has another value there. The
-/// difference is `∫ A_i·dq` along the straight line.
+/// Why no motion leads from `start` to the coordinates `end`: a constraint that is the rate of a function of
+/// the position, `A_i·v = dh_i/dt` with `∂A_ij/∂q_k = ∂A_ik/∂q_j` identically, and h_i has another value
+/// there. The difference is `∫ A_i·dq` along the straight line.
 pub(super) fn other_leaf(system: &System, start: &State, end: &[f64]) -> Result<Option<String>, SolveError> {
     let g = &system.graph;
     let Ok(forms) = system.linear_constraints() else { return Ok(None) };

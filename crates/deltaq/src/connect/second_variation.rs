@@ -13,7 +13,8 @@ const NONE: f64 = 1e-9;
 /// A conjugate time this part of the whole before the end is at the end.
 const AT_THE_END: f64 = 1e-7;
 
-/// The answer. With `W = ∂²(L + μ·f)/∂v²` on the velocities that the constraints leave, `A w = 0`, along the motion:
+/// The answer. With `W = ∂²(L + μ·f)/∂v²` on the velocities that the constraints leave, `A w = 0`, along the
+/// motion:
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SecondVariation {
     /// `W > 0` and no conjugate time up to the end: a local minimum of the action.
@@ -24,7 +25,8 @@ pub enum SecondVariation {
     Conjugate,
     /// W is indefinite at some time.
     Indefinite,
-    /// W is definite, and the first conjugate time is at the end: the second variation vanishes along a neighbour.
+    /// W is definite, and the first conjugate time is at the end: the second variation vanishes along a
+    /// neighbour.
     AtTheEnd,
     /// The curve is a motion for several `μ₀`: it has an abnormal lift, and conjugate times say nothing.
     Abnormal,
@@ -60,7 +62,8 @@ impl SecondVariation {
     }
 }
 
-/// That of a motion of stationary action up to its end, which others beside it do not reach if it `is_isolated`.
+/// That of a motion of stationary action up to its end, which others beside it do not reach if it
+/// `is_isolated`.
 pub(super) fn second_variation(
     system: &System,
     motion: &mut Motion,
@@ -119,7 +122,7 @@ fn signs(system: &System, motion: &mut Motion) -> Result<[bool; 2], SolveError> 
         let restricted = basis.transpose() * w * &basis;
         let values = restricted.symmetric_eigenvalues();
         let size = values.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
-        if values.iter().any(|x| !(x.abs() > NONE * size)) {
+        if values.iter().any(|x| x.is_nan() || x.abs() <= NONE * size) {
             return Ok([false; 2]);
         }
         found = [found[0] || values.iter().any(|x| *x < 0.0), found[1] || values.iter().any(|x| *x > 0.0)];

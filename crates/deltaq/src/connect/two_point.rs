@@ -157,8 +157,8 @@ impl TwoPoint {
         Ok(run.at(&mut prepared.compiled, self.aim.t).map_err(refused)?.coordinates)
     }
 
-    /// The coordinates aimed at, in units of the problem, at `count` times up to the end; none where the motion does
-    /// not come there.
+    /// The coordinates aimed at, in units of the problem, at `count` times up to the end; none where the
+    /// motion does not come there.
     pub(super) fn curve(&mut self, unknowns: &[f64], count: usize) -> Option<Vec<f64>> {
         self.set(&self.in_units(unknowns)).ok()?;
         let options = self.options(self.settings.tolerance);
