@@ -30,7 +30,7 @@ const [executablePath, deltaq, file, pictures, what] = process.argv.slice(2);
 const BUSY = 3;
 // Rounds of slider moves within all checks, and seconds of frames when rounds are asked for.
 const [ROUNDS, SECONDS] = [6, 300];
-const LIMITS = { megabytes: 2.2, first: 500, sledge: 10, updates: 60, cone: 50, difference: 1e-12 };
+const LIMITS = { megabytes: 2.4, first: 500, sledge: 10, updates: 60, cone: 50, difference: 1e-12 };
 const OWN = `title = "Skate"
 [coordinates]
 x = { unit = "m", start = 0 }
