@@ -1,5 +1,7 @@
 //! Round-off of the equations themselves, which both runs of a motion share.
 
+use std::iter::zip;
+
 use integrate::Options;
 
 use crate::charts::{self, Course};
@@ -37,6 +39,17 @@ impl Motion {
         }
         let (mut looked, looser, sizes) = self.looked_at(STRETCHES);
         self.look_closer(&mut looked);
+        match self.round_off(&looked, &looser, &sizes) {
+            RoundOff::Small => return Ok(()),
+            RoundOff::Doubted(doubt) => {
+                self.doubt = Some(doubt);
+                return Ok(());
+            }
+            RoundOff::Counts(_) => {}
+        }
+        // what is large for the time of a few steps raises a doubt: in all of another run it would be far too much
+        let grid = self.instants(STRETCHES);
+        let (looked, looser): (Vec<_>, Vec<_>) = zip(looked, looser).filter(|((t, ..), _)| grid.contains(t)).unzip();
         match self.round_off(&looked, &looser, &sizes) {
             RoundOff::Small => {}
             RoundOff::Doubted(doubt) => self.doubt = Some(doubt),
@@ -112,17 +125,27 @@ impl Motion {
         found
     }
 
+    /// How much of the motion is looked at.
+    fn part(&self) -> f64 {
+        if self.is_complete() { 1.0 } else { BEFORE_THE_END }
+    }
+
+    /// Equidistant instants.
+    fn instants(&self, stretches: usize) -> Vec<f64> {
+        let (start, part) = (self.start(), self.part());
+        self.grid(stretches).into_iter().map(|t| self.kept_before(start + part * (t - start))).collect()
+    }
+
     /// Time, states and the sums of terms behind their rates at equidistant instants and at ends of steps,
     /// more where these are short, up to the first at which they cannot be evaluated.
     fn terms_along(&mut self, stretches: usize) -> Vec<Looked> {
-        let (start, part) = (self.start(), if self.is_complete() { 1.0 } else { BEFORE_THE_END });
+        let (start, part) = (self.start(), self.part());
         let length = (self.end() - start).abs();
         let ends = self.step_times();
         let number = ENDS.min(ends.len());
         let ends = (1..=number).map(|k| ends[k * ends.len() / number - 1]);
         let ends = ends.filter(|t| (t - start).abs() <= part * length).map(|t| self.kept_before(t));
-        let grid = self.grid(stretches).into_iter().map(|t| self.kept_before(start + part * (t - start)));
-        let mut times: Vec<f64> = grid.chain(ends).collect();
+        let mut times: Vec<f64> = self.instants(stretches).into_iter().chain(ends).collect();
         times.sort_by(|a, b| (a - start).abs().total_cmp(&(b - start).abs()));
         times.dedup();
         times.into_iter().map_while(|t| self.look(t)).collect()

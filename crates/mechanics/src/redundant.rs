@@ -30,7 +30,7 @@ impl System {
     /// for f in ["x*x' + y*y'", "z' - x'", "2*x*x' + 2*y*y' + x*(z' - x')"] {
     ///     system.constraints.push(system.expression(f)?);
     /// }
-    /// assert_eq!(system.independent_constraints(0.0, &[1.0, 0.5, 0.0]), Some(vec![0, 1]));
+    /// assert_eq!(system.independent_constraints(0.0, &[1.0, 0.5, 0.0]).map(|kept| kept.len()), Some(2));
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn independent_constraints(&self, t: f64, q: &[f64]) -> Option<Vec<usize>> {
