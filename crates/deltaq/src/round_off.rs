@@ -47,7 +47,8 @@ impl Motion {
             }
             RoundOff::Counts(_) => {}
         }
-        // what is large for the time of a few steps raises a doubt: in all of another run it would be far too much
+        // what is large for the time of a few steps raises a doubt: in all of another run it would be far too
+        // much
         let grid = self.instants(STRETCHES);
         let (looked, looser): (Vec<_>, Vec<_>) = zip(looked, looser).filter(|((t, ..), _)| grid.contains(t)).unzip();
         match self.round_off(&looked, &looser, &sizes) {
