@@ -25,7 +25,7 @@ fn no_more_work_at_once_than_there_are_threads_and_the_least_rank_goes_first() {
         while most.load(Ordering::SeqCst) < THREADS && begun.elapsed() < PATIENCE {
             thread::yield_now();
         }
-        thread::sleep(Duration::from_millis(2));
+        thread::sleep(Duration::from_millis(10));
         now.fetch_sub(1, Ordering::SeqCst);
     };
     let work = |rank: usize| {

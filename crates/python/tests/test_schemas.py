@@ -34,7 +34,7 @@ ANSWERS = {
     "judge": {"judge sledge FOLDER/motion.csv": 0, "judge sledge FOLDER/motion.csv FOLDER/motion.csv FOLDER/motion.csv --set g=5": 3},
     "review": {f"review sleigh {ROOT}/docs/derivations/{name}.txt": code for name, code in {"right": 0, "frozen": 1}.items()}
     | {f"review sleigh {ROOT}/docs/derivations/right.txt -f prescribed": 3},
-    "fit": {"fit sledge FOLDER/film.csv --free x,y,phi,x',phi',g~9 --law eps --sigma 1mm": 0, "fit sledge FOLDER/film.csv --free x,y --sigma 1cm": 3},
+    "fit": {"fit sledge FOLDER/film.csv --free x,y,phi,x',phi',g~9 --law eps --sigma 1mm": 0, "fit sledge FOLDER/film.csv --free x,y --sigma 1um": 3},
     "design": {"design heisenberg --tell vakonomic,chetaev --film 9Hz,1mm,1s --free x',y' --over mu0_1=0.1:1 --points 4": 0, "design disc --estimate eps --law eps --film 9Hz,1mm,1s": 0},
     "certificate": {"prove sledge --out -": 0},
     "linearize": {"linearize bicycle --free lean,steer --sweep v=4:5:2": 0, "linearize sledge --at 1": 0},

@@ -13,7 +13,7 @@ STUBS = Path(deltaq.__file__).with_name("_native.pyi")
 TREE = ast.parse(STUBS.read_text())
 CLASSES = {node.name: node for node in TREE.body if isinstance(node, ast.ClassDef)}
 FUNCTIONS = {node.name: node for node in TREE.body if isinstance(node, ast.FunctionDef)}
-PYTHON = {"designs", "FilmFit", "FormulationFit", "Profile", "Proof", "Sweep", "ensemble", "from_sympy", "sweep"}
+PYTHON = {"designs", "FilmFit", "FormulationFit", "Profile", "Proof", "Sweep", "ensemble", "from_sympy", "review", "sweep"}
 VALUES = {node.target.id for node in TREE.body if isinstance(node, ast.AnnAssign) and not node.target.id.startswith("_")}
 
 
