@@ -111,6 +111,9 @@ pub fn review(scene: &Scene, file: &str, text: &str, asked: &Asked) -> Result<Re
             c_code::lines(&order, file, text)?
         }
     };
+    if lines.is_empty() {
+        return Err(ReviewError::Unreadable { place: file.into(), what: "there are no equations in it".into() });
+    }
     review::review(scene, &lines, None, asked)
 }
 

@@ -200,3 +200,13 @@ fn nonsense_is_read_or_refused() {
         }
     }
 }
+
+#[test]
+fn a_text_without_equations_is_refused() {
+    let sleigh = catalogue::find("sleigh", &[]).expect("a scene");
+    for text in ["", "\n  # nothing yet\n"] {
+        let refused =
+            review::review(&sleigh, "theirs.txt", text, &review::Asked::default()).expect_err("nothing to read");
+        assert_eq!(refused.to_string(), "theirs.txt: there are no equations in it");
+    }
+}
