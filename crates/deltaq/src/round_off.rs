@@ -39,19 +39,16 @@ impl Motion {
         }
         let (mut looked, looser, sizes) = self.looked_at(STRETCHES);
         self.look_closer(&mut looked);
-        match self.round_off(&looked, &looser, &sizes) {
-            RoundOff::Small => return Ok(()),
-            RoundOff::Doubted(doubt) => {
-                self.doubt = Some(doubt);
-                return Ok(());
-            }
-            RoundOff::Counts(_) => {}
+        let mut found = self.round_off(&looked, &looser, &sizes);
+        if matches!(found, RoundOff::Counts(_)) {
+            // what is large for the time of a few steps raises a doubt: in all of another run it would be far
+            // too much
+            let grid = self.instants(STRETCHES);
+            let (looked, looser): (Vec<_>, Vec<_>) =
+                zip(looked, looser).filter(|((t, ..), _)| grid.contains(t)).unzip();
+            found = self.round_off(&looked, &looser, &sizes);
         }
-        // what is large for the time of a few steps raises a doubt: in all of another run it would be far too
-        // much
-        let grid = self.instants(STRETCHES);
-        let (looked, looser): (Vec<_>, Vec<_>) = zip(looked, looser).filter(|((t, ..), _)| grid.contains(t)).unzip();
-        match self.round_off(&looked, &looser, &sizes) {
+        match found {
             RoundOff::Small => {}
             RoundOff::Doubted(doubt) => self.doubt = Some(doubt),
             RoundOff::Counts(disturbance) => {
