@@ -81,7 +81,8 @@ fn a_fit_ends_with_what_comes_closer() {
     assert!(!gaps.is_empty() && gaps.iter().all(|gap| *gap == 0.0), "{gaps:?}");
 }
 
-/// `cargo test --release -p deltaq-comparison --test comparison-tests fitted:: -- --nocapture` prints the table.
+/// `cargo test --release -p deltaq-comparison --test comparison-tests fitted:: -- --nocapture` prints the
+/// table.
 #[test]
 fn fits_with_derivatives_that_are_carried_end_at_the_same_constants_in_fewer_runs() {
     let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../catalogue/scenes/");

@@ -1,13 +1,14 @@
 //! # deltaq: the competing equations of motion of nonholonomic systems
 //!
-//! A system is a Lagrangian `L(q, v, t)`, `q ∈ Rⁿ`, with constraints `f(q, v, t) = 0 ∈ Rʰ` and forces `Q`. Its
-//! equations of motion depend on what a virtual displacement may be: d'Alembert and Lagrange's rule (Chetaev's,
-//! where `f` is nonlinear in `v`), stationary action among the curves with `f = 0` (vakonomic), or Gao's removal of
-//! the constraint. deltaq derives them, integrates them with error estimates, and decides whether they agree.
+//! A system is a Lagrangian `L(q, v, t)`, `q ∈ Rⁿ`, with constraints `f(q, v, t) = 0 ∈ Rʰ` and forces `Q`.
+//! Its equations of motion depend on what a virtual displacement may be: d'Alembert and Lagrange's rule
+//! (Chetaev's, where `f` is nonlinear in `v`), stationary action among the curves with `f = 0` (vakonomic), or
+//! Gao's removal of the constraint. deltaq derives them, integrates them with error estimates, and decides
+//! whether they agree.
 //!
 //! These are the names met first. The crates they come from stand beside them, with everything else:
-//! [`scene`] (systems as text), [`mechanics`] and [`symbolic`] (systems as expressions), [`motion`] (formulations,
-//! trajectories, ensembles, two-point problems), [`comparison`] (gaps, verdicts, proofs).
+//! [`scene`] (systems as text), [`mechanics`] and [`symbolic`] (systems as expressions), [`motion`]
+//! (formulations, trajectories, ensembles, two-point problems), [`comparison`] (gaps, verdicts, proofs).
 //!
 //! ```
 //! use deltaq::scene::Scene;
@@ -27,7 +28,7 @@
 //! [run]
 //! duration = 2
 //! "#)?;
-//! let chetaev = choices(&scene).into_iter().find(|choice| choice.formulation == CHETAEV).ok_or("a formulation")?;
+//! let chetaev = choices(&scene).into_iter().find(|choice| choice.formulation == CHETAEV).ok_or("none")?;
 //! let mut motion = solve_choice(&scene, &chetaev, &Settings::default())?;
 //! let error = error_estimate(&mut motion, setting(&scene))?.coordinates[0];
 //! // a circle of radius 1
