@@ -2,8 +2,8 @@
 //!
 //! A system is a Lagrangian `L(q, v, t)`, `q ∈ Rⁿ`, with constraints `f(q, v, t) = 0 ∈ Rʰ` and forces `Q`.
 //! Its equations of motion depend on what a virtual displacement may be: d'Alembert and Lagrange's rule
-//! (Chetaev's, where `f` is nonlinear in `v`), stationary action among the curves with `f = 0` (vakonomic), or
-//! Gao's removal of the constraint. deltaq derives them, integrates them with error estimates, and decides
+//! (Chetaev's, where `f` is nonlinear in `v`), stationary action among the curves with `f = 0` (vakonomic),
+//! or Gao's removal of the constraint. deltaq derives them, integrates them with error estimates, and decides
 //! whether they agree.
 //!
 //! These are the names met first. The crates they come from stand beside them, with everything else:
