@@ -15,7 +15,8 @@ static ALL: LazyLock<Suite> = LazyLock::new(|| {
 static CONSTRAINED: LazyLock<Suite> = LazyLock::new(|| Suite::new(Kind::ALL[1..].to_vec(), &[(9, 64), (12, 96)]));
 static LINEAR: LazyLock<Suite> = LazyLock::new(|| Suite::new(linear(), &[(7, 96), (8, 24)]));
 static INTEGRABLE: LazyLock<Suite> = LazyLock::new(|| Suite::new(integrable(), &[(1, 96), (14, 96)]));
-static NONINTEGRABLE: LazyLock<Suite> = LazyLock::new(|| Suite::new(nonintegrable(), &[(5, 96)]));
+static NONINTEGRABLE: LazyLock<Suite> =
+    LazyLock::new(|| Suite::new(nonintegrable(), &[(5, 96), (15, 24), (16, 48), (17, 48)]));
 static AFFINE: LazyLock<Suite> = LazyLock::new(|| Suite::new(vec![Kind::Affine], &[(6, 48)]));
 
 /// Kinds with constraints that are linear (or affine) in the velocities and well conditioned.
@@ -111,6 +112,32 @@ fn t12_wrong_formulation_is_flagged_where_it_is_wrong() {
     let found = CONSTRAINED.holds(12);
     let (flagged, count) = part(&found, "the wrong formulation is wrong, and flagged");
     assert!(count > 20 && flagged >= 0.99, "of {count} systems on which it is wrong, {flagged:.3} are flagged");
+}
+
+#[test]
+fn t15_vakonomic_and_removal_see_l_on_the_constraint_only() {
+    let found = NONINTEGRABLE.holds(15);
+    let (chetaev, count) = part(&found, "not integrable: Chetaev's motion for L + phi f is another");
+    assert!(count > 15 && chetaev > 0.8, "of {count} only {chetaev:.2} differ");
+    let what = "not integrable: the vakonomic motion for L + phi f with the same mu0 is another";
+    let (vakonomic, count) = part(&found, what);
+    assert!(count > 15 && vakonomic > 0.8, "of {count} only {vakonomic:.2} differ");
+}
+
+#[test]
+fn t16_a_total_derivative_shifts_the_constants_of_removal() {
+    let found = NONINTEGRABLE.holds(16);
+    let what = "not integrable: removed constraint for L + dF/dt with the same P0 is another";
+    let (differ, count) = part(&found, what);
+    assert!(count > 20 && differ > 0.8, "of {count} only {differ:.2} differ");
+}
+
+#[test]
+fn t17_the_family_between_does_not_depend_on_writing() {
+    let found = NONINTEGRABLE.holds(17);
+    let what = "not integrable: kappa with recombined constraints and the same mu0 is another";
+    let (differ, count) = part(&found, what);
+    assert!(count > 20 && differ > 0.3, "of {count} only {differ:.2} differ");
 }
 
 #[test]

@@ -71,6 +71,8 @@ pub struct Case {
     pub membership: Option<Membership>,
     /// Stands for the motion of the scene's removal with constants natural at the end, if it is given.
     pub natural: Option<Motion>,
+    /// Stands for the motion of the family between vakonomic and Chetaev, if it is given.
+    pub between: Option<Motion>,
     /// What [`Case::referee`] has said, if it was asked.
     referee: Option<[maggi::Motion; 2]>,
 }
@@ -130,6 +132,7 @@ impl Case {
             planted: VAKONOMIC,
             membership: None,
             natural: None,
+            between: None,
             referee: None,
         })
     }
@@ -244,6 +247,23 @@ impl Case {
     pub fn gap_by(&mut self, first: Which, second: &mut Motion, sampling: &Sampling) -> Result<Gap, SolveError> {
         let (mut metric, sampling) = (self.metric.clone(), Sampling { instants: INSTANTS, ..*sampling });
         compare_motions_by(self.motion(first), second, &mut metric, &sampling)
+    }
+
+    /// Notes whether two motions are the same, of which none need be the case's own.
+    pub fn pair(&mut self, theorem: u8, claim: &'static str, first: &mut Motion, second: &mut Motion) {
+        match self.gap_of(first, second) {
+            Ok(gap) => self.note(theorem, claim, &gap, self.floor),
+            Err(error) => self.found.undecided(theorem, claim, error),
+        }
+    }
+
+    /// The gap between two motions.
+    ///
+    /// # Errors
+    /// [`SolveError`] where the first cannot be read off.
+    pub fn gap_of(&self, first: &mut Motion, second: &mut Motion) -> Result<Gap, SolveError> {
+        let sampling = Sampling { instants: INSTANTS, ..Sampling::default() };
+        compare_motions_by(first, second, &mut self.metric.clone(), &sampling)
     }
 
     /// The gap between two of the case's own motions.

@@ -17,19 +17,13 @@ use crate::transform::{Rewritten, Scaling, recombined};
 /// T4: constraints recombined by coefficients that depend on `q`, `μ₀ → G⁻ᵀ μ₀`; other coordinates.
 pub(super) fn writing(case: &mut Case) -> Result<(), CheckError> {
     let system = case.scene.system.clone();
-    let g = &system.graph;
-    let h = system.constraints.len();
     let mixing = mixing(&system);
-    if h > 0 {
-        let mut values = system.values_at(&case.scene.start);
-        values.extend(system.parameter_values());
-        let factor = DMatrix::from_row_slice(h, h, &numbers(g, mixing.entries(), &values)?);
-        let mu = nalgebra::DVector::from_vec(case.scene.multipliers.clone());
-        let Some(mu) = factor.transpose().lu().solve(&mu) else { return Ok(()) };
+    if !system.constraints.is_empty() {
+        let Some(mu) = with_mixing(case, &system, &mixing)? else { return Ok(()) };
         let other = recombined(&system, &mixing);
         let mut chetaev = case.run(equations(&other, CHETAEV, None)?, &[])?;
         case.same(4, "Chetaev: constraints recombined", Which::Chetaev, &mut chetaev);
-        let mut vakonomic = case.run(equations(&other, VAKONOMIC, None)?, mu.as_slice())?;
+        let mut vakonomic = case.run(equations(&other, VAKONOMIC, None)?, &mu)?;
         case.same(4, "vakonomic: constraints recombined", Which::Vakonomic, &mut vakonomic);
     }
     let n = system.dimension();
@@ -69,7 +63,7 @@ fn shift(system: &System) -> Vec<Expr> {
 }
 
 /// Lower triangular with ones, and `1 + ¼ sin q₁` on the diagonal.
-fn mixing(system: &System) -> Matrix {
+pub(super) fn mixing(system: &System) -> Matrix {
     let g = &system.graph;
     let first: Symbol = system.coordinates[0].position;
     let last: Symbol = system.coordinates[system.dimension() - 1].position;
@@ -80,6 +74,16 @@ fn mixing(system: &System) -> Matrix {
         std::cmp::Ordering::Equal => varying(first, Function::Sin),
         std::cmp::Ordering::Greater => g.mul(g.ratio(1, 2), varying(last, Function::Cos)),
     })
+}
+
+/// `g⁻ᵀ μ₀` for constraints mixed by `g`.
+pub(super) fn with_mixing(case: &Case, system: &System, mixing: &Matrix) -> Result<Option<Vec<f64>>, CheckError> {
+    let h = system.constraints.len();
+    let mut values = system.values_at(&case.scene.start);
+    values.extend(system.parameter_values());
+    let factor = DMatrix::from_row_slice(h, h, &numbers(&system.graph, mixing.entries(), &values)?);
+    let mu = nalgebra::DVector::from_vec(case.scene.multipliers.clone());
+    Ok(factor.transpose().lu().solve(&mu).map(|mu| mu.as_slice().to_vec()))
 }
 
 /// T10.

@@ -1,7 +1,8 @@
-//! Claims T1–T14, each a check of one random system. Reports say what they say, checks what they assume.
+//! Claims T1–T17, each a check of one random system. Reports say what they say, checks what they assume.
 
 mod agreement;
 mod control;
+mod dependence;
 mod fairness;
 mod growth;
 mod invariance;
@@ -63,13 +64,16 @@ pub const CHECKS: &[Check] = &[
     check(5, "the leading divergence of vakonomic from Chetaev is the predicted one", growth::check),
     check(6, "energy is constant where it should be", invariants::energy),
     check(7, "vakonomic momenta of cyclic coordinates are constant", invariants::momentum),
-    thorough(8, "viscosity leads to Chetaev, added mass to vakonomic, both at rate 1/N", realization::check),
+    thorough(8, "viscosity leads to Chetaev, added mass to vakonomic, both at rate 1/N or faster", realization::check),
     check(9, "decision, proof and fit agree on whether Chetaev's motion is vakonomic", fairness::check),
     thorough(9, "decision, proof and fit agree on whether Chetaev's motion is vakonomic", fairness::fit),
     check(10, "time reversal and units change nothing", invariance::reversal_and_units),
     check(11, "Frobenius' test finds what the construction put in", agreement::frobenius),
     check(12, "the wrong formulation is flagged where it is wrong, and only there", control::check),
     check(14, "removal of nothing is Newton's motion where p_u = 0", agreement::sanity),
+    thorough(15, "vakonomic and removal see L on f = 0 only", dependence::values_on_the_constraint),
+    thorough(16, "L + dF/dt has the motions of L, and removal's constants are shifted", dependence::gauge),
+    thorough(17, "kappa does not depend on how constraints are written", dependence::writing_of_the_family),
 ];
 
 const fn check(theorem: u8, title: &'static str, run: fn(&mut Case) -> Result<(), CheckError>) -> Check {

@@ -22,8 +22,8 @@ const MORE: i32 = 4;
 /// Instants at which a motion's own error is asked for.
 const INSTANTS: usize = 20;
 
-/// What the distance must shrink by at last: ten, within this factor.
-const RATE: std::ops::RangeInclusive<f64> = 7.0..=14.0;
+/// What the distance must shrink by at last. `O(1/N)` is ten, and more where the first term vanishes.
+const RATE: f64 = 7.0;
 
 /// A second distance that small says nothing about a rate.
 const VISIBLE: f64 = 1e-7;
@@ -100,7 +100,7 @@ fn own_error(motion: &mut Motion, metric: &mut Metric) -> Result<f64, SolveError
     Ok(largest)
 }
 
-/// The last two distances must be about ten apart; `measured` gives distance and own error at powers of ten.
+/// The last two distances must be about ten apart or more; `measured` gives distance and own error at powers of ten.
 ///
 /// # Errors
 /// Those of `measured`.
@@ -134,23 +134,23 @@ pub fn judge(
         if count == FEW {
             case.found.observe(8, what, rate);
         }
-        if RATE.contains(&rate) {
+        if rate >= RATE {
             break;
         }
     }
     let note = distances.iter().map(|d| format!("{d:.1e}")).collect::<Vec<_>>().join(", ");
     // what both distances are off by moves their quotient
-    let range = match distances[..] {
-        [.., before, last] => [(before - error) / (last + error), (before + error) / (last - error).max(0.0)],
-        _ => [rate; 2],
+    let most = match distances[..] {
+        [.., before, last] => (before + error) / (last - error).max(0.0),
+        _ => rate,
     };
     match rate.is_nan() {
         true => case.found.undecided(8, claim, "a motion stops early"),
-        false if !RATE.contains(&rate) && range[0] <= *RATE.end() && range[1] >= *RATE.start() => {
+        false if rate < RATE && most >= RATE => {
             case.found.undecided(8, claim, format!("distances {note}, own error {error:.1e}"));
         }
         false => {
-            let holds = RATE.contains(&rate) || shows_two_terms(&distances);
+            let holds = rate >= RATE || shows_two_terms(&distances);
             case.found.require(8, claim, holds, format!("distances {note}"));
         }
     }
