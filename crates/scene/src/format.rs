@@ -55,7 +55,9 @@ const fn may(name: &'static str, content: Content, about: &'static str) -> Key {
     Key { name, content, required: false, about }
 }
 
-use Content::{Constants, Expression, Format, List, Moments, Named, Number, Quantity, Removals, Table, Text, Truth, Vector};
+use Content::{
+    Constants, Expression, Format, List, Moments, Named, Number, Quantity, Removals, Table, Text, Truth, Vector,
+};
 
 /// The whole file.
 pub const SCENE: &[Key] = &[
