@@ -45,6 +45,12 @@ pub(crate) fn all() -> Vec<Check> {
             sources::paths,
         ),
         check(
+            "copies",
+            "licences and the page in packages are those of the project, and nothing is a symbolic link",
+            "copy the original over it",
+            sources::copies,
+        ),
+        check(
             "address",
             "authors and address are those of Cargo.toml everywhere, and nothing pretends to have an address",
             "cargo xtask address; or name the folder of the project in the place of an index",

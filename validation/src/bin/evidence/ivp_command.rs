@@ -15,7 +15,7 @@ pub(crate) fn run(arguments: &IvpArguments, quiet: bool) -> Result<String> {
     for problem in problems {
         let mut points = Vec::new();
         for method in METHODS {
-            for tolerance in TOLERANCES {
+            for tolerance in TOLERANCES.into_iter().filter(|tolerance| problem.is_tried(*tolerance, method)) {
                 bar.set_message(format!("{} at {tolerance:.0e}", problem.name));
                 points.push(problem.measure(tolerance, method)?);
                 bar.inc(1);
