@@ -19,7 +19,7 @@ const ENDINGS: [&str; 7] = ["js", "mjs", "css", "html", "json", "rs", "toml"];
 /// The committed page.
 const COMMITTED: &str = "reports/explore.html";
 /// The same in the package of the program.
-const PACKED: &str = "crates/command/explore.html";
+const PACKED: &str = "crates/deltaq/explore.html";
 const WASM: &str = "wasm32-unknown-unknown";
 /// Where a browser is looked for, and a second one.
 const BROWSERS: [&str; 4] = ["chromium", "chromium-browser", "google-chrome", "google-chrome-stable"];

@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 use std::time::Instant;
 
 use anyhow::{Context, Result, ensure};
-use deltaq::{CHETAEV, Settings, choices_among, error_estimate, setting, solve_choice};
+use motion::{CHETAEV, Settings, choices_among, error_estimate, setting, solve_choice};
 use integrate::Method;
 use scene::Scene;
 use serde::{Deserialize, Serialize};
@@ -174,8 +174,8 @@ impl Problem {
     }
 
     /// Coordinates and multipliers at the end, as the test set signs them, and the largest error estimate.
-    fn solved(&self, scene: &Scene, choice: &deltaq::Choice, settings: &Settings) -> Result<(Vec<f64>, f64), String> {
-        let told = |error: deltaq::SolveError| error.to_string();
+    fn solved(&self, scene: &Scene, choice: &motion::Choice, settings: &Settings) -> Result<(Vec<f64>, f64), String> {
+        let told = |error: motion::SolveError| error.to_string();
         let mut motion = solve_choice(scene, choice, settings).map_err(told)?;
         let end = scene.start.t + scene.duration;
         if !motion.is_complete() {
