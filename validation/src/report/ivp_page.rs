@@ -5,7 +5,7 @@ use std::fmt::Write;
 use anyhow::Result;
 
 use crate::ivp::{Errors, Point, Problem};
-use motion::words::{or_dash, short};
+use comparison::words::{or_dash, short};
 use pages::Table;
 use picture::{Axis, Curve, Picture, Style};
 use program::File;
