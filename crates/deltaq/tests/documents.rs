@@ -32,6 +32,7 @@ fn runs_as_printed(name: &str) {
 #[test]
 fn the_readme_is_true() {
     runs_as_printed("README.md");
+    runs_as_printed("crates/deltaq/README.md");
 }
 
 #[test]
