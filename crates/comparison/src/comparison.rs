@@ -249,6 +249,9 @@ fn worth_comparing(first: &Run, second: &Run) -> bool {
 impl std::fmt::Debug for Comparison {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let verdicts: Vec<&crate::Verdict> = self.pairs.iter().map(|pair| &pair.gap.verdict).collect();
-        f.debug_struct("Comparison").field("scene", &self.scene.name).field("verdicts", &verdicts).finish_non_exhaustive()
+        f.debug_struct("Comparison")
+            .field("scene", &self.scene.name)
+            .field("verdicts", &verdicts)
+            .finish_non_exhaustive()
     }
 }

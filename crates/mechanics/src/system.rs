@@ -326,6 +326,9 @@ pub fn fresh_symbol(graph: &Graph, name: &str) -> Symbol {
 
 impl std::fmt::Debug for System {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("System").field("lagrangian", &self.graph.plain(self.lagrangian)).field("constraints", &self.constraints.len()).finish_non_exhaustive()
+        f.debug_struct("System")
+            .field("lagrangian", &self.graph.plain(self.lagrangian))
+            .field("constraints", &self.constraints.len())
+            .finish_non_exhaustive()
     }
 }

@@ -377,6 +377,10 @@ fn readable_end(
 
 impl std::fmt::Debug for Motion {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("Motion").field("formulation", &self.equations.formulation).field("ending", &self.ending).field("end", &self.end).finish_non_exhaustive()
+        f.debug_struct("Motion")
+            .field("formulation", &self.equations.formulation)
+            .field("ending", &self.ending)
+            .field("end", &self.end)
+            .finish_non_exhaustive()
     }
 }

@@ -95,7 +95,9 @@ fn pretending() -> Result<Vec<String>> {
         let Ok(text) = std::fs::read_to_string(&name) else { continue };
         for (number, line) in (1..).zip(text.lines()) {
             let words = PRETENDING.iter().map(|(head, tail)| format!("{head}{tail}"));
-            found.extend(words.filter(|words| line.contains(words)).map(|words| format!("{name}:{number} says `{words}`")));
+            found.extend(
+                words.filter(|words| line.contains(words)).map(|words| format!("{name}:{number} says `{words}`")),
+            );
         }
     }
     Ok(found)
@@ -137,7 +139,10 @@ impl Identity {
         for name in readmes()? {
             let text = read(&name)?;
             let relative = self.address.is_some() && text.contains(FROM_PACKAGES);
-            ensure!(!relative, "{name} has links that indexes cannot follow; `cargo xtask address none`, then the address");
+            ensure!(
+                !relative,
+                "{name} has links that indexes cannot follow; `cargo xtask address none`, then the address"
+            );
         }
         let stale = |(name, text): &(String, String)| std::fs::read_to_string(name).ok().as_ref() != Some(text);
         Ok(files.into_iter().filter(stale).map(|(name, text)| (name.into(), text)).collect())
@@ -195,7 +200,8 @@ impl Identity {
             format!("  - name: \"{}\"\n{}", author.name, orcid.chain(at).collect::<String>())
         };
         let authors = self.authors.iter().map(person).collect::<String>();
-        let address = self.address.iter().map(|address| format!("repository-code: \"{address}\"\n")).collect::<String>();
+        let address =
+            self.address.iter().map(|address| format!("repository-code: \"{address}\"\n")).collect::<String>();
         let (version, date) = (&self.version, &self.date);
         let own = format!("authors:\n{authors}version: {version}\ndate-released: {date}\n{address}license:\n");
         between(text, "authors:\n", "license:\n", &own).context("CITATION.cff")
@@ -332,7 +338,14 @@ mod tests {
         assert!(text.contains(expected), "{text}");
         let paper = "---\ntitle: a\nauthors:\n  - name: B\ndate: 2000-01-01\n---\n";
         let text = one.paper(paper).unwrap();
-        assert!(text.contains("    affiliation: 1\naffiliations:\n  - name: Institute of C\n    index: 1\ndate: 2030-01-02\n"), "{text}");
-        assert!(one.codemeta().contains("\"@type\": \"Person\"") && identity("A", None).codemeta().contains("Organization"));
+        assert!(
+            text.contains(
+                "    affiliation: 1\naffiliations:\n  - name: Institute of C\n    index: 1\ndate: 2030-01-02\n"
+            ),
+            "{text}"
+        );
+        assert!(
+            one.codemeta().contains("\"@type\": \"Person\"") && identity("A", None).codemeta().contains("Organization")
+        );
     }
 }

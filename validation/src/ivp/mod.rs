@@ -7,8 +7,8 @@ use std::collections::BTreeMap;
 use std::time::Instant;
 
 use anyhow::{Context, Result, ensure};
-use motion::{CHETAEV, Settings, choices_among, error_estimate, setting, solve_choice};
 use integrate::Method;
+use motion::{CHETAEV, Settings, choices_among, error_estimate, setting, solve_choice};
 use scene::Scene;
 use serde::{Deserialize, Serialize};
 
