@@ -1,11 +1,11 @@
-//! Mechanical problems of the Test Set for IVP Solvers, against the referee, and the referee against what is printed.
+//! Problems of the Test Set for IVP Solvers against the referee, and the referee against what is printed.
 
 use integrate::Method;
 use validation::ivp::{Errors, problems};
 
 /// Largest errors of coordinates and multipliers at the tolerance of 1e-10.
 const LIMITS: [(&str, f64, f64); 4] =
-    [("car-axis", 1e-12, 1e-12), ("andrews", 1e-9, 1e-5), ("fekete", 1e-10, 1e-10), ("pleiades", 1e-9, 0.0)];
+    [("car-axis", 1e-13, 1e-14), ("andrews", 1e-11, 1e-9), ("fekete", 1e-11, 1e-11), ("pleiades", 1e-10, 0.0)];
 
 #[test]
 fn ends_are_those_of_the_referee() {
@@ -16,13 +16,14 @@ fn ends_are_those_of_the_referee() {
             let point = problem.measure(1e-10, method).expect("a scene");
             let errors = point.errors.unwrap_or_else(|reason| panic!("{}: {reason}", problem.name));
             assert!(errors.coordinates <= coordinates, "{}: {errors:?}", problem.name);
+            assert!(errors.coordinates <= point.estimate, "{}: {errors:?}, estimate {}", problem.name, point.estimate);
             assert!(errors.multipliers.unwrap_or(0.0) <= multipliers, "{}: {errors:?}", problem.name);
             assert!(problem.gap <= coordinates, "{}: the referee's own gap is {:.1e}", problem.name, problem.gap);
         }
     }
 }
 
-/// What is printed agrees with the referee as far as it can be trusted, and no further: here the page says it.
+/// What is printed agrees with the referee as far as it can be trusted, and no further: the page says so.
 #[test]
 fn printed_ends_are_off_by_what_the_page_says() {
     let known = |name: &str, which: usize| -> Errors {
@@ -37,6 +38,6 @@ fn printed_ends_are_off_by_what_the_page_says() {
     between(known("car-axis", 1).coordinates, 1e-14, 3e-14);
     between(known("andrews", 0).coordinates, 1e-9, 2e-9);
     between(known("andrews", 0).multipliers.expect("multipliers"), 1e-5, 2e-5);
-    between(known("fekete", 0).coordinates, 1e-13, 1e-11);
-    between(known("pleiades", 0).coordinates, 1e-15, 1e-11);
+    between(known("fekete", 0).coordinates, 2e-12, 3e-12);
+    between(known("pleiades", 0).coordinates, 1e-15, 1e-13);
 }

@@ -1,5 +1,5 @@
-//! Who made it and where it is: known in one place, `[workspace.package]` and `[workspace.metadata.identity]` of the
-//! workspace's manifest, and copied from there to all files that say it.
+//! Who made it and where it is: known in one place, `[workspace.package]` and `[workspace.metadata.identity]`
+//! of the workspace's manifest, and copied from there to all files that say it.
 
 use std::path::PathBuf;
 

@@ -60,8 +60,8 @@ pub(crate) fn paths() -> Result<Outcome> {
     Ok(Outcome::Passed(format!(", {} files", files.len())))
 }
 
-/// Files that packages have to hold themselves, by the end of their names, and what they are copies of: no symbolic links,
-/// which Windows checks out as texts with a path.
+/// Files that packages have to hold themselves, by the end of their names, and what they are copies of: no
+/// symbolic links, which Windows checks out as texts with a path.
 const COPIES: [(&str, &str); 3] =
     [("LICENSE-MIT", "LICENSE-MIT"), ("LICENSE-APACHE", "LICENSE-APACHE"), ("explore.html", "reports/explore.html")];
 

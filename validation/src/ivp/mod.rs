@@ -18,8 +18,8 @@ pub const TOLERANCES: [f64; 5] = [1e-4, 1e-6, 1e-8, 1e-10, 1e-12];
 /// Methods that are tried; `None` is the one that the program chooses.
 pub const METHODS: [Option<Method>; 3] = [None, Some(Method::Dop853), Some(Method::Radau5)];
 
-/// Radau's method of order 5 takes too many steps for tighter tolerances, and a factorization a step: it is left out there,
-/// and on larger systems.
+/// Radau's method of order 5 takes too many steps for tighter tolerances, and a factorization a step: it is
+/// left out there, and on larger systems.
 const RADAU: (f64, usize) = (1e-8, 10);
 
 /// A solve that takes longer is not repeated; in seconds.
