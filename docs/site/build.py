@@ -17,7 +17,7 @@ import python_reference
 
 HERE = Path(__file__).resolve().parent
 ROOT = HERE.parents[1]
-PAGES = ["README.md", "NOTATION.md", "ARCHITECTURE.md", "CONTRIBUTING.md", "CHANGELOG.md", "docs/*.md", "reports/**/*.md", "validation/benchmark/README.md"]
+PAGES = ["README.md", "NOTATION.md", "ARCHITECTURE.md", "CONTRIBUTING.md", "CHANGELOG.md", "docs/*.md", "docs/tutorials/*.md", "reports/**/*.md", "validation/benchmark/README.md"]
 MODULE = "crates/python/python/deltaq"
 EXPLORER = "reports/explore.html"
 LINK = re.compile(r'(\]\(|src="|href=")([^)\s"]+)')

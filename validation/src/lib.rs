@@ -5,6 +5,7 @@ pub mod benchmark;
 pub mod casadi_job;
 pub mod films;
 pub mod integrals;
+pub mod ivp;
 pub mod report;
 pub mod scaling;
 pub mod stability;

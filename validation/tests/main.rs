@@ -12,6 +12,7 @@ mod equivalence;
 mod hamilton;
 mod headlines;
 mod integrals;
+mod ivp;
 #[path = "../../crates/deltaq/tests/killed.rs"]
 mod killed;
 mod literature;

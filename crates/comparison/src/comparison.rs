@@ -245,3 +245,13 @@ fn worth_comparing(first: &Run, second: &Run) -> bool {
     let outside = both.iter().any(|own| !is_in_table(own));
     (!both.contains(&VAKONOMIC_COSTATE) || both.contains(&VAKONOMIC)) && (!outside || both.contains(&CHETAEV))
 }
+
+impl std::fmt::Debug for Comparison {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let verdicts: Vec<&crate::Verdict> = self.pairs.iter().map(|pair| &pair.gap.verdict).collect();
+        f.debug_struct("Comparison")
+            .field("scene", &self.scene.name)
+            .field("verdicts", &verdicts)
+            .finish_non_exhaustive()
+    }
+}

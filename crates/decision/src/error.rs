@@ -6,6 +6,7 @@ use symbolic::CompileError;
 
 /// Why a question cannot be put or decided.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 #[expect(missing_docs, reason = "the messages say what fields are")]
 pub enum DecisionError {
     /// The equations cannot be read as a condition on the constants.

@@ -1,6 +1,6 @@
 //! The schema of scene files for editors, from the reader's own table.
 
-use scene::format::{CONSTANTS, Content, Key, REMOVAL, SCENE};
+use scene::format::{CONSTANTS, Content, FORMAT, Key, REMOVAL, SCENE};
 use serde_json::{Map, Value, json};
 
 /// JSON Schema, draft 2020-12.
@@ -33,6 +33,7 @@ fn named(content: Value) -> Value {
 
 fn content(what: &Content) -> Value {
     match what {
+        Content::Format => json!({ "type": "integer", "minimum": 1, "maximum": FORMAT }),
         Content::Text => json!({ "type": "string" }),
         Content::Number | Content::Expression | Content::Quantity => json!({ "type": ["number", "string"] }),
         Content::Vector | Content::Moments => json!({ "type": ["array", "string"] }),

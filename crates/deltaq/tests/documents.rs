@@ -22,6 +22,7 @@ fn runs_as_printed(name: &str) {
     fs::create_dir(&inputs).expect("the folder in which commands run");
     fs::write(inputs.join("disc-on-slope.toml"), DISC).expect("the scene");
     fs::copy(root.join("docs/robot-film.csv"), inputs.join("robot-film.csv")).expect("the film");
+    fs::write(inputs.join("disc-film.csv"), include_str!("../examples/disc-film.csv")).expect("the film");
     for theirs in fs::read_dir(root.join("docs/derivations")).expect("equations").flatten() {
         fs::copy(theirs.path(), inputs.join(theirs.file_name())).expect("equations");
     }
@@ -31,6 +32,7 @@ fn runs_as_printed(name: &str) {
 #[test]
 fn the_readme_is_true() {
     runs_as_printed("README.md");
+    runs_as_printed("crates/deltaq/README.md");
 }
 
 #[test]
@@ -41,6 +43,13 @@ fn the_guide_is_true() {
 #[test]
 fn the_robot_is_true() {
     runs_as_printed("docs/robot.md");
+}
+
+#[test]
+fn the_tutorials_are_true() {
+    for name in ["derive", "compare", "prove", "fit", "ensemble"] {
+        runs_as_printed(&format!("docs/tutorials/{name}.md"));
+    }
 }
 
 #[test]

@@ -21,6 +21,8 @@ fn block(language: &str) -> &'static str {
 fn the_readme_prints_the_example() {
     assert_eq!(block("toml"), include_str!("../examples/disc-on-slope.toml"));
     assert!(include_str!("../examples/own_system.rs").ends_with(block("rust")));
+    let package = include_str!("../README.md");
+    assert!(package.contains(block("rust")) && package.contains(block("toml")), "the package's readme has others");
 }
 
 /// What the README says that a line of its program prints, in the place of the names.

@@ -28,5 +28,6 @@ mod shell;
 mod singularities;
 mod support;
 mod sweep;
+mod tutorials;
 
 const PROGRAM: &str = env!("CARGO_BIN_EXE_deltaq");

@@ -374,3 +374,9 @@ fn determinant(g: &Graph, rows: &[Vec<Expr>]) -> Expr {
     }
     minors.into_values().next().unwrap_or(g.zero())
 }
+
+impl std::fmt::Debug for Equations {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Equations").field("formulation", &self.formulation).finish_non_exhaustive()
+    }
+}

@@ -19,6 +19,7 @@ pub struct Derivation<'a> {
 
 /// A system for which a formulation has no equations.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum DerivationError {
     /// No parametrization was given.
     #[error("{formulation}: a parametrization that removes the constraints is needed")]

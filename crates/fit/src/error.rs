@@ -7,6 +7,7 @@ use symbolic::CompileError;
 
 /// A film that cannot be read, or a question that cannot be asked.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 #[expect(missing_docs, reason = "the messages say what fields are")]
 pub enum FitError {
     /// The table cannot be read.

@@ -6,6 +6,7 @@ use scene::SceneErrorKind;
 
 /// A linearization that there is not.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 #[expect(missing_docs, reason = "the messages say what fields are")]
 pub enum LinearError {
     /// The equations cannot be derived or started, or there is no motion to the time asked for.

@@ -101,6 +101,7 @@ pub struct Root {
 
 /// Why no root was found.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 #[expect(missing_docs, reason = "the messages say what fields are")]
 pub enum NewtonError {
     /// The iteration ended where the residual is least nearby, but not zero.

@@ -2,6 +2,7 @@
 
 /// A parametrization that does not remove the constraints.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 #[expect(missing_docs, reason = "the messages say what fields are")]
 pub enum RemovalError {
     /// The number of parameters is not `n − h`.

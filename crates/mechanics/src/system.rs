@@ -323,3 +323,12 @@ pub fn fresh_symbol(graph: &Graph, name: &str) -> Symbol {
     }
     graph.symbol(&format!("{stem}{primes}"))
 }
+
+impl std::fmt::Debug for System {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("System")
+            .field("lagrangian", &self.graph.plain(self.lagrangian))
+            .field("constraints", &self.constraints.len())
+            .finish_non_exhaustive()
+    }
+}

@@ -12,7 +12,7 @@ use crate::variables::in_variables_of;
 use crate::{FORMS, FORMULATIONS, SolveError};
 
 /// One formulation of the scene, with all choices made.
-#[derive(Clone)]
+#[derive(Clone, Debug)]
 pub struct Choice {
     /// What the reader sees: the formulation, and the removal where there are several.
     pub label: String,

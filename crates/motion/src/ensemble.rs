@@ -218,3 +218,9 @@ impl EnsembleMember {
         }
     }
 }
+
+impl std::fmt::Debug for Ensemble {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Ensemble").field("end", &self.end).finish_non_exhaustive()
+    }
+}

@@ -10,6 +10,7 @@ use symbolic::{Broken, CompileError};
 
 /// A motion that could not be started. How a motion that was started ended is [`crate::Ending`].
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 #[expect(missing_docs, reason = "the messages say what fields are")]
 pub enum SolveError {
     /// The formulation has no equations for this system.

@@ -184,3 +184,9 @@ pub fn larger(a: f64, b: f64) -> f64 {
 pub fn subtract(a: &[f64], b: &[f64]) -> Vec<f64> {
     a.iter().zip(b).map(|(x, y)| x - y).collect()
 }
+
+impl std::fmt::Debug for Metric {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Metric").field("names", &self.names).finish_non_exhaustive()
+    }
+}

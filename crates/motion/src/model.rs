@@ -228,3 +228,9 @@ fn ended(status: &Status) -> Result<(), String> {
         Status::Stopped { t, cause } => Err(format!("the motion stops at t = {t:?}: {cause}")),
     }
 }
+
+impl std::fmt::Debug for Model {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Model").field("names", &self.names).field("times", &self.times).finish_non_exhaustive()
+    }
+}

@@ -374,3 +374,13 @@ fn readable_end(
     });
     ends.into_iter().find(|&t| readable(t)).unwrap_or(start)
 }
+
+impl std::fmt::Debug for Motion {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Motion")
+            .field("formulation", &self.equations.formulation)
+            .field("ending", &self.ending)
+            .field("end", &self.end)
+            .finish_non_exhaustive()
+    }
+}

@@ -13,7 +13,7 @@ pub const TIGHTER: f64 = 1e-2;
 pub const CERTAINTY: f64 = 10.0;
 
 /// The start of a motion: a system, a state on its constraint, and the end time.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug)]
 pub struct Setting<'a> {
     /// The system.
     pub system: &'a System,

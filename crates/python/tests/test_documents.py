@@ -18,6 +18,7 @@ import pytest
 from nbclient import NotebookClient
 
 ROOT = Path(__file__).resolve().parents[3]
+TUTORIALS = [f"docs/tutorials/{name}.md" for name in ("derive", "compare", "prove", "fit", "ensemble")]
 
 
 def blocks(path, language):
@@ -30,13 +31,14 @@ def without_jax():
     return types.SimpleNamespace(numpy=np, grad=grad, config=types.SimpleNamespace(update=lambda name, value: None))
 
 
-@pytest.mark.parametrize("path", ["README.md", "docs/python.md", "docs/fitting.md", "crates/python/README.md"])
+@pytest.mark.parametrize("path", ["README.md", "docs/python.md", "docs/fitting.md", "crates/python/README.md", *TUTORIALS])
 def test_examples_run(path, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     if importlib.util.find_spec("jax") is None:
         monkeypatch.setitem(sys.modules, "jax", without_jax())
         monkeypatch.setitem(sys.modules, "jax.numpy", np)
     Path("disc-on-slope.toml").write_text(blocks("README.md", "toml")[0])
+    Path("disc-film.csv").write_text((ROOT / "crates/deltaq/examples/disc-film.csv").read_text())
     found = blocks(path, "python")
     assert found
     names = {}

@@ -89,6 +89,7 @@ def test_committed_verdicts_are_as_described():
 
 
 WHOLE = """
+format = 1
 title = 'a'
 [parameters]
 g = '2*pi'
@@ -109,6 +110,7 @@ duration = 1
 """
 # what a schema can know to be wrong, keys and types; the rest is the reader's
 BROKEN = {
+    "format = 1": ["format = 2", "format = 0", "format = '1'"],
     "title = 'a'": ["title = 1", "tilte = 'a'", ""],
     "g = '2*pi'": ["g = true"],
     "x = { unit = 'm', start = 0 }": ["x = 0", "x = { unit = 'm' }", "x = { unit = 1, start = 0 }", "x = { strt = 0 }"],

@@ -32,6 +32,9 @@ def test_text_and_back(tmp_path, system):
     loaded = deltaq.load(path, {"g": 1.62, "duration": 2})
     assert loaded.name == "sledge" and loaded.parameters["g"] == 1.62 and loaded.duration == 2.0
     assert deltaq.load(str(path)).to_toml() == text
+    assert text.startswith("format = 1\n") and deltaq.parse(text.removeprefix("format = 1\n")).to_toml() == text
+    with pytest.raises(deltaq.SceneError, match="of format 2; this version of deltaq reads formats up to 1"):
+        deltaq.parse(text.replace("format = 1", "format = 2"))
 
 
 def test_arguments_of_all_kinds():

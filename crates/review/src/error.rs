@@ -5,6 +5,7 @@ use symbolic::{CompileError, ParseError, ParseErrorKind};
 
 /// Equations that cannot be read, or of which nothing can be told.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 #[expect(missing_docs, reason = "the messages say what fields are")]
 pub enum ReviewError {
     /// A formula that cannot be read.

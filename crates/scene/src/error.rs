@@ -50,6 +50,12 @@ pub enum SceneErrorKind {
     /// Not TOML.
     #[error("not valid TOML: {message}")]
     Syntax { message: String },
+    /// A scene of a format that came later.
+    #[error(
+        "the scene is of format {format}; this version of deltaq reads formats up to {}: a newer one is needed",
+        crate::format::FORMAT
+    )]
+    NewerFormat { format: u64 },
     /// A key that means nothing here.
     #[error("unknown key `{key}` in {section}{}; known here: {}", meant(.suggestion), .known.join(", "))]
     UnknownKey { key: String, section: String, suggestion: Option<String>, known: Vec<String> },

@@ -1,8 +1,13 @@
 //! What a scene file may say: the one table behind the reader's messages and the schema for editors.
 
+/// The format of scenes that is described here; a scene of a newer one is refused, older ones are read.
+pub const FORMAT: u64 = 1;
+
 /// What stands behind a key.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Content {
+    /// The number of a format, from 1 to [`FORMAT`].
+    Format,
     /// Text.
     Text,
     /// A number, or an expression in parameters.
@@ -50,10 +55,13 @@ const fn may(name: &'static str, content: Content, about: &'static str) -> Key {
     Key { name, content, required: false, about }
 }
 
-use Content::{Constants, Expression, List, Moments, Named, Number, Quantity, Removals, Table, Text, Truth, Vector};
+use Content::{
+    Constants, Expression, Format, List, Moments, Named, Number, Quantity, Removals, Table, Text, Truth, Vector,
+};
 
 /// The whole file.
 pub const SCENE: &[Key] = &[
+    may("format", Format, "of scene files; 1 if left out"),
     must("title", Text, "a name for people"),
     may("source", Text, "where the system comes from"),
     may("notes", Text, "what is known of it"),

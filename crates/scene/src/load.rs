@@ -202,6 +202,8 @@ fn read<T>(
         return Err(source.error(&(0..0), SceneErrorKind::Empty));
     }
     let root = Section::root(source, table.get_ref());
+    // what a newer format means is not guessed
+    root.get(format::SCENE[0].name).map_or(Ok(()), |format| format.check_format())?;
     root.check_keys(format::SCENE);
     let follows = machine::read(source, &root)?;
     let has_bodies = follows.is_some();

@@ -2,6 +2,7 @@
 
 /// Why something cannot be a name.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
 #[expect(missing_docs, reason = "the messages say what fields are")]
 pub enum NameFault {
     /// Not a letter followed by letters, digits and underscores.

@@ -5,7 +5,7 @@ use std::ops::Range;
 
 use toml::de::{DeTable, DeValue};
 
-use crate::format::Key;
+use crate::format::{FORMAT, Key};
 use crate::number::is_decimal_of;
 use crate::{SceneError, SceneErrorKind};
 
@@ -178,6 +178,19 @@ impl<'a> Entry<'a> {
 
     pub(super) fn boolean(&self) -> Result<bool, SceneError> {
         self.value.as_bool().ok_or_else(|| self.wrong_type("true or false"))
+    }
+
+    /// Refuses what is not the number of a format that is known.
+    pub(super) fn check_format(&self) -> Result<(), SceneError> {
+        let number = match self.value {
+            DeValue::Integer(n) => u64::from_str_radix(n.as_str(), n.radix()).ok(),
+            _ => None,
+        };
+        match number {
+            Some(1..=FORMAT) => Ok(()),
+            Some(format @ 1..) => Err(self.error(SceneErrorKind::NewerFormat { format })),
+            _ => Err(self.wrong_type("the number of a format, as in format = 1")),
+        }
     }
 
     /// A finite number.

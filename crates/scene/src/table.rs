@@ -43,6 +43,7 @@ pub struct TableError {
 
 /// Why a table cannot be read.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 #[expect(missing_docs, reason = "the messages say what variants and fields are")]
 pub enum TableFault {
     #[error("cannot be read: {0}")]

@@ -3,6 +3,7 @@
 use std::fmt::{self, Write};
 
 use crate::Scene;
+use crate::format::FORMAT;
 use mechanics::{Body, ConstantsRule, Removal, System, Touch, View};
 use symbolic::Expr;
 
@@ -24,6 +25,7 @@ fn written(scene: &Scene) -> String {
     let Scene { system, start, .. } = scene;
     let g = &system.graph;
     let mut text = Table::default();
+    text.line("format", &FORMAT.to_string());
     text.line("title", &quoted(&scene.title));
     for (key, value) in [("source", &scene.source), ("notes", &scene.notes)] {
         if !value.is_empty() {

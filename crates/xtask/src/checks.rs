@@ -12,7 +12,7 @@ use std::time::Instant;
 use anyhow::{Context, Result};
 
 use crate::tools::{ALL, Outcome, build, cargo, outside, succeed, target};
-use crate::{dependencies, explore, lint, python, sources};
+use crate::{dependencies, explore, identity, lint, python, sources};
 
 /// One thing that must hold.
 pub(crate) struct Check {
@@ -43,6 +43,18 @@ pub(crate) fn all() -> Vec<Check> {
             "no file names a place on one machine or a private registry",
             "write the path relative to the root of the project",
             sources::paths,
+        ),
+        check(
+            "copies",
+            "licences and the page in packages are those of the project, and nothing is a symbolic link",
+            "copy the original over it",
+            sources::copies,
+        ),
+        check(
+            "address",
+            "authors and address are those of Cargo.toml everywhere, and nothing pretends to have an address",
+            "cargo xtask address; or name the folder of the project in the place of an index",
+            identity::check,
         ),
         check(
             "once",

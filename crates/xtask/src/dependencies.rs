@@ -1,11 +1,12 @@
 //! What every dependency is under, where it comes from, what is known against it, and how many there are.
 
 use std::collections::BTreeSet;
+use std::path::Path;
 
 use anyhow::{Context, Result, ensure};
 
-use crate::python;
 use crate::tools::{Outcome, cargo, outside, succeed, target};
+use crate::{python, sources};
 
 /// Packages compiled at most, ours included: for the library, for the program `deltaq`, and for the evidence.
 const MOST: [(&str, usize); 3] = [("deltaq-comparison", 63), ("deltaq", 101), ("deltaq-validation", 169)];
@@ -51,9 +52,35 @@ fn differs(package: &str, beside: &BTreeSet<String>) -> String {
     format!("{package}, else with{}", others.collect::<Vec<_>>().join(", or with"))
 }
 
-/// A registry's packages can be put together: every dependency has a version and asks for what there is.
+/// What stands beside the manifest of a package that is published, and what the manifest says.
+const BESIDE: [&str; 3] = ["README.md", "LICENSE-MIT", "LICENSE-APACHE"];
+const SAID: [&str; 6] = ["description", "license", "keywords", "categories", "readme", "rust-version"];
+
+/// A registry's packages can be put together: every dependency has a version and asks for what there is; and
+/// each has what a registry shows. Evidence is not published.
 pub(crate) fn package() -> Result<Outcome> {
-    succeed(cargo().args(["package", "--workspace", "--no-verify", "--allow-dirty", "--offline", "--quiet"]))
+    let (mut count, mut lacking) = (0, Vec::new());
+    for name in sources::names()?.into_iter().filter(|name| name.ends_with("/Cargo.toml")) {
+        let text = std::fs::read_to_string(&name).with_context(|| name.clone())?;
+        let folder = Path::new(&name).parent().unwrap_or(Path::new(""));
+        if text.contains("\npublish = false\n") {
+            continue;
+        }
+        count += 1;
+        if !folder.starts_with("crates") {
+            lacking.push(format!("{name} is evidence and lacks `publish = false`"));
+        }
+        let files =
+            BESIDE.iter().filter(|file| !folder.join(file).is_file()).map(|file| format!("{name} lacks {file}"));
+        let has = |key: &str| {
+            text.lines().any(|line| line.strip_prefix(key).is_some_and(|rest| rest.starts_with([' ', '.'])))
+        };
+        let keys = SAID.iter().filter(|key| !has(key)).map(|key| format!("{name} lacks `{key}`"));
+        lacking.extend(files.chain(keys));
+    }
+    ensure!(lacking.is_empty(), "{}", lacking.join("; "));
+    succeed(cargo().args(["package", "--workspace", "--no-verify", "--allow-dirty", "--offline", "--quiet"]))?;
+    Ok(Outcome::Passed(format!(", {count} packages for a registry")))
 }
 
 /// How many packages are compiled for one.

@@ -18,6 +18,8 @@ const SOURCES: [&str; 4] = [PAGE, "crates/explore/src", "crates/catalogue/scenes
 const ENDINGS: [&str; 7] = ["js", "mjs", "css", "html", "json", "rs", "toml"];
 /// The committed page.
 const COMMITTED: &str = "reports/explore.html";
+/// The same in the package of the program.
+const PACKED: &str = "crates/deltaq/explore.html";
 const WASM: &str = "wasm32-unknown-unknown";
 /// Where a browser is looked for, and a second one.
 const BROWSERS: [&str; 4] = ["chromium", "chromium-browser", "google-chrome", "google-chrome-stable"];
@@ -53,7 +55,9 @@ pub(crate) fn write() -> Result<Outcome> {
         bail!("the page cannot be built: {lacking}");
     }
     let (page, size) = fresh(&digest()?)?;
-    std::fs::copy(page, COMMITTED).context(COMMITTED)?;
+    std::fs::copy(&page, COMMITTED).context(COMMITTED)?;
+    // what the program is built from is packed with it
+    std::fs::copy(&page, PACKED).context(PACKED)?;
     println!("{COMMITTED}: {size}");
     Ok(Outcome::Passed(String::new()))
 }

@@ -3,6 +3,7 @@
 mod checks;
 mod dependencies;
 mod explore;
+mod identity;
 mod lint;
 mod python;
 mod site;
@@ -19,7 +20,12 @@ use tools::Outcome;
 /// A chore that is no check: its name, what it does, and what it does with further words.
 type Chore = (&'static str, &'static str, fn(&[&str]) -> Result<Outcome>);
 
-const CHORES: [Chore; 6] = [
+const CHORES: [Chore; 7] = [
+    (
+        "address",
+        "sets the address of the project (URL, or none), and writes it and the authors to every file that says them",
+        identity::write,
+    ),
     (
         "wheel",
         "builds wheel (for glibc 2.28 and newer) and source distribution of the Python module, tests the wheel",

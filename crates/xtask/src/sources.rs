@@ -60,6 +60,29 @@ pub(crate) fn paths() -> Result<Outcome> {
     Ok(Outcome::Passed(format!(", {} files", files.len())))
 }
 
+/// Files that packages have to hold themselves, by the end of their names, and what they are copies of: no
+/// symbolic links, which Windows checks out as texts with a path.
+const COPIES: [(&str, &str); 3] =
+    [("LICENSE-MIT", "LICENSE-MIT"), ("LICENSE-APACHE", "LICENSE-APACHE"), ("explore.html", "reports/explore.html")];
+
+/// Every copy is as its original, and nothing is a symbolic link.
+pub(crate) fn copies() -> Result<Outcome> {
+    let (mut count, mut found) = (0, Vec::new());
+    for name in names()? {
+        if std::fs::symlink_metadata(&name).is_ok_and(|data| data.is_symlink()) {
+            found.push(format!("{name} is a symbolic link"));
+        }
+        let is_copy = |(end, original): &&(&str, &str)| name.rsplit('/').next() == Some(*end) && name != *original;
+        let Some((_, original)) = COPIES.iter().find(is_copy) else { continue };
+        count += 1;
+        if std::fs::read(&name).ok() != std::fs::read(original).ok() {
+            found.push(format!("{name} is not as {original}"));
+        }
+    }
+    ensure!(found.is_empty(), "{}", found.join("; "));
+    Ok(Outcome::Passed(format!(", {count} copies")))
+}
+
 /// Name of every file that is tracked, or would be.
 pub(crate) fn names() -> Result<Vec<String>> {
     let output = Command::new("git")

@@ -10,7 +10,7 @@ use anyhow::{Context, Result, bail};
 const BEGINS: &str = "Measured on ";
 
 /// Pages in the folder of reports, and the folders of sources that they speak of.
-pub const PAGES: [(&str, &[&str]); 10] = [
+pub const PAGES: [(&str, &[&str]); 11] = [
     ("films.md", &["crates/fit/src", "crates/vakonomic/src", "crates/chetaev/src"]),
     ("judge.md", &["validation/judge", "crates/judge/src", "crates/first-order/src"]),
     ("engine.md", &["validation/engine/src", "crates/chetaev/src", "crates/integrate/src", "crates/motion/src"]),
@@ -41,6 +41,16 @@ pub const PAGES: [(&str, &[&str]); 10] = [
             "crates/symbolic/src",
             "crates/equations/src",
             "crates/reduction/src",
+            "crates/integrate/src",
+        ],
+    ),
+    (
+        "measured/ivp.md",
+        &[
+            "validation/src/ivp",
+            "validation/ivp",
+            "crates/symbolic/src",
+            "crates/equations/src",
             "crates/integrate/src",
         ],
     ),

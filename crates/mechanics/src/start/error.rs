@@ -34,6 +34,7 @@ impl std::fmt::Display for Quantity {
 
 /// Why there is no start.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 #[expect(missing_docs, reason = "the messages say what fields are")]
 pub enum StartError {
     /// The given velocities, constraints and start equations leave some velocities open.

@@ -14,5 +14,5 @@ def needed(name: str) -> Any:
         package = name.partition(".")[0]
         if (missing.name or "").partition(".")[0] != package:
             raise
-        extra = f'pip install "deltaq[{_EXTRAS[package]}]"'
+        extra = f"the extra [{_EXTRAS[package]}] of deltaq brings it, or: pip install {package}"
         raise ImportError(f"this needs {package}, which is not there: {extra}", name=package) from None

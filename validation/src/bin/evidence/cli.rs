@@ -85,6 +85,8 @@ pub enum Command {
     Films(FilmsArguments),
     /// Write the page on invariant measures and first integrals.
     Integrals(IntegralsArguments),
+    /// Solve test problems of others, whose ends are printed, and write the page.
+    Ivp(IvpArguments),
     /// Run the main job in memory and compare its verdicts with those in the reports folder.
     Reports(ReportsArguments),
 }
@@ -169,6 +171,14 @@ pub struct FilmsArguments {
     #[arg(long, value_name = "NAME,…", value_delimiter = ',')]
     pub scenes: Vec<String>,
     /// Folder for the page.
+    #[arg(long, value_name = "DIR", value_parser = program::folder())]
+    pub out: PathBuf,
+}
+
+/// `evidence ivp`.
+#[derive(Args, Debug)]
+pub struct IvpArguments {
+    /// Folder for the page; `reports/measured` is the committed one.
     #[arg(long, value_name = "DIR", value_parser = program::folder())]
     pub out: PathBuf,
 }

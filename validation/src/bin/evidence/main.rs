@@ -5,6 +5,7 @@ mod benchmark_command;
 mod cli;
 mod films_command;
 mod integrals_command;
+mod ivp_command;
 mod main_job;
 mod random_command;
 mod reports_command;
@@ -35,6 +36,7 @@ fn run(cli: Cli) -> Result<Answer> {
         Some(Command::Benchmark(arguments)) => benchmark_command::run(&arguments, quiet).map(Answer::from),
         Some(Command::Films(arguments)) => films_command::run(&arguments, quiet).map(Answer::from),
         Some(Command::Integrals(arguments)) => integrals_command::run(&arguments, quiet).map(Answer::from),
+        Some(Command::Ivp(arguments)) => ivp_command::run(&arguments, quiet).map(Answer::from),
         Some(Command::Reports(arguments)) => reports_command::run(&arguments).map(Answer::from),
         Some(Command::Scaling(arguments)) => scaling_command::run(&arguments, quiet).map(Answer::from),
         Some(Command::Random(arguments)) => random_command::run(&arguments, quiet),
