@@ -1,7 +1,8 @@
 //! All formulations of a system, pair by pair.
 
 use deltaq::words::at_most;
-use deltaq::{Answer, Fits, Gap, Membership, THRESHOLDS, Verdict};
+use deltaq::{Answer, Extent, Fits, Gap, Membership, THRESHOLDS, Verdict};
+use equations::Formulation;
 use numpy::PyArrayDyn;
 use pyo3::exceptions::PyKeyError;
 use pyo3::prelude::*;
@@ -29,6 +30,14 @@ pub(crate) struct Growth {
 
 kept!(Growth: exponent uncertainty coefficient length);
 
+#[pymethods]
+impl Growth {
+    fn __repr__(&self) -> String {
+        let Growth { exponent, uncertainty, length, .. } = self;
+        format!("<deltaq.Growth {length:.3e} t^{exponent:.2}, exponent within {uncertainty:.0e}>")
+    }
+}
+
 /// The leading term of the second motion minus the first, by Taylor coefficients of their accelerations.
 #[pyclass(frozen, get_all, module = "deltaq")]
 pub(crate) struct LeadingTerm {
@@ -43,6 +52,14 @@ pub(crate) struct LeadingTerm {
 }
 
 kept!(LeadingTerm: exponent coefficient length proved);
+
+#[pymethods]
+impl LeadingTerm {
+    fn __repr__(&self) -> String {
+        let proved = if self.proved { "proved" } else { "not proved" };
+        format!("<deltaq.LeadingTerm {:.3e} t^{}, {proved}>", self.length, self.exponent)
+    }
+}
 
 /// Two motions compared.
 #[pyclass(frozen, get_all, module = "deltaq")]
@@ -196,8 +213,10 @@ impl Decided {
 /// One formulation with all choices made, and what became of it.
 #[pyclass(frozen, get_all, module = "deltaq")]
 pub(crate) struct Run {
-    /// Label: the formulation, and the removal where there are several.
+    /// Its identifier: the name of the formulation, and of its removal: "removed-constraint:arc-length".
     label: String,
+    /// The same in words, for people.
+    title: String,
     /// Name of the formulation.
     formulation: String,
     /// Name of the removal, None where the formulation needs none.
@@ -208,7 +227,7 @@ pub(crate) struct Run {
     error: Option<String>,
 }
 
-kept!(Run: label formulation removal motion error);
+kept!(Run: label title formulation removal motion error);
 
 #[pymethods]
 impl Run {
@@ -240,7 +259,8 @@ kept!(Comparison: system integrability runs pairs fits decided contradictions);
 
 #[pymethods]
 impl Comparison {
-    /// The pair of two runs, in either order, named by label, or by formulation for the first of its kind.
+    /// The pair of two runs, in either order, named by label, by title, or by formulation for the first of its
+    /// kind.
     ///
     /// UnknownNameError where there is no such run, KeyError where the two were not compared.
     #[pyo3(signature = (a, b))]
@@ -265,7 +285,7 @@ impl Comparison {
 impl Comparison {
     fn label(&self, name: &str) -> PyResult<String> {
         let runs = || self.runs.iter().map(Py::get);
-        let found = runs().find(|r| r.label == name).or_else(|| runs().find(|r| r.formulation == name));
+        let found = runs().find(|r| r.label == name || r.title == name).or_else(|| runs().find(|r| r.formulation == name));
         let known = || runs().map(|r| r.label.as_str()).collect::<Vec<_>>().join(", ");
         found.map(|r| r.label.clone()).ok_or_else(|| errors::unknown(format!("no run `{name}`; there are {}", known())))
     }
@@ -273,7 +293,7 @@ impl Comparison {
     pub(crate) fn new(system: &Bound<'_, System>, compared: Compared) -> PyResult<Comparison> {
         let py = system.py();
         let Compared { scene, settings, integrability, runs, pairs, fits, decided, contradictions } = compared;
-        let labels: Vec<String> = runs.iter().map(|r| r.0.label.clone()).collect();
+        let labels: Vec<String> = runs.iter().map(|r| identifier(&r.0)).collect();
         let names: Vec<&str> = scene.system.coordinates.iter().map(|c| c.name.as_str()).collect();
         let vector = |values: Vec<f64>| {
             let count = Some(values.len());
@@ -343,11 +363,9 @@ impl Comparison {
                 }
                 Err(error) => (None, Some(error.to_string())),
             };
+            let (label, formulation) = (identifier(&choice), choice.formulation.name.into());
             let removal = choice.removal.map(|r| r.name);
-            Py::new(
-                py,
-                Run { label: choice.label, formulation: choice.formulation.name.into(), removal, motion, error },
-            )
+            Py::new(py, Run { label, title: choice.label, formulation, removal, motion, error })
         };
         let membership = |d: deltaq::Decided| {
             Py::new(py, Decided::new(py, labels[d.family].clone(), labels[d.curve].clone(), d.outcome)?)
@@ -362,6 +380,12 @@ impl Comparison {
             fits: fits.into_iter().map(fit).collect::<PyResult<_>>()?,
         })
     }
+}
+
+/// What a run is called.
+fn identifier(choice: &deltaq::Choice) -> String {
+    let removal = choice.removal.as_ref().map_or(String::new(), |removal| format!(":{}", removal.name));
+    choice.formulation.name.to_owned() + &removal
 }
 
 fn words(gap: &Gap) -> (&'static str, Option<String>) {
@@ -384,11 +408,30 @@ pub(crate) struct Compared {
     decided: Vec<deltaq::Decided>,
 }
 
-/// Compares all formulations of `scene`.
-pub(crate) fn compare(scene: Scene, fits: Fits, settings: &deltaq::Settings) -> Result<Compared, deltaq::SolveError> {
-    let choices = deltaq::choices(&scene);
-    let mut compared = deltaq::compare_unfitted(scene, choices, Vec::new(), settings)?;
-    compared.fit(fits, settings)?;
+/// What is asked of a comparison.
+pub(crate) struct Wanted {
+    /// Formulations, all where none are named.
+    pub(crate) only: Option<Vec<&'static Formulation>>,
+    pub(crate) extent: Extent,
+    /// Whether families are decided on.
+    pub(crate) decision: bool,
+    pub(crate) fits: Fits,
+}
+
+/// Compares formulations of `scene`.
+pub(crate) fn compare(
+    scene: Scene,
+    wanted: &Wanted,
+    settings: &deltaq::Settings,
+) -> Result<Compared, deltaq::SolveError> {
+    let is_wanted = |own: &Formulation| wanted.only.as_ref().is_none_or(|only| only.iter().any(|other| *other == own));
+    let choices = deltaq::choices_among(&scene, is_wanted);
+    let mut compared = deltaq::Comparison::new(scene, wanted.extent, settings)?;
+    for choice in choices {
+        compared.solve(choice, settings)?;
+    }
+    while wanted.decision && compared.decide_next().is_some() {}
+    compared.fit(wanted.fits, settings)?;
     let contradictions = compared.contradictions().iter().map(ToString::to_string).collect();
     let deltaq::Comparison { scene, integrability, runs, pairs, fits, decided, .. } = compared;
     let read = |motion| Sampled::new(motion, deltaq::setting(&scene), None);

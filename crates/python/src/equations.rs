@@ -75,7 +75,7 @@ impl Equations {
             system: system.clone().unbind(),
             spare: Shared::default(),
             dimension: scene.system.dimension(),
-            at_run_time: AtRunTime::new(scene, choice, states.clone()),
+            at_run_time: AtRunTime::new(scene, choice, states.clone(), made.constants.clone()),
             formulation: equations.formulation,
             removal: equations.removal.as_ref().map(|r| r.name.clone()),
             states,
@@ -167,6 +167,12 @@ fn state(equations: &equations::Equations, q: &[f64], v: &[f64], mu: &[f64]) -> 
 
 #[pymethods]
 impl Equations {
+    /// Values of the parameters of the system, by name: those that `rates`, `jacobian` and `integrate` take.
+    #[getter]
+    fn parameters<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        self.system.get().parameters(py)
+    }
+
     /// The equations and what was left out of them, in the language of scenes.
     #[getter]
     fn text(&self) -> PyResult<String> {
@@ -186,7 +192,7 @@ impl Equations {
 
     /// A file of C99: functions for rates and outputs without allocation, the start, the parameters.
     ///
-    /// SolveError where unknowns of the instant are not found by linear equations; so in all three languages.
+    /// SolveError where unknowns of the instant are not found by linear equations; so in all languages.
     #[pyo3(signature = ())]
     fn to_c(&self, py: Python<'_>) -> PyResult<String> {
         self.code(py, Language::C)
@@ -196,6 +202,18 @@ impl Equations {
     #[pyo3(signature = ())]
     fn to_numpy(&self, py: Python<'_>) -> PyResult<String> {
         self.code(py, Language::Numpy)
+    }
+
+    /// The module of `to_numpy` for JAX: jit, grad and vmap go through rates and outputs.
+    #[pyo3(signature = ())]
+    fn to_jax(&self, py: Python<'_>) -> PyResult<String> {
+        self.code(py, Language::Jax)
+    }
+
+    /// A module of Python: rates(t, y, values) and outputs(t, y, values) for one state, compiled by Numba.
+    #[pyo3(signature = ())]
+    fn to_numba(&self, py: Python<'_>) -> PyResult<String> {
+        self.code(py, Language::Numba)
     }
 
     /// A module of Python: RATES, OUTPUTS, MATRIX and RIGHT as matrices of SymPy in STATES and UNKNOWNS.

@@ -3,8 +3,9 @@
 use std::convert::Infallible;
 
 use deltaq::{
-    EnsembleOptions, Settings, SolveError, Sweep, SweepPoint, number_of_threads, over_threads, setting, solve_choice,
+    EnsembleOptions, Extent, Fits, Settings, SolveError, Sweep, SweepPoint, number_of_threads, over_threads, setting, solve_choice,
 };
+use equations::Formulation;
 use integrate::Interrupt;
 use picture::Style;
 use pyo3::exceptions::PyValueError;
@@ -12,11 +13,11 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use scenery::{Drawn, moving};
 
-use crate::arguments::Table;
+use crate::arguments::{Numbers, Table};
 use crate::arrays::{Floats, Rows, list};
 use crate::background::whole;
-use crate::comparison::{Comparison, compare};
-use crate::ensemble::{self, Ensemble, Varied};
+use crate::comparison::{Comparison, Wanted, compare};
+use crate::ensemble::{Ensemble, Instants, Task, Varied};
 use crate::equations::Equations;
 use crate::linearization::{Linearization, LinearizationSweep};
 use crate::motion::{Asked, Motion, Sampled};
@@ -110,6 +111,8 @@ impl System {
     /// mu0: start multipliers of the vakonomic formulations, shape (h,). By default those of the system.
     /// constants: free constants, "zero", {"horizon": T} (natural at T) or an array. By default those of the
     /// removal or of the system.
+    /// parameters, start: numbers for this call, by the names of parameters, of coordinates and velocities:
+    /// `Motion.system` has them.
     /// form: of the equations, "multipliers", "costates", "quasi-velocities" or auto, which suits the system.
     /// method: one of METHODS, or auto, which suits the motion. tolerance: of the looser run; the one that is
     /// kept has a hundredth of it.
@@ -127,13 +130,15 @@ impl System {
     /// ('completed', True)
     #[expect(clippy::too_many_arguments, reason = "named in Python, and most of them left out")]
     #[pyo3(signature = (
-        formulation="chetaev", times=None, *, removal=None, mu0=None, constants=None, form="auto", method="auto",
-        tolerance=1e-11, project=true, max_steps=1_000_000, max_step=None, time_limit=None, sensitivities=None
+        formulation="chetaev", times=None, *, parameters=None, start=None, removal=None, mu0=None, constants=None,
+        form="auto", method="auto", tolerance=1e-11, project=true, max_steps=1_000_000, max_step=None, time_limit=None, sensitivities=None
     ))]
     fn solve(
         slf: &Bound<'_, Self>,
         formulation: &str,
         times: Option<Floats<'_>>,
+        parameters: Option<Numbers>,
+        start: Option<Numbers>,
         removal: Option<&str>,
         mu0: Option<Floats<'_>>,
         constants: Option<Bound<'_, PyAny>>,
@@ -150,17 +155,14 @@ impl System {
         let (settings, interrupt) = arguments::settings(method, tolerance, project, max_steps, max_step, time_limit)?;
         let (formulation, in_form) = arguments::in_form(form, formulation)?;
         let settings = Settings { form: in_form, ..settings };
+        let slf = &System::for_call(slf, parameters, start)?;
         let scene = slf.get().scene()?;
         let (mut scene, choice) = arguments::choice(py, &interrupt, scene, (formulation, removal), given)?;
-        let times = match times {
-            None => None,
-            Some(times) => {
-                let (times, end) = ensemble::times(&times, &scene)?;
-                scene.duration = end - scene.start.t;
-                Some(times)
-            }
-        };
-        let (limits, instants) = (settings.clone(), times.clone());
+        let instants = times.map(|times| Instants::read(&times, scene.start.t, &scene)).transpose()?;
+        if let Some(instants) = &instants {
+            scene.duration = instants.end - scene.start.t;
+        }
+        let (limits, times) = (settings.clone(), instants.as_ref().map(|instants| instants.values.clone()));
         let work = move || {
             let motion = solve_choice(&scene, &choice, &limits)?;
             let mut sampled = Sampled::new(motion, setting(&scene), instants)?;
@@ -214,54 +216,72 @@ impl System {
         let (scene, given) = (slf.get().scene()?, constants.is_some());
         let formulation = arguments::formulation(formulation)?;
         let (scene, choice) = arguments::choice(py, &interrupt, scene, (formulation, removal), constants)?;
-        let (times, end) = times.map_or_else(
-            || Ok((vec![setting(&scene).end], setting(&scene).end)),
-            |times| ensemble::times(&times, &scene),
-        )?;
+        let read = |times| Instants::read(&times, scene.start.t, &scene);
+        let instants = times.map_or_else(|| Ok(Instants::end_of(&scene)), read)?;
         let varied = Varied::read(&vary.0)?;
         let options = EnsembleOptions { threads, estimate };
         if let (true, Some(name)) = (given, varied.multiplier(&scene)) {
             return Err(PyValueError::new_err(format!("{name} varies, and mu0 or constants fix it")));
         }
-        let task = ensemble::Task { varied, scene, choice, times, end, settings, options };
+        let task = Task { varied, scene, choice, instants, settings, options };
         let integrated = background::run(py, &interrupt, move || task.run())?;
         Ensemble::new(slf, integrated.map_err(errors::solve)?)
     }
 
     /// Compares the motions of all formulations pair by pair; tolerance, max_steps, max_step and time_limit
-    /// as in `solve`. fits: free constants are fitted where nothing is decided ("undecided"), always ("all"),
-    /// which takes most of the time, or never ("none").
+    /// as in `solve`. formulations: those to compare, all if left out. extent: what is computed in addition to
+    /// the gaps: growth of Chetaev's gap to the vakonomic motion and whether it is vakonomic for some mu0
+    /// ("answer", as `deltaq compare` prints), the same of all pairs and families ("everything"), or nothing
+    /// ("gaps"). decision: whether families are decided on at all. fits: free constants are fitted where
+    /// nothing is decided ("undecided"), always ("all"), which takes most of the time, or never ("none").
     ///
     /// >>> comparison = sledge.compare()
     /// >>> comparison.verdict("chetaev", "vakonomic")
     /// 'different'
     /// >>> comparison.decided[0].answer, comparison.decided[0].proved
     /// ('none', True)
-    #[pyo3(signature = (*, tolerance=1e-11, max_steps=1_000_000, max_step=None, time_limit=None, fits="undecided"))]
+    #[expect(clippy::too_many_arguments, reason = "named in Python, and most of them left out")]
+    #[pyo3(signature = (
+        formulations=None, *, extent="answer", decision=true, fits="undecided", tolerance=1e-11, max_steps=1_000_000,
+        max_step=None, time_limit=None
+    ))]
     fn compare(
         slf: &Bound<'_, Self>,
+        formulations: Option<Vec<String>>,
+        extent: &str,
+        decision: bool,
+        fits: &str,
         tolerance: f64,
         max_steps: usize,
         max_step: Option<f64>,
         time_limit: Option<f64>,
-        fits: &str,
     ) -> PyResult<Comparison> {
-        let (py, fits) = (slf.py(), arguments::fits(fits)?);
+        let py = slf.py();
+        let named = |names: Vec<String>| names.iter().map(|name| arguments::formulation(name)).collect();
+        let only: Option<Vec<&Formulation>> = formulations.map(named).transpose()?;
+        let extent = arguments::extent(extent)?;
+        let fits = match arguments::fits(fits)? {
+            // what is not decided on is not searched for
+            Fits::Undecided if !decision || extent == Extent::Gaps => Fits::None,
+            fits => fits,
+        };
         let (settings, interrupt) = arguments::settings("auto", tolerance, true, max_steps, max_step, time_limit)?;
         let scene = slf.get().scene()?;
-        let compared = background::run(py, &interrupt, move || compare(scene, fits, &settings))?;
+        let wanted = Wanted { only, extent, decision, fits };
+        let compared = background::run(py, &interrupt, move || compare(scene, &wanted, &settings))?;
         Comparison::new(slf, compared.map_err(errors::solve)?)
     }
 
     /// What `deltaq.sweep` finds at some points: columns by name.
     #[expect(clippy::too_many_arguments, reason = "named in Python")]
-    #[pyo3(signature = (names, values, formulations, tolerance, max_steps, max_step, time_limit, threads))]
+    #[pyo3(signature = (names, values, formulations, decision, tolerance, max_steps, max_step, time_limit, threads))]
     fn _sweep_points<'py>(
         &self,
         py: Python<'py>,
         names: Vec<String>,
         values: Floats<'_>,
         formulations: Option<[String; 2]>,
+        decision: bool,
         tolerance: f64,
         max_steps: usize,
         max_step: Option<f64>,
@@ -277,6 +297,7 @@ impl System {
         let (name, width) = (self.name()?, names.len());
         let work = || -> Result<Vec<SweepPoint>, deltaq::SolveError> {
             let sweep = Sweep::new(&name, &self.text, &self.overrides, &names, formulations, &settings)?;
+            let sweep = if decision { sweep } else { sweep.without_decision() };
             let rows: Vec<&[f64]> = values.chunks_exact(width.max(1)).collect();
             Ok(over_threads(number_of_threads(threads), rows.len(), |i| sweep.point(rows[i])))
         };

@@ -1,16 +1,18 @@
 //! Systems, and what can be asked of them.
 
+use std::hash::{DefaultHasher, Hash, Hasher};
 use std::path::Path;
 
 use deltaq::{integrability, removals};
 use integrate::Interrupt;
 use numpy::PyArrayDyn;
+use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::types::{IntoPyDict, PyDict};
 use scene::Scene;
 use symbolic::{work_on, worked_on};
 
-use crate::arguments::{Numbers, Table};
+use crate::arguments::{Numbers, Table, unknown};
 use crate::arrays::{Array, Floats, Points, array, fixed};
 use crate::background::apart;
 use crate::kept::kept;
@@ -95,6 +97,48 @@ impl System {
         })?;
         let scene = Shared::new(scene.map_err(|error| errors::scene(py, &error))?);
         Ok(System { scene, about: worked_on(), text, overrides })
+    }
+
+    /// The same system with these numbers over those that were set.
+    fn with(&self, py: Python<'_>, numbers: Overrides) -> PyResult<System> {
+        let is_new = |name: &String| numbers.iter().any(|(new, _)| new == name);
+        let kept = self.overrides.iter().filter(|(name, _)| !is_new(name)).cloned();
+        let all = kept.chain(numbers.iter().cloned()).collect();
+        System::read(py, (&self.name()?, None), self.text.clone(), all)
+    }
+
+    /// What is watched along motions, as text, by name.
+    fn watched<'py>(&self, py: Python<'py>, is_constant: bool) -> PyResult<Bound<'py, PyDict>> {
+        let texts = |Scene { system, .. }: &mut Scene| -> Vec<(String, String)> {
+            let own = system.watched.iter().filter(|watched| watched.is_constant() == is_constant);
+            own.map(|watched| (watched.name.clone(), system.graph.plain(watched.expression))).collect()
+        };
+        self.scene.with(texts)?.into_py_dict(py)
+    }
+
+    /// The system for one call: with these parameters, and these coordinates and velocities at its start.
+    pub(crate) fn for_call<'py>(
+        slf: &Bound<'py, Self>,
+        parameters: Option<Numbers>,
+        start: Option<Numbers>,
+    ) -> PyResult<Bound<'py, Self>> {
+        if parameters.is_none() && start.is_none() {
+            return Ok(slf.clone());
+        }
+        let scene = slf.get().scene()?;
+        let coordinates = || scene.system.coordinates.iter().map(|c| c.name.clone());
+        let starts: Vec<String> = coordinates().chain(coordinates().map(|name| name + "'")).collect();
+        let own = scene.system.parameters.iter().map(|p| scene.system.graph.name(p.symbol)).collect();
+        let mut numbers = Vec::new();
+        for (what, given, known) in [("parameter", parameters, own), ("start value", start, starts)] {
+            for (name, number) in given.map_or(Vec::new(), |given| given.0) {
+                if !known.contains(&name) {
+                    return Err(unknown(what, &name, known.iter().map(String::as_str)));
+                }
+                numbers.push((name, number));
+            }
+        }
+        Bound::new(slf.py(), slf.get().with(slf.py(), numbers)?)
     }
 
     /// A copy of the scene, on which this thread works from now on.
@@ -214,7 +258,7 @@ impl System {
 
     /// Values of the parameters, by name.
     #[getter]
-    fn parameters<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+    pub(crate) fn parameters<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let scene = self.scene()?;
         scene.system.parameters.iter().map(|p| (scene.system.graph.name(p.symbol), p.value)).into_py_dict(py)
     }
@@ -247,6 +291,18 @@ impl System {
             pairs.map(|(c, &force)| (c.name.clone(), g.plain(force))).collect()
         };
         self.scene.with(texts)?.into_py_dict(py)
+    }
+
+    /// What motions list in addition, as text, by name.
+    #[getter]
+    fn observables<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        self.watched(py, false)
+    }
+
+    /// What should stay constant along motions, as text, by name.
+    #[getter]
+    fn invariants<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        self.watched(py, true)
     }
 
     /// The Lagrangian and the constraints in LaTeX: one `aligned` environment.
@@ -310,15 +366,36 @@ impl System {
 
     /// The same system with other numbers in some places; overrides as in `load`, over those of before.
     ///
-    /// >>> sledge.replace({"g": 1.6}).parameters["g"]
-    /// 1.6
-    #[pyo3(signature = (overrides))]
-    fn replace(&self, py: Python<'_>, overrides: Numbers) -> PyResult<System> {
-        let Numbers(overrides) = overrides;
-        let is_new = |name: &String| overrides.iter().any(|(new, _)| new == name);
-        let kept = self.overrides.iter().filter(|(name, _)| !is_new(name)).cloned();
-        let all = kept.chain(overrides.iter().cloned()).collect();
-        System::read(py, (&self.name()?, None), self.text.clone(), all)
+    /// >>> sledge.replace(g=1.6) == sledge.replace({"g": 1.6})
+    /// True
+    #[pyo3(signature = (overrides=None, /, **numbers))]
+    fn replace(
+        &self,
+        py: Python<'_>,
+        overrides: Option<Numbers>,
+        numbers: Option<Bound<'_, PyDict>>,
+    ) -> PyResult<System> {
+        let mut all = overrides.map_or(Overrides::new(), |numbers| numbers.0);
+        let more: Option<Numbers> = numbers.map(|numbers| numbers.extract()).transpose()?;
+        for (name, number) in more.map_or(Overrides::new(), |more| more.0) {
+            if all.iter().any(|(known, _)| *known == name) {
+                return Err(PyTypeError::new_err(format!("{name} is given twice")));
+            }
+            all.push((name, number));
+        }
+        self.with(py, all)
+    }
+
+    /// Whether two systems say the same, with the same numbers.
+    fn __eq__(&self, other: &Bound<'_, PyAny>) -> PyResult<bool> {
+        let Ok(other) = other.cast::<System>() else { return Ok(false) };
+        Ok(self.to_toml()? == other.get().to_toml()?)
+    }
+
+    fn __hash__(&self) -> PyResult<u64> {
+        let mut hasher = DefaultHasher::new();
+        self.to_toml()?.hash(&mut hasher);
+        Ok(hasher.finish())
     }
 
     fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<(Bound<'py, PyAny>, (String, String, Overrides))> {

@@ -19,7 +19,7 @@ All arrays are of float64. Results cannot be written to, and can be pickled. Eve
 DeltaqError, an unknown name an UnknownNameError; a wrong shape is a ValueError, a missing file a FileNotFoundError.
 """
 
-from . import _animate, _films, _notebook, _plots, _proof, _tables
+from . import _animate, _code, _films, _motion, _notebook, _plots, _proof, _tables
 from ._native import (
     FORMULATIONS,
     METHODS,
@@ -131,6 +131,14 @@ for _class, _module in ((Motion, "motion"), (Ensemble, "ensemble"), (Comparison,
         if _function is not None:
             setattr(_class, f"to_{_kind}", _function)
 
+for _class in (Motion, Ensemble):
+    setattr(_class, "__getitem__", _motion.column)
+    setattr(_class, "__contains__", _motion.is_column)
+for _name, _function in (("__getitem__", _motion.item), ("__len__", _motion.length), ("__iter__", _motion.instants)):
+    setattr(Motion, _name, _function)
+
+setattr(Equations, "functions", _code.functions)
+setattr(Equations, "to_scipy", _code.to_scipy)
 setattr(System, "prove", _proof.prove)
 setattr(System, "integrals", _proof.integrals)
 setattr(System, "fit", _films.fit)

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from ._motion import times
 from ._native import Comparison, Ensemble, Motion, System
 from ._plots import COLOURS
 
@@ -36,8 +37,8 @@ class Animation:
 
 
 def _curve(label: str, motion: Motion) -> tuple[str, str, Any, Any]:
-    times = np.linspace(motion.start, motion.end, _POINTS)
-    return label, motion.formulation, times, motion.at(times).coordinates
+    instants = np.linspace(motion.start, motion.end, _POINTS)
+    return label, motion.formulation, instants, motion.at(instants).coordinates
 
 
 def motion(self: Motion) -> Animation:
@@ -47,7 +48,7 @@ def motion(self: Motion) -> Animation:
 
 def comparison(self: Comparison) -> Animation:
     """The bodies of the system's view along the first motion of each formulation, in one picture that plays by itself."""
-    shown = {run.formulation: (run.label, run.motion) for run in reversed(self.runs) if run.motion is not None}
+    shown = {run.formulation: (run.title, run.motion) for run in reversed(self.runs) if run.motion is not None}
     return Animation(self.system, [_curve(*shown[name]) for name in COLOURS if name in shown])
 
 
@@ -56,5 +57,6 @@ def ensemble(self: Ensemble) -> Animation:
     name, values = next(iter(self.varied.items()))
     members = np.unique(np.linspace(0, len(self) - 1, min(len(self), _MEMBERS)).round().astype(int))
     reached = lambda i: slice(0, int(self.reached[i]))  # noqa: E731
-    curve = lambda i: (f"{name} = {values[i]:g}", "", self.times[reached(i)], self.coordinates[i, reached(i)])  # noqa: E731
+    places = np.reshape(self.coordinates, (len(self), len(times(self)), -1))
+    curve = lambda i: (f"{name} = {values[i]:g}", "", times(self)[reached(i)], places[i, reached(i)])  # noqa: E731
     return Animation(self.system, [curve(i) for i in members])

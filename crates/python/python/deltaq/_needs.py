@@ -4,6 +4,8 @@ from importlib import import_module
 from typing import Any
 
 _EXTRAS = {"pyarrow": "tables", "pandas": "tables", "xarray": "tables", "matplotlib": "plot", "distributed": "cluster"}
+# What no extra brings.
+_OTHERS = {"jax", "numba"}
 
 
 def needed(name: str) -> Any:
@@ -14,5 +16,5 @@ def needed(name: str) -> Any:
         package = name.partition(".")[0]
         if (missing.name or "").partition(".")[0] != package:
             raise
-        extra = f'pip install "deltaq[{_EXTRAS[package]}]"'
+        extra = f"pip install {package}" if package in _OTHERS else f'pip install "deltaq[{_EXTRAS[package]}]"'
         raise ImportError(f"this needs {package}, which is not there: {extra}", name=package) from None
