@@ -16,7 +16,8 @@ use crate::{EquationStyle, Prepared, SolveError, equations_text};
 /// invariants), the start, and every parameter and free constant as a value to be changed.
 ///
 /// C99: functions without allocation, which solve the blocks as we do. NumPy: functions of one state or of
-/// any number, shape `(…, m)`; JAX: the same. Numba: functions of one state. SymPy: matrices in symbols, with the unknowns `z` of the instant, `A z = b`.
+/// any number, shape `(…, m)`; JAX: the same. Numba: functions of one state. SymPy: matrices in symbols, with
+/// the unknowns `z` of the instant, `A z = b`.
 ///
 /// # Errors
 /// [`SolveError::NotLinear`] where a block is not linear in its unknowns.

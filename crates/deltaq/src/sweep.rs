@@ -95,8 +95,8 @@ impl Sweep {
         Ok(sweep)
     }
 
-    /// The same with gaps and verdicts alone: [`SweepPoint::answer`] and what belongs to it stay empty, and no
-    /// verdict is proved.
+    /// The same with gaps and verdicts alone: [`SweepPoint::answer`] and what belongs to it stay empty, and
+    /// no verdict is proved.
     pub fn without_decision(self) -> Sweep {
         Sweep { extent: Extent::Gaps, ..self }
     }

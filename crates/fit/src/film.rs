@@ -191,8 +191,8 @@ fn head<'t>(scene: &Scene, cell: &'t str) -> Result<(&'t str, f64), FitError> {
     }
 }
 
-/// Whether `deltaq solve` or the Python module adds such a column to a motion: errors, multipliers, derivatives,
-/// what should stay constant.
+/// Whether `deltaq solve` or the Python module adds such a column to a motion: errors, multipliers,
+/// derivatives, what should stay constant.
 fn is_added(scene: &Scene, name: &str) -> bool {
     let begins = |with: &&str| name.starts_with(with);
     ["error ", "lambda_", "mu_", "p_", "P_", "momentum "].iter().any(begins)

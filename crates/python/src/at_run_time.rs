@@ -86,8 +86,8 @@ impl AtRunTime {
         Ok(result)
     }
 
-    /// Calls `body` with the equations for these parameters and free constants, started `from` there or, by the
-    /// formulas and conditions of the scene, with these numbers.
+    /// Calls `body` with the equations for these parameters and free constants, started `from` there or, by
+    /// the formulas and conditions of the scene, with these numbers.
     pub(crate) fn started<T>(
         &self,
         numbers: Vec<(String, f64)>,

@@ -129,8 +129,8 @@ pub(crate) struct Motion {
     /// Name of the removal, None where the formulation needs none.
     #[pyo3(get)]
     removal: Option<String>,
-    /// Times, shape (k,), in the unit of time of the system; of one time asked for as a number the axis of length k
-    /// is missing in all arrays.
+    /// Times, shape (k,), in the unit of time of the system. If one time was asked for as a number, all arrays
+    /// lack this axis.
     #[pyo3(get)]
     times: Py<PyArrayDyn<f64>>,
     /// How many of the times it reached.
@@ -308,10 +308,7 @@ impl Motion {
 
 #[pymethods]
 impl Motion {
-    /// Everything at time t, read off the dense output (order 7 for dop853).
-    ///
-    /// t is a number or of shape (k,), from start to end, where its last digit does not count; ValueError
-    /// elsewhere.
+    #[doc = include_str!("../docs/Motion.at.txt")]
     #[pyo3(signature = (t))]
     fn at(&self, py: Python<'_>, t: Floats<'_>) -> PyResult<Outputs> {
         let (t, start, end) = (times("t", &t)?, self.start, self.end);

@@ -26,16 +26,7 @@ use crate::{arguments, background, errors};
 
 #[pymethods]
 impl System {
-    /// The equations of motion under a formulation, one of FORMULATIONS.
-    ///
-    /// removal: a name in `removals`, "coordinates" or "quasi-velocities"; by default the first.
-    /// constants: those of `Equations.initial_state`, as in `solve`; by default zero if natural at a horizon.
-    ///
-    /// >>> equations = sledge.equations("chetaev")
-    /// >>> equations.states
-    /// ['x', 'y', 'phi', "x'", "y'", "phi'"]
-    /// >>> equations.rates(0.0, equations.initial_state())[:3]
-    /// array([0., 0., 1.])
+    #[doc = include_str!("../docs/System.equations.txt")]
     #[pyo3(signature = (formulation="chetaev", removal=None, *, mu0=None, constants=None))]
     fn equations(
         slf: &Bound<'_, Self>,
@@ -48,11 +39,7 @@ impl System {
         Equations::derived(slf, (arguments::formulation(formulation)?, removal), given)
     }
 
-    /// The equations of motion to first order about the start, which has to be a steady motion.
-    ///
-    /// free: coordinates whose eigenvalues are asked for, with those of all that is coupled with them both
-    /// ways; by default all. at: a time; about the motion there, steady or not. find: about a steady motion
-    /// of Chetaev's equations near the start. Else as in `equations`. SolveError with what moves.
+    #[doc = include_str!("../docs/System.linearize.txt")]
     #[expect(clippy::too_many_arguments, reason = "named in Python, and most of them left out")]
     #[pyo3(signature = (formulation="chetaev", *, free=None, at=None, find=false, removal=None, mu0=None, constants=None))]
     fn linearize(
@@ -74,12 +61,7 @@ impl System {
         Linearization::about(py, scene, choice, free.unwrap_or_default(), (at, find))
     }
 
-    /// `linearize` over the values of one number, and where stability changes between them: `deltaq
-    /// linearize --sweep`.
-    ///
-    /// over: one name to its values, shape (k,): a parameter, a start value ("x", "x'"), a multiplier
-    /// ("mu0_1"). Between neighbours of different stability the value where it changes is found by
-    /// bisection.
+    #[doc = include_str!("../docs/System.linearize_over.txt")]
     #[expect(clippy::too_many_arguments, reason = "named in Python, and most of them left out")]
     #[pyo3(signature = (over, formulation="chetaev", *, free=None, find=false, removal=None, mu0=None, constants=None))]
     fn linearize_over(
@@ -104,30 +86,7 @@ impl System {
         LinearizationSweep::over(slf, scene, choice, (&name, values), (free.unwrap_or_default(), find))
     }
 
-    /// Derives and integrates the motion under a formulation, one of FORMULATIONS.
-    ///
-    /// times: where it is read off, shape (k,), ascending, to the last. By default 101 over `duration`.
-    /// removal: a name in `removals`, "coordinates" or "quasi-velocities"; by default the first.
-    /// mu0: start multipliers of the vakonomic formulations, shape (h,). By default those of the system.
-    /// constants: free constants, "zero", {"horizon": T} (natural at T) or an array. By default those of the
-    /// removal or of the system.
-    /// parameters, start: numbers for this call, by the names of parameters, of coordinates and velocities:
-    /// `Motion.system` has them.
-    /// form: of the equations, "multipliers", "costates", "quasi-velocities" or auto, which suits the system.
-    /// method: one of METHODS, or auto, which suits the motion. tolerance: of the looser run; the one that is
-    /// kept has a hundredth of it.
-    /// project: move velocities onto the constraint after every step. max_steps, time_limit: limits on the
-    /// steps of a run and on its seconds, after which it stops. max_step: no step is longer.
-    /// sensitivities: names of parameters, start values ("x", "x'"), multipliers ("mu0_1", ...) or costates
-    /// ("P0_w") by which all is derived: `Motion.sensitivities`.
-    ///
-    /// Other threads go on; Ctrl-C ends it. SolveError without a motion; `status` says if it stops early.
-    ///
-    /// >>> motion = sledge.solve("chetaev", [0.0, 0.5, 1.0])
-    /// >>> motion.coordinates[:, 2].round(9)
-    /// array([0. , 0.5, 1. ])
-    /// >>> motion.status, motion.error_estimate < 1e-9
-    /// ('completed', True)
+    #[doc = include_str!("../docs/System.solve.txt")]
     #[expect(clippy::too_many_arguments, reason = "named in Python, and most of them left out")]
     #[pyo3(signature = (
         formulation="chetaev", times=None, *, parameters=None, start=None, removal=None, mu0=None, constants=None,
@@ -178,18 +137,7 @@ impl System {
         Motion::new(slf, sampled, &asked)
     }
 
-    /// Integrates many motions at once, by Taylor series, under a formulation: starts or parameters differ.
-    ///
-    /// vary: name to array, shape (m,): parameters, start values ("x", "x'"), multipliers ("mu0_1", ...).
-    /// times: where they are read off, shape (k,), ascending, to the last. By default the end of `duration`.
-    /// threads: 0 for one per processor; results do not depend on it. estimate: whether each member is run
-    /// twice, as in `solve`, or once and without an error estimate. Else as in `solve`, constants for all,
-    /// and time_limit for one run of 4096 members.
-    ///
-    /// A member that cannot start or that stops is in the answer with its cause. Ctrl-C as in `solve`.
-    ///
-    /// >>> sledge.ensemble("chetaev", [1.0], vary={"phi'": [0.5, 1.0]}).coordinates[:, 0, 2].round(9)
-    /// array([0.5, 1. ])
+    #[doc = include_str!("../docs/System.ensemble.txt")]
     #[expect(clippy::too_many_arguments, reason = "named in Python, and most of them left out")]
     #[pyo3(signature = (
         formulation="chetaev", times=None, *, vary, removal=None, mu0=None, constants=None, tolerance=1e-11, project=true,
@@ -228,18 +176,7 @@ impl System {
         Ensemble::new(slf, integrated.map_err(errors::solve)?)
     }
 
-    /// Compares the motions of all formulations pair by pair; tolerance, max_steps, max_step and time_limit
-    /// as in `solve`. formulations: those to compare, all if left out. extent: what is computed in addition to
-    /// the gaps: growth of Chetaev's gap to the vakonomic motion and whether it is vakonomic for some mu0
-    /// ("answer", as `deltaq compare` prints), the same of all pairs and families ("everything"), or nothing
-    /// ("gaps"). decision: whether families are decided on at all. fits: free constants are fitted where
-    /// nothing is decided ("undecided"), always ("all"), which takes most of the time, or never ("none").
-    ///
-    /// >>> comparison = sledge.compare()
-    /// >>> comparison.verdict("chetaev", "vakonomic")
-    /// 'different'
-    /// >>> comparison.decided[0].answer, comparison.decided[0].proved
-    /// ('none', True)
+    #[doc = include_str!("../docs/System.compare.txt")]
     #[expect(clippy::too_many_arguments, reason = "named in Python, and most of them left out")]
     #[pyo3(signature = (
         formulations=None, *, extent="answer", decision=true, fits="undecided", tolerance=1e-11, max_steps=1_000_000,

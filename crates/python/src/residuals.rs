@@ -159,7 +159,7 @@ impl Residuals {
         array(py, values, None, &[count])
     }
 
-    /// Their exact derivatives by p, shape (columns times k, P), finite whatever p is.
+    #[doc = include_str!("../docs/Residuals.jac.txt")]
     #[pyo3(signature = (p))]
     fn jac<'py>(&self, py: Python<'py>, p: Floats<'py>) -> Array<'py> {
         let reading = self.read(py, &p, |model, p| model.derivatives(p))?;

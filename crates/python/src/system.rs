@@ -5,7 +5,6 @@ use std::path::Path;
 
 use deltaq::{integrability, removals};
 use integrate::Interrupt;
-use numpy::PyArrayDyn;
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::types::{IntoPyDict, PyDict};
@@ -15,61 +14,12 @@ use symbolic::{work_on, worked_on};
 use crate::arguments::{Numbers, Table, unknown};
 use crate::arrays::{Array, Floats, Points, array, fixed};
 use crate::background::apart;
-use crate::kept::kept;
 use crate::scene_text::{Arguments, Formula, Formulas, write};
 use crate::shared::Shared;
+use crate::state::State;
 use crate::{background, errors};
 
-/// A point of a motion: time, coordinates, velocities.
-#[pyclass(frozen, get_all, module = "deltaq")]
-pub(crate) struct State {
-    /// Time.
-    pub(crate) t: f64,
-    /// Coordinates, shape (n,), in the units of the system.
-    pub(crate) q: Py<PyArrayDyn<f64>>,
-    /// Velocities, shape (n,), in units of the coordinates per unit of time.
-    pub(crate) v: Py<PyArrayDyn<f64>>,
-}
-
-kept!(State: t q v);
-
-#[pymethods]
-impl State {
-    fn __repr__(&self) -> String {
-        format!("<deltaq.State t={}, q={}, v={}>", self.t, self.q, self.v)
-    }
-}
-
-/// A mechanical system with velocity constraints, its start and everything else that a scene file says.
-///
-/// Expressions: numbers, or strings as in scene files: coordinates, velocities (`x'`), parameters, time `t`;
-/// or SymPy's: coordinates are dynamicsymbols or names, velocities their derivatives, parameters symbols.
-///
-/// coordinates: names of the n coordinates. lagrangian: L(q, v, t). constraints: f(q, v, t), h of them, each
-/// to be zero. parameters: name to number. definitions: name to expression, usable in all others. units:
-/// coordinate to text. forces: coordinate to expression, generalized forces Q. virtual: what rates of virtual
-/// displacements satisfy, h of them, for the formulation prescribed. observables: name to
-/// expression, what motions list besides; invariants: likewise, what should stay constant. view: name of a
-/// body to {"shape": ..., "size": [...], "at": ..., "rotation": ...}, as in [view.NAME]. start: every
-/// coordinate to its start. velocities: some ("x'") to their start; constraints supply the others, and
-/// start_equations, as in ["dot(W, n) = 5"] or what is zero. guess: velocities near which these are sought.
-/// project: move given velocities onto the constraints.
-/// removals: name to {"parameters": [...], "rates": {...}, ...}, as in [removal.NAME] of scene files.
-/// multipliers: mu0, shape (h,), zero by default. time: t0. duration: length of the run. breakpoints: times
-/// at which a step ends, where something is switched. notes: remarks.
-///
-/// >>> sledge = deltaq.System(
-/// ...     coordinates=["x", "y", "phi"],
-/// ...     lagrangian="(x'^2 + y'^2)/2 + k^2*phi'^2/2 + g*sin(alpha)*x",
-/// ...     constraints=["y'*cos(phi) - x'*sin(phi)"],
-/// ...     parameters={"g": 9.81, "alpha": 0.4, "k": 0.7},
-/// ...     start={"x": 0, "y": 0, "phi": 0},
-/// ...     velocities={"phi'": 1, "x'": 0},
-/// ... )
-/// >>> sledge.constraint(0.0, sledge.start.q, sledge.start.v)
-/// array([0.])
-///
-/// SceneError names the line of the scene file that the arguments amount to.
+#[doc = include_str!("../docs/System.txt")]
 #[pyclass(frozen, module = "deltaq")]
 pub(crate) struct System {
     scene: Shared<Scene>,
@@ -364,10 +314,7 @@ impl System {
         Ok(found.map_err(errors::solve)?.to_string())
     }
 
-    /// The same system with other numbers in some places; overrides as in `load`, over those of before.
-    ///
-    /// >>> sledge.replace(g=1.6) == sledge.replace({"g": 1.6})
-    /// True
+    #[doc = include_str!("../docs/System.replace.txt")]
     #[pyo3(signature = (overrides=None, /, **numbers))]
     fn replace(
         &self,
@@ -404,13 +351,18 @@ impl System {
         Ok((slf.py().import("deltaq")?.getattr("_read_again")?, arguments))
     }
 
-    /// The system as a scene file's text, every start value a number; `parse` of it gives the same system.
+    /// The system as the text of a scene file, with every start value as a number.
+    ///
+    /// Returns
+    /// -------
+    /// str
+    ///     The text; `parse` of it gives an equal system.
     #[pyo3(signature = ())]
     fn to_toml(&self) -> PyResult<String> {
         self.scene.with(|scene| scene.to_toml())
     }
 
-    /// Constraint residuals f(q, v, t), shape (h,) or (k, h); q, v: (n,) or (k, n); t: a number or (k,).
+    #[doc = include_str!("../docs/System.constraint.txt")]
     #[pyo3(signature = (t, q, v))]
     fn constraint<'py>(&self, py: Python<'py>, t: Floats<'_>, q: Floats<'_>, v: Floats<'_>) -> Array<'py> {
         let points = Points::read([t, q, v], self.dimension()?)?;
@@ -421,9 +373,7 @@ impl System {
         array(py, apart(py, || points.values(program))?, points.count, &[width])
     }
 
-    /// Mass matrix M(q, v, t) = d²L/dv², shape (n, n) or (k, n, n); arguments as in `constraint`.
-    ///
-    /// Distances of configurations are measured by it everywhere: sqrt(dq' M dq).
+    #[doc = include_str!("../docs/System.mass.txt")]
     #[pyo3(signature = (t, q, v))]
     fn mass<'py>(&self, py: Python<'py>, t: Floats<'_>, q: Floats<'_>, v: Floats<'_>) -> Array<'py> {
         let n = self.dimension()?;

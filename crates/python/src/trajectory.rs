@@ -78,17 +78,7 @@ fn started_from<T>(
 
 #[pymethods]
 impl Equations {
-    /// One run of the time loop from the start of the system to the last of `times`, shape (k,), in ascending
-    /// order: half of what `System.solve` does, for those who know the error from elsewhere.
-    ///
-    /// y0: the state at the first of `times`, or at t0, shape (m,). parameters: name to number, for this run;
-    /// without y0 the start follows, as of `System.replace`. constants, mu0: the free constants of this run, as in
-    /// `solve`. The first use of parameters of some names compiles equations that have them as inputs; then
-    /// a call costs the run. method: one of METHODS; its first run compiles what it needs. tolerance:
-    /// relative and absolute. project, max_steps, max_step, time_limit: as in `System.solve`. For the start
-    /// and the last time alone nothing else is kept.
-    ///
-    /// Other threads go on; Ctrl-C ends it. SolveError without a run; `status` says if it stops early.
+    #[doc = include_str!("../docs/Equations.integrate.txt")]
     #[expect(clippy::too_many_arguments, reason = "named in Python, and most of them left out")]
     #[pyo3(signature = (times, *, y0=None, t0=None, parameters=None, constants=None, mu0=None, method="auto", tolerance=1e-11, project=true, max_steps=1_000_000, max_step=None, time_limit=None))]
     fn integrate(

@@ -52,7 +52,23 @@ def _finished(axes: Any, units: dict[str, str]) -> Any:
 
 
 def motion(self: Motion, ax: Any = None) -> Any:
-    """Coordinates over time, one above the other, by matplotlib; a Figure. ax: n axes to draw into."""
+    """Coordinates over time, one above the other, by matplotlib.
+
+    Parameters
+    ----------
+    ax : matplotlib Axes or array of these, optional
+        n axes to draw into.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        The picture.
+
+    Raises
+    ------
+    ImportError
+        If matplotlib is not installed.
+    """
     axes = _columns(len(self.coordinate_names), ax)
     for name, axis in zip(self.coordinate_names, axes):
         axis.plot(times(self), rows(self)[name], label=self.formulation, **_look(self.formulation))
@@ -62,9 +78,22 @@ def motion(self: Motion, ax: Any = None) -> Any:
 
 
 def ensemble(self: Ensemble, ax: Any = None) -> Any:
-    """Coordinates of the members over time, one above the other; a Figure. ax: n axes to draw into.
+    """Coordinates of the members over time, one above the other; if they were read off at one time, over what varies first.
 
-    Of an ensemble that was read off at one time, over what varies first.
+    Parameters
+    ----------
+    ax : matplotlib Axes or array of these, optional
+        n axes to draw into.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        The picture.
+
+    Raises
+    ------
+    ImportError
+        If matplotlib is not installed.
     """
     axes = _columns(len(self.coordinate_names), ax)
     colour = _look(self.formulation).get("color")
@@ -84,9 +113,22 @@ def ensemble(self: Ensemble, ax: Any = None) -> Any:
 
 
 def comparison(self: Comparison, ax: Any = None) -> Any:
-    """Coordinates of all motions over time, then the gaps of the pairs with what they have to pass; a Figure.
+    """Coordinates of all motions over time, then the gaps of the pairs with their limits.
 
-    ax: n + 1 axes to draw into.
+    Parameters
+    ----------
+    ax : matplotlib Axes or array of these, optional
+        n + 1 axes to draw into.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        The picture.
+
+    Raises
+    ------
+    ImportError
+        If matplotlib is not installed.
     """
     # the costate form is a form of the vakonomic motion
     runs = [(run, run.motion) for run in self.runs if run.motion is not None and run.formulation in COLOURS]

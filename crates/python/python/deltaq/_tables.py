@@ -33,9 +33,17 @@ def arrow_with_units(table: Any, units: dict[str, str]) -> Any:
 
 
 def motion_to_arrow(self: Motion) -> Any:
-    """A pyarrow.Table, one row per time: t, coordinates, velocities (x'), multipliers, invariants, observables.
+    """The motion as a table, one row per time: t, coordinates, velocities (x'), multipliers, invariants, observables.
 
-    What the motion did not reach is null; units are in the metadata of the columns.
+    Returns
+    -------
+    pyarrow.Table
+        What the motion did not reach is null; units are in the metadata of the columns.
+
+    Raises
+    ------
+    ImportError
+        If pyarrow is not installed.
     """
     pa = needed("pyarrow")
     missing = np.arange(len(times(self))) >= self.reached
@@ -44,21 +52,58 @@ def motion_to_arrow(self: Motion) -> Any:
 
 
 def motion_to_pandas(self: Motion) -> Any:
-    """A pandas.DataFrame with the columns of `to_arrow`; t is the index."""
+    """The motion as a DataFrame with the columns of `to_arrow`; t is the index.
+
+    Returns
+    -------
+    pandas.DataFrame
+        One row per time.
+
+    Raises
+    ------
+    ImportError
+        If pandas is not installed.
+    """
     pd = needed("pandas")
     return pd.DataFrame(rows(self), index=pd.Index(times(self), name="t"))
 
 
 def motion_to_xarray(self: Motion) -> Any:
-    """An xarray.Dataset over t with the columns of `to_arrow`; units are attributes."""
+    """The motion as a Dataset over t with the columns of `to_arrow`.
+
+    Returns
+    -------
+    xarray.Dataset
+        Units are attributes.
+
+    Raises
+    ------
+    ImportError
+        If xarray is not installed.
+    """
     data = {name: ("t", values.copy()) for name, values in rows(self).items()}
     return with_units(needed("xarray").Dataset(data, {"t": times(self)}), units(self.system))
 
 
 def ensemble_to_arrow(self: Ensemble, first: int = 0) -> Any:
-    """A pyarrow.Table, one row per member and time: member (its place in the arrays, from `first` on), what varies
-    ("set x"), t, coordinates, velocities (x'), multipliers, invariants, error_estimate, status, cause. What a member
-    did not reach is null; units are in the metadata of the columns."""
+    """The members as a table, one row per member and time: member, what varies ("set x"), t, coordinates, velocities (x'),
+    multipliers, invariants, error_estimate, status, cause.
+
+    Parameters
+    ----------
+    first : int
+        Number of the first member.
+
+    Returns
+    -------
+    pyarrow.Table
+        What a member did not reach is null; units are in the metadata of the columns.
+
+    Raises
+    ------
+    ImportError
+        If pyarrow is not installed.
+    """
     pa = needed("pyarrow")
     members, instants = len(self), len(times(self))
     each = lambda values: np.repeat(np.asarray(values), instants)  # noqa: E731
@@ -76,13 +121,35 @@ def ensemble_to_arrow(self: Ensemble, first: int = 0) -> Any:
 
 
 def ensemble_to_pandas(self: Ensemble) -> Any:
-    """A pandas.DataFrame with the columns of `to_arrow`."""
+    """The members as a DataFrame with the columns of `to_arrow`.
+
+    Returns
+    -------
+    pandas.DataFrame
+        One row per member and time.
+
+    Raises
+    ------
+    ImportError
+        If pandas is not installed.
+    """
     needed("pandas")
     return self.to_arrow().to_pandas()
 
 
 def ensemble_to_xarray(self: Ensemble) -> Any:
-    """An xarray.Dataset over member, from 0, and t; what varies ("set x"), status and error_estimate over member."""
+    """The members as a Dataset over member, from 0, and t; what varies ("set x"), status and error_estimate over member.
+
+    Returns
+    -------
+    xarray.Dataset
+        Units are attributes.
+
+    Raises
+    ------
+    ImportError
+        If xarray is not installed.
+    """
     data: dict[str, Any] = {name: (("member", "t"), values.copy()) for name, values in rows(self).items()}
     data |= {f"set {name}": ("member", values.copy()) for name, values in self.varied.items()}
     data |= {"error_estimate": ("member", self.error_estimate.copy()), "status": ("member", self.status)}
@@ -91,7 +158,18 @@ def ensemble_to_xarray(self: Ensemble) -> Any:
 
 
 def comparison_to_pandas(self: Comparison) -> Any:
-    """A pandas.DataFrame, a row a pair: verdict, times to the thresholds, largest gap, growth, why not."""
+    """The pairs as a DataFrame: verdict, times to the thresholds, largest gap, growth, why not.
+
+    Returns
+    -------
+    pandas.DataFrame
+        One row per pair.
+
+    Raises
+    ------
+    ImportError
+        If pandas is not installed.
+    """
     pd = needed("pandas")
 
     def row(pair: Any) -> dict[str, Any]:
