@@ -1,6 +1,6 @@
 //! All formulations of a system, pair by pair.
 
-use deltaq::{Extent, Fits, Gap, THRESHOLDS, Verdict};
+use comparison::{Extent, Fits, Gap, THRESHOLDS, Verdict};
 use equations::Formulation;
 use numpy::PyArrayDyn;
 use pyo3::exceptions::PyKeyError;
@@ -195,7 +195,7 @@ impl Comparison {
             let count = Some(values.len());
             fixed(py, values, count, &[]).map(Bound::unbind)
         };
-        let pair = |p: deltaq::Pair| -> PyResult<Py<Pair>> {
+        let pair = |p: comparison::Pair| -> PyResult<Py<Pair>> {
             let (verdict, because) = words(&p.gap);
             let (tau, by_coordinate) = (PyDict::new(py), PyDict::new(py));
             for (threshold, time) in THRESHOLDS.iter().zip(p.gap.passes) {
@@ -212,7 +212,7 @@ impl Comparison {
                 let (exponent, length, proved) = (term.exponent, term.length, term.proved);
                 Py::new(py, LeadingTerm { exponent, length, proved, coefficient: vector(term.coefficient)? })
             });
-            let samples = |pick: fn(&deltaq::GapPoint) -> f64| vector(p.gap.points.iter().map(pick).collect());
+            let samples = |pick: fn(&comparison::GapPoint) -> f64| vector(p.gap.points.iter().map(pick).collect());
             let pair = Pair {
                 first: labels[p.first].clone(),
                 second: labels[p.second].clone(),
@@ -232,7 +232,7 @@ impl Comparison {
             };
             Py::new(py, pair)
         };
-        let fit = |f: deltaq::Fit| -> PyResult<Py<Fit>> {
+        let fit = |f: comparison::Fit| -> PyResult<Py<Fit>> {
             let constants = f.fitted.as_ref().map(|m| -> PyResult<Py<PyDict>> {
                 let dict = PyDict::new(py);
                 m.constants.iter().try_for_each(|(name, value)| dict.set_item(name, value))?;
@@ -245,13 +245,13 @@ impl Comparison {
                 verdict: f.fitted.as_ref().map(|m| words(&m.gap).0.into()),
                 largest_gap: f.fitted.as_ref().map(|m| m.gap.largest),
                 largest_gap_by_half: f.fitted.as_ref().map(|m| m.by_half),
-                settled: f.fitted.as_ref().map(deltaq::FittedMotion::is_settled),
+                settled: f.fitted.as_ref().map(comparison::FittedMotion::is_settled),
                 starts: f.fitted.as_ref().map(|m| m.starts),
                 by_identity: f.by_identity,
             };
             Py::new(py, fit)
         };
-        let run = |(choice, outcome): (deltaq::Choice, Result<Sampled, deltaq::SolveError>)| {
+        let run = |(choice, outcome): (motion::Choice, Result<Sampled, motion::SolveError>)| {
             let (motion, error) = match outcome {
                 Ok(sampled) => {
                     let asked = Asked { choice: &choice, form: "auto", times: None, settings: &settings };
@@ -263,7 +263,7 @@ impl Comparison {
             let removal = choice.removal.map(|r| r.name);
             Py::new(py, Run { label, title: choice.label, formulation, removal, motion, error })
         };
-        let membership = |d: deltaq::Decided| {
+        let membership = |d: comparison::Decided| {
             Py::new(py, Decided::new(py, labels[d.family].clone(), labels[d.curve].clone(), d.outcome)?)
         };
         Ok(Comparison {
@@ -279,7 +279,7 @@ impl Comparison {
 }
 
 /// What a run is called.
-fn identifier(choice: &deltaq::Choice) -> String {
+fn identifier(choice: &motion::Choice) -> String {
     let removal = choice.removal.as_ref().map_or(String::new(), |removal| format!(":{}", removal.name));
     choice.formulation.name.to_owned() + &removal
 }
@@ -295,13 +295,13 @@ fn words(gap: &Gap) -> (&'static str, Option<String>) {
 /// A comparison, with its motions read off.
 pub(crate) struct Compared {
     scene: Scene,
-    settings: deltaq::Settings,
+    settings: motion::Settings,
     integrability: String,
     contradictions: Vec<String>,
-    runs: Vec<(deltaq::Choice, Result<Sampled, deltaq::SolveError>)>,
-    pairs: Vec<deltaq::Pair>,
-    fits: Vec<deltaq::Fit>,
-    decided: Vec<deltaq::Decided>,
+    runs: Vec<(motion::Choice, Result<Sampled, motion::SolveError>)>,
+    pairs: Vec<comparison::Pair>,
+    fits: Vec<comparison::Fit>,
+    decided: Vec<comparison::Decided>,
 }
 
 /// What is asked of a comparison.
@@ -318,19 +318,19 @@ pub(crate) struct Wanted {
 pub(crate) fn compare(
     scene: Scene,
     wanted: &Wanted,
-    settings: &deltaq::Settings,
-) -> Result<Compared, deltaq::SolveError> {
+    settings: &motion::Settings,
+) -> Result<Compared, motion::SolveError> {
     let is_wanted = |own: &Formulation| wanted.only.as_ref().is_none_or(|only| only.iter().any(|other| *other == own));
-    let choices = deltaq::choices_among(&scene, is_wanted);
-    let mut compared = deltaq::Comparison::new(scene, wanted.extent, settings)?;
+    let choices = motion::choices_among(&scene, is_wanted);
+    let mut compared = comparison::Comparison::new(scene, wanted.extent, settings)?;
     for choice in choices {
         compared.solve(choice, settings)?;
     }
     while wanted.decision && compared.decide_next().is_some() {}
     compared.fit(wanted.fits, settings)?;
     let contradictions = compared.contradictions().iter().map(ToString::to_string).collect();
-    let deltaq::Comparison { scene, integrability, runs, pairs, fits, decided, .. } = compared;
-    let read = |motion| Sampled::new(motion, deltaq::setting(&scene), None);
+    let comparison::Comparison { scene, integrability, runs, pairs, fits, decided, .. } = compared;
+    let read = |motion| Sampled::new(motion, motion::setting(&scene), None);
     let runs = runs.into_iter().map(|run| (run.choice, run.outcome.and_then(read))).collect();
     let integrability = integrability.to_string();
     let settings = settings.clone();

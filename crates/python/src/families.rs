@@ -1,7 +1,7 @@
 //! Which families have which motions: decided, and searched for.
 
-use deltaq::words::at_most;
-use deltaq::{Answer, Membership};
+use comparison::words::at_most;
+use comparison::{Answer, Membership};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
@@ -83,7 +83,7 @@ impl Decided {
         py: Python<'_>,
         family: String,
         motion: String,
-        outcome: Result<Membership, deltaq::SolveError>,
+        outcome: Result<Membership, motion::SolveError>,
     ) -> PyResult<Self> {
         let (answer, proved, order, because) = match outcome.as_ref().map(Membership::answer) {
             Err(error) => ("undecided", false, None, Some(error.to_string())),

@@ -2,11 +2,10 @@
 
 use std::convert::Infallible;
 
-use deltaq::{
-    EnsembleOptions, Extent, Fits, Settings, SolveError, Sweep, SweepPoint, number_of_threads, over_threads, setting, solve_choice,
-};
+use comparison::{Extent, Fits, Sweep, SweepPoint};
 use equations::Formulation;
 use integrate::Interrupt;
+use motion::{EnsembleOptions, Settings, SolveError, number_of_threads, over_threads, setting, solve_choice};
 use picture::Style;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -127,7 +126,7 @@ impl System {
             let mut sampled = Sampled::new(motion, setting(&scene), instants)?;
             if let Some(names) = sensitivities.filter(|names| !names.is_empty()) {
                 let (names, reached) = (names.iter().map(String::as_str).collect::<Vec<_>>(), sampled.reached());
-                sampled.derived = Some(deltaq::sensitivities(&scene, &choice, &names, reached, &limits)?);
+                sampled.derived = Some(motion::sensitivities(&scene, &choice, &names, reached, &limits)?);
             }
             Ok((sampled, choice))
         };
@@ -232,7 +231,7 @@ impl System {
         };
         let formulations = formulations.map(read).transpose()?;
         let (name, width) = (self.name()?, names.len());
-        let work = || -> Result<Vec<SweepPoint>, deltaq::SolveError> {
+        let work = || -> Result<Vec<SweepPoint>, motion::SolveError> {
             let sweep = Sweep::new(&name, &self.text, &self.overrides, &names, formulations, &settings)?;
             let sweep = if decision { sweep } else { sweep.without_decision() };
             let rows: Vec<&[f64]> = values.chunks_exact(width.max(1)).collect();
