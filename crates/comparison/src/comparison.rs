@@ -39,6 +39,8 @@ pub struct Comparison {
 /// Results besides the gaps: how gaps begin, and which family contains which motion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Extent {
+    /// Of none: gaps and the verdicts that follow from them.
+    Gaps,
     /// For Chetaev's motion and the vakonomic family only, as the printed answer needs.
     Answer,
     /// Of all.
@@ -89,13 +91,18 @@ impl Comparison {
             let mut gap = compare_motions(one, two, &mut metric)?;
             let limit = |t: f64| gap.limit_at(t);
             let formulations = [before.choice.formulation, run.choice.formulation];
-            let asked = self.extent == Extent::Everything || formulations == [CHETAEV, VAKONOMIC];
+            let asked = match self.extent {
+                Extent::Gaps => false,
+                Extent::Answer => formulations == [CHETAEV, VAKONOMIC],
+                Extent::Everything => true,
+            };
             let growth = match gap.verdict {
                 // where it cannot be read off, nothing is fitted
                 Verdict::Different if asked => growth(two, one, &mut metric, &limit).unwrap_or(None),
                 _ => None,
             };
             let predicted = match gap.verdict {
+                _ if self.extent == Extent::Gaps => None,
                 Verdict::Different if growth.is_none() => None,
                 // what no gap shows may be proved, of all motions that Chetaev's is compared with
                 Verdict::Same | Verdict::Undecided { .. } if formulations[0] != CHETAEV => None,
@@ -116,7 +123,12 @@ impl Comparison {
         let is_new = |asked: &(usize, usize)| !self.decided.iter().any(|d| (d.family, d.curve) == *asked);
         let asked = questions(&self.scene, &self.runs);
         let principal = self.run(VAKONOMIC).zip(self.run(CHETAEV));
-        asked.into_iter().filter(|asked| self.extent == Extent::Everything || Some(*asked) == principal).find(is_new)
+        let is_within = |asked: &(usize, usize)| match self.extent {
+            Extent::Gaps => false,
+            Extent::Answer => Some(*asked) == principal,
+            Extent::Everything => true,
+        };
+        asked.into_iter().filter(is_within).find(is_new)
     }
 
     /// Decides whether the next motion is one of a family; `None` where nothing is left to be asked.

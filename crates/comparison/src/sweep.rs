@@ -54,6 +54,7 @@ pub struct Sweep {
     names: Vec<String>,
     /// In the order of the table.
     formulations: [&'static Formulation; 2],
+    extent: Extent,
     settings: Settings,
 }
 
@@ -81,7 +82,7 @@ impl Sweep {
         let (name, text, names) = (name.into(), text.into(), names.to_vec());
         let mut formulations = formulations.unwrap_or_else(usual);
         formulations.sort_by_key(|own| FORMULATIONS.iter().position(|entry| entry == own));
-        let sweep = Sweep { name, text, overrides, names, formulations, settings: settings.clone() };
+        let sweep = Sweep { name, text, overrides, names, formulations, extent: Extent::Everything, settings: settings.clone() };
         let scene = sweep.read(&[])?;
         let (costates, others): (Vec<&str>, Vec<&str>) =
             sweep.names.iter().map(String::as_str).partition(|name| is_costate(name));
@@ -93,6 +94,12 @@ impl Sweep {
         let zero: Vec<(String, f64)> = costates.iter().map(|name| (name.to_string(), 0.0)).collect();
         sweep.choices(&scene, &zero)?;
         Ok(sweep)
+    }
+
+    /// The same with gaps and verdicts alone: [`SweepPoint::answer`] and what belongs to it stay empty, and
+    /// no verdict is proved.
+    pub fn without_decision(self) -> Sweep {
+        Sweep { extent: Extent::Gaps, ..self }
     }
 
     /// The comparison for these numbers, one per name; it depends on nothing else.
@@ -154,7 +161,7 @@ impl Sweep {
     fn fill(&self, point: &mut SweepPoint, scene: Scene, costates: &[(String, f64)]) -> Result<(), SolveError> {
         let start = scene.start.t;
         let choices = self.choices(&scene, costates)?;
-        let mut comparison = Comparison::new(scene, Extent::Everything, &self.settings)?;
+        let mut comparison = Comparison::new(scene, self.extent, &self.settings)?;
         for choice in choices {
             comparison.solve(choice, &self.settings)?;
         }

@@ -32,7 +32,7 @@ pub struct Film {
     pub lines: Vec<usize>,
     /// Numbers of the scene with another, known value in this film: `("psi'", 6.0)`.
     pub known: Vec<(String, f64)>,
-    /// Columns that `deltaq solve` adds to a motion and that no film shows.
+    /// Columns that are added to the table of a motion and that no film shows.
     pub left_out: Vec<String>,
 }
 
@@ -107,7 +107,7 @@ impl Film {
     /// Reads a table, CSV, with a column `t`. Every other column has the name of an entry of `[film]` or of
     /// `[observables]`, or is an expression of coordinates, velocities and parameters: `x`, `x'`,
     /// `a*theta`. A unit may follow: `x [mm]`. Empty cells and `nan` are gaps; a row of gaps only is left
-    /// out, and so are multipliers, errors and derivatives in the table of a motion.
+    /// out, and so are multipliers, errors, derivatives and invariants in the table of a motion.
     ///
     /// # Errors
     /// [`FitError`] with its place.
@@ -118,7 +118,7 @@ impl Film {
         let heads = (0..table.columns.len()).map(head).collect::<Result<Vec<_>, _>>()?;
         let time = heads.iter().position(|(name, _)| *name == "t");
         let time = time.map_or_else(|| table.column("t"), Ok)?;
-        let is_seen = |&i: &usize| expression(scene, heads[i].0).is_ok() || !is_added(heads[i].0);
+        let is_seen = |&i: &usize| expression(scene, heads[i].0).is_ok() || !is_added(scene, heads[i].0);
         let others = (0..heads.len()).filter(|&i| i != time);
         let (seen, added): (Vec<usize>, Vec<usize>) = others.partition(is_seen);
         let left_out = added.iter().map(|&i| heads[i].0.to_owned()).collect();
@@ -191,10 +191,14 @@ fn head<'t>(scene: &Scene, cell: &'t str) -> Result<(&'t str, f64), FitError> {
     }
 }
 
-/// Whether `deltaq solve` adds such a column to a motion: errors, multipliers, derivatives.
-fn is_added(name: &str) -> bool {
+/// Whether `deltaq solve` or the Python module adds such a column to a motion: errors, multipliers,
+/// derivatives, what should stay constant.
+fn is_added(scene: &Scene, name: &str) -> bool {
     let begins = |with: &&str| name.starts_with(with);
-    ["error ", "lambda_", "mu_", "p_", "P_"].iter().any(begins) || name.starts_with('d') && name.contains("/d")
+    ["error ", "lambda_", "mu_", "p_", "P_", "momentum "].iter().any(begins)
+        || name.starts_with('d') && name.contains("/d")
+        || name == "energy"
+        || scene.system.watched.iter().any(|watched| watched.is_constant() && watched.name == name)
 }
 
 pub(crate) fn column(scene: &Scene, name: &str, deviations: &Deviations) -> Result<Column, FitError> {

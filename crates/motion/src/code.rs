@@ -16,7 +16,8 @@ use crate::{EquationStyle, Prepared, SolveError, equations_text};
 /// invariants), the start, and every parameter and free constant as a value to be changed.
 ///
 /// C99: functions without allocation, which solve the blocks as we do. NumPy: functions of one state or of
-/// any number, shape `(…, m)`. SymPy: matrices in symbols, with the unknowns `z` of the instant, `A z = b`.
+/// any number, shape `(…, m)`; JAX: the same. Numba: functions of one state. SymPy: matrices in symbols, with
+/// the unknowns `z` of the instant, `A z = b`.
 ///
 /// # Errors
 /// [`SolveError::NotLinear`] where a block is not linear in its unknowns.
@@ -24,7 +25,8 @@ pub fn code(scene: &Scene, prepared: &Prepared, language: Language) -> Result<St
     let listing = Listing::new(scene, prepared, language)?;
     match language {
         Language::C => c::file(&listing),
-        Language::Numpy => python::numpy(&listing),
+        Language::Numpy | Language::Jax => python::numpy(&listing),
+        Language::Numba => python::numba(&listing),
         Language::Sympy => python::sympy(&listing),
     }
 }
@@ -198,7 +200,7 @@ impl<'a> Listing<'a> {
 }
 
 /// Names that files use themselves, and that C99 or Python keep for themselves; a symbol gets another one.
-const TAKEN: &str = "state parameters unknowns rates outputs matrix solve pow INFINITY NAN np sp _rows _unknowns \
+const TAKEN: &str = "state parameters unknowns rates outputs matrix right found solve pow INFINITY NAN np sp numba _rows _unknowns \
     STATES OUTPUTS PARAMETERS TIME START UNKNOWNS MATRIX RIGHT RATES \
     auto break case char const continue default do double else enum extern float for goto if inline int long register \
     restrict return short signed sizeof static struct switch typedef union unsigned void volatile while \

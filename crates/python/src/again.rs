@@ -4,14 +4,15 @@ use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyString};
 
-use crate::comparison::{Comparison, Decided, Fit, Growth, LeadingTerm, Pair, Run};
+use crate::comparison::{Comparison, Growth, LeadingTerm, Pair, Run};
 use crate::connect::{Connection, Connections};
 use crate::ensemble::Ensemble;
+use crate::families::{Decided, Fit};
 use crate::kept::{Kept, field};
 use crate::linearization::{Linearization, LinearizationSweep, StabilityChange};
 use crate::motion::Motion;
 use crate::outputs::Outputs;
-use crate::system::State;
+use crate::state::State;
 use crate::trajectory::Trajectory;
 
 /// Equations are derived again.

@@ -1,6 +1,6 @@
 //! What is chosen by name: formulation, removal, constants, method.
 
-use comparison::Fits;
+use comparison::{Extent, Fits};
 use equations::Formulation;
 use integrate::{Interrupt, Method, Projection};
 use mechanics::{ConstantsRule, Removal};
@@ -88,6 +88,13 @@ pub(crate) fn fits(word: &str) -> PyResult<Fits> {
     let words = [("undecided", Fits::Undecided), ("all", Fits::All), ("none", Fits::None)];
     let found = words.iter().find(|(known, _)| *known == word);
     found.map(|(_, fits)| *fits).ok_or_else(|| unknown("fits", word, words.iter().map(|(known, _)| *known)))
+}
+
+/// What a comparison computes.
+pub(crate) fn extent(word: &str) -> PyResult<Extent> {
+    let words = [("answer", Extent::Answer), ("everything", Extent::Everything), ("gaps", Extent::Gaps)];
+    let found = words.iter().find(|(known, _)| *known == word);
+    found.map(|(_, extent)| *extent).ok_or_else(|| unknown("extent", word, words.iter().map(|(known, _)| *known)))
 }
 
 /// The refusal of a name that is none of those that are known.

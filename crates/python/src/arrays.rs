@@ -45,6 +45,10 @@ impl Rows {
         self.count
     }
 
+    pub(crate) fn values(&self) -> &[f64] {
+        &self.values
+    }
+
     /// Row `i`; a single row stands for all.
     pub(crate) fn row(&self, i: usize) -> &[f64] {
         let first = if self.count.is_some() { i * self.width } else { 0 };
@@ -52,17 +56,17 @@ impl Rows {
     }
 }
 
-/// Times: a number, or an array of shape `(k,)`.
-pub(crate) fn times(array: &Floats) -> PyResult<Rows> {
+/// Times: a number, or an array of shape `(k,)`, named `name`.
+pub(crate) fn times(name: &str, array: &Floats) -> PyResult<Rows> {
     let view = array.as_array();
     let count = match *view.shape() {
         [] => None,
         [k] => Some(k),
         ref other => {
-            return Err(PyValueError::new_err(format!("t has shape {other:?}; a number or (k,) is needed")));
+            return Err(PyValueError::new_err(format!("{name} has shape {other:?}; a number or (k,) is needed")));
         }
     };
-    Ok(Rows { values: finite("t", view.iter().copied().collect())?, width: 1, count })
+    Ok(Rows { values: finite(name, view.iter().copied().collect())?, width: 1, count })
 }
 
 /// The finite numbers of a list, named `name`, of shape `(k,)`.
@@ -151,7 +155,7 @@ pub(crate) struct Points {
 impl Points {
     /// Reads t, q and v of a system of that dimension.
     pub(crate) fn read([t, q, v]: [Floats<'_>; 3], dimension: usize) -> PyResult<Points> {
-        let (t, q, v) = (times(&t)?, Rows::read("q", &q, dimension)?, Rows::read("v", &v, dimension)?);
+        let (t, q, v) = (times("t", &t)?, Rows::read("q", &q, dimension)?, Rows::read("v", &v, dimension)?);
         let count = common(&[("q", &q), ("v", &v), ("t", &t)])?;
         Ok(Points { rows: [t, q, v], count })
     }
@@ -181,7 +185,7 @@ pub(crate) struct States {
 
 impl States {
     pub(crate) fn read(t: &Floats<'_>, y: &Floats<'_>, width: usize) -> PyResult<States> {
-        let (t, y) = (times(t)?, Rows::read("y", y, width)?);
+        let (t, y) = (times("t", t)?, Rows::read("y", y, width)?);
         let count = common(&[("y", &y), ("t", &t)])?;
         if t.count().is_some() && y.count().is_none() {
             return Err(PyValueError::new_err("t has several entries, y has a single row"));

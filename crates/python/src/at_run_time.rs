@@ -14,22 +14,16 @@ use crate::shared::Shared;
 /// A scene and a choice, and its equations with other parameters as inputs.
 pub(crate) struct AtRunTime {
     scene: Shared<(Scene, Choice)>,
-    /// Names of the states with all parameters folded in.
+    /// Names of the states with all parameters folded in, and values of the free constants.
     states: Vec<String>,
-    /// Those that no call works with, by the names of the parameters that are inputs.
-    kept: Shared<HashMap<Vec<String>, Vec<Box<Ready>>>>,
-}
-
-/// Equations for other numbers, and the free constants that they had first.
-#[derive(Clone)]
-struct Ready {
-    by_name: ByName,
     constants: Vec<f64>,
+    /// Those that no call works with, by the names of the parameters that are inputs.
+    kept: Shared<HashMap<Vec<String>, Vec<Box<ByName>>>>,
 }
 
 impl AtRunTime {
-    pub(crate) fn new(scene: Scene, choice: Choice, states: Vec<String>) -> AtRunTime {
-        AtRunTime { scene: Shared::new((scene, choice)), states, kept: Shared::default() }
+    pub(crate) fn new(scene: Scene, choice: Choice, states: Vec<String>, constants: Vec<f64>) -> AtRunTime {
+        AtRunTime { scene: Shared::new((scene, choice)), states, constants, kept: Shared::default() }
     }
 
     pub(crate) fn scene_and_choice(&self) -> PyResult<(Scene, Choice)> {
@@ -38,7 +32,7 @@ impl AtRunTime {
 
     /// Equations with parameters of these names as inputs: kept ones, or those that are derived and compiled
     /// now.
-    fn ready_for(&self, names: &[String]) -> PyResult<Box<Ready>> {
+    fn ready_for(&self, names: &[String]) -> PyResult<Box<ByName>> {
         if let Some(ready) = self.kept.with(|kept| kept.get_mut(names).and_then(Vec::pop))? {
             return Ok(ready);
         }
@@ -54,7 +48,7 @@ impl AtRunTime {
         let by_name = ByName::new(&scene, &choice, &names, &settings).map_err(errors::solve)?;
         let Prepared { equations, .. } = by_name.varying().prepared();
         let states: Vec<String> = equations.states.iter().map(|y| equations.graph.name(y.symbol)).collect();
-        if states != self.states {
+        if states != self.states || by_name.varying().constants().len() != self.constants.len() {
             return Err(PyValueError::new_err(format!(
                 "with {} as inputs the states are {}, and not {}: some value of theirs simplifies the equations; use \
                  System.replace",
@@ -63,11 +57,10 @@ impl AtRunTime {
                 self.states.join(", ")
             )));
         }
-        let constants = by_name.varying().constants().to_vec();
-        Ok(Box::new(Ready { by_name, constants }))
+        Ok(Box::new(by_name))
     }
 
-    fn keep(&self, names: Vec<String>, ready: Box<Ready>) -> PyResult<()> {
+    fn keep(&self, names: Vec<String>, ready: Box<ByName>) -> PyResult<()> {
         self.kept.with(|kept| kept.entry(names).or_default().push(ready))
     }
 
@@ -79,12 +72,12 @@ impl AtRunTime {
     ) -> PyResult<T> {
         let (names, values) = sorted(numbers)?;
         let mut ready = self.ready_for(&names)?;
-        let g = &ready.by_name.varying().prepared().equations.graph;
+        let g = &ready.varying().prepared().equations.graph;
         let place = |symbol| names.iter().position(|name| *name == g.name(symbol));
-        let parameters = ready.by_name.parameters().into_iter().filter_map(place).map(|i| values[i]);
+        let parameters = ready.parameters().into_iter().filter_map(place).map(|i| values[i]);
         let parameters: Vec<f64> = parameters.collect();
-        ready.by_name.varying_mut().set_numbers(&parameters, &ready.constants);
-        let prepared = ready.by_name.varying_mut().prepared_mut();
+        ready.varying_mut().set_numbers(&parameters, &self.constants);
+        let prepared = ready.varying_mut().prepared_mut();
         if !prepared.guess.is_empty() {
             prepared.compiled.set_guess(&prepared.guess);
         }
@@ -93,21 +86,23 @@ impl AtRunTime {
         Ok(result)
     }
 
-    /// Calls `body` with the equations for these parameters and free constants, started at `y0` or, by the
-    /// formulas and conditions of the scene, with these numbers.
+    /// Calls `body` with the equations for these parameters and free constants, started `from` there or, by
+    /// the formulas and conditions of the scene, with these numbers.
     pub(crate) fn started<T>(
         &self,
         numbers: Vec<(String, f64)>,
         rule: Option<ConstantsRule>,
-        y0: Option<Vec<f64>>,
+        from: Option<(f64, Vec<f64>)>,
         body: impl FnOnce(&mut Prepared) -> Result<T, SolveError>,
     ) -> PyResult<T> {
         let (names, values) = sorted(numbers)?;
         let mut ready = self.ready_for(&names)?;
-        let started = ready.by_name.set(&values, rule.as_ref());
+        let started = ready.set(&values, rule.as_ref());
         let result = started.and_then(|()| {
-            let prepared = ready.by_name.varying_mut().prepared_mut();
-            y0.into_iter().for_each(|y0| prepared.start = y0);
+            let prepared = ready.varying_mut().prepared_mut();
+            if let Some((t, y)) = from {
+                (prepared.t, prepared.start) = (t, y);
+            }
             body(prepared)
         });
         self.keep(names, ready)?;

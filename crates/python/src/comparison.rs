@@ -1,7 +1,7 @@
 //! All formulations of a system, pair by pair.
 
-use comparison::words::at_most;
-use comparison::{Answer, Fits, Gap, Membership, THRESHOLDS, Verdict};
+use comparison::{Extent, Fits, Gap, THRESHOLDS, Verdict};
+use equations::Formulation;
 use numpy::PyArrayDyn;
 use pyo3::exceptions::PyKeyError;
 use pyo3::prelude::*;
@@ -10,6 +10,7 @@ use scene::Scene;
 
 use crate::arrays::fixed;
 use crate::errors;
+use crate::families::{Decided, Fit};
 use crate::kept::kept;
 use crate::motion::{Asked, Motion, Sampled};
 use crate::system::System;
@@ -29,6 +30,14 @@ pub(crate) struct Growth {
 
 kept!(Growth: exponent uncertainty coefficient length);
 
+#[pymethods]
+impl Growth {
+    fn __repr__(&self) -> String {
+        let Growth { exponent, uncertainty, length, .. } = self;
+        format!("<deltaq.Growth {length:.3e} t^{exponent:.2}, exponent within {uncertainty:.0e}>")
+    }
+}
+
 /// The leading term of the second motion minus the first, by Taylor coefficients of their accelerations.
 #[pyclass(frozen, get_all, module = "deltaq")]
 pub(crate) struct LeadingTerm {
@@ -43,6 +52,14 @@ pub(crate) struct LeadingTerm {
 }
 
 kept!(LeadingTerm: exponent coefficient length proved);
+
+#[pymethods]
+impl LeadingTerm {
+    fn __repr__(&self) -> String {
+        let proved = if self.proved { "proved" } else { "not proved" };
+        format!("<deltaq.LeadingTerm {:.3e} t^{}, {proved}>", self.length, self.exponent)
+    }
+}
 
 /// Two motions compared.
 #[pyclass(frozen, get_all, module = "deltaq")]
@@ -92,112 +109,13 @@ impl Pair {
     }
 }
 
-/// The free constants with which one motion comes closest to another.
-#[pyclass(frozen, get_all, module = "deltaq")]
-pub(crate) struct Fit {
-    /// Label of the motion whose constants were fitted.
-    run: String,
-    /// Label of the motion that was to be met.
-    target: String,
-    /// The best constants by name; None where no constants lead to a motion over the whole time.
-    constants: Option<Py<PyDict>>,
-    /// "same", "different" or "undecided" of what is left; None as for `constants`.
-    verdict: Option<String>,
-    /// Largest gap that is left, the least that was found; None as for `constants`.
-    largest_gap: Option<f64>,
-    /// The same from half of the starts; None as for `constants`.
-    largest_gap_by_half: Option<f64>,
-    /// Whether both are the same to 1 percent: if not, digits mean nothing; None as for `constants`.
-    settled: Option<bool>,
-    /// Number of starts of the search, 0 for an identity; None as for `constants`.
-    starts: Option<usize>,
-    /// Whether the constants follow from those of the target, and nothing was searched.
-    by_identity: bool,
-}
-
-kept!(Fit: run target constants verdict largest_gap largest_gap_by_half settled starts by_identity);
-
-#[pymethods]
-impl Fit {
-    fn __repr__(&self) -> String {
-        let word = if self.settled == Some(false) { " at most" } else { "" };
-        let told = |gap: f64| if word.is_empty() { format!("{gap:.3e}") } else { format!("{:.0e}", at_most(gap)) };
-        let left = self.largest_gap.map_or("no motion".into(), |gap| format!("gap left{word} {}", told(gap)));
-        format!("<deltaq.Fit {} to {}: {left}>", self.run, self.target)
-    }
-}
-
-/// Whether a motion belongs to the family that another formulation has for all values of its constants.
-#[pyclass(frozen, get_all, module = "deltaq")]
-pub(crate) struct Decided {
-    /// Label of the run whose constants are asked for.
-    family: String,
-    /// Label of the run that is to be met.
-    motion: String,
-    /// "some", "none" or "undecided".
-    answer: String,
-    /// Whether the answer is proved, in exact numbers or as an identity.
-    proved: bool,
-    /// The Taylor order that proves "none", or through which "some" was checked; None where there is neither.
-    order: Option<usize>,
-    /// What stands in the way of a proof or of a decision, else None.
-    because: Option<String>,
-    /// The constants of least norm, or of the nearest miss, by name.
-    constants: Option<Py<PyDict>>,
-    /// Dimension of the set of constants, None unless the answer is "some".
-    dimension: Option<usize>,
-    /// The constants as functions of the start, where an identity was found.
-    identity: Option<Vec<String>>,
-    /// Least mismatch of accelerations over the motion's own, None where nothing could be computed.
-    mismatch: Option<f64>,
-}
-
-kept!(Decided: family motion answer proved order because constants dimension identity mismatch);
-
-#[pymethods]
-impl Decided {
-    fn __repr__(&self) -> String {
-        let Decided { family, motion, answer, proved, .. } = self;
-        let proved = if *proved { "proved" } else { "not proved" };
-        format!("<deltaq.Decided {motion} in {family}: {answer}, {proved}>")
-    }
-}
-
-impl Decided {
-    fn new(
-        py: Python<'_>,
-        family: String,
-        motion: String,
-        outcome: Result<Membership, motion::SolveError>,
-    ) -> PyResult<Self> {
-        let (answer, proved, order, because) = match outcome.as_ref().map(Membership::answer) {
-            Err(error) => ("undecided", false, None, Some(error.to_string())),
-            Ok(Answer::NoneProved { order }) => ("none", true, Some(order), None),
-            Ok(Answer::None { unproved }) => ("none", false, None, Some(unproved)),
-            Ok(Answer::SomeProved) => ("some", true, None, None),
-            Ok(Answer::Some { order, .. }) => ("some", false, order, None),
-            Ok(Answer::Undecided) => ("undecided", false, None, Some("round-off hides it".into())),
-        };
-        let membership = outcome.ok();
-        let constants = membership.as_ref().map(|m| -> PyResult<Py<PyDict>> {
-            let dict = PyDict::new(py);
-            let values = m.decision.constants.iter().zip(&m.decision.set.point);
-            values.into_iter().try_for_each(|(name, value)| dict.set_item(name, value))?;
-            Ok(dict.unbind())
-        });
-        let dimension = membership.as_ref().filter(|_| answer == "some").map(|m| m.decision.set.dimension());
-        let mismatch = membership.as_ref().map(|m| m.decision.least / m.decision.acceleration);
-        let identity = membership.and_then(|m| m.section).map(|section| section.expressions);
-        let (constants, answer) = (constants.transpose()?, answer.into());
-        Ok(Decided { family, motion, answer, proved, order, because, constants, dimension, identity, mismatch })
-    }
-}
-
 /// One formulation with all choices made, and what became of it.
 #[pyclass(frozen, get_all, module = "deltaq")]
 pub(crate) struct Run {
-    /// Label: the formulation, and the removal where there are several.
+    /// Its identifier: the name of the formulation, and of its removal: "removed-constraint:arc-length".
     label: String,
+    /// The same in words, for people.
+    title: String,
     /// Name of the formulation.
     formulation: String,
     /// Name of the removal, None where the formulation needs none.
@@ -208,7 +126,7 @@ pub(crate) struct Run {
     error: Option<String>,
 }
 
-kept!(Run: label formulation removal motion error);
+kept!(Run: label title formulation removal motion error);
 
 #[pymethods]
 impl Run {
@@ -240,9 +158,7 @@ kept!(Comparison: system integrability runs pairs fits decided contradictions);
 
 #[pymethods]
 impl Comparison {
-    /// The pair of two runs, in either order, named by label, or by formulation for the first of its kind.
-    ///
-    /// UnknownNameError where there is no such run, KeyError where the two were not compared.
+    #[doc = include_str!("../docs/Comparison.pair.txt")]
     #[pyo3(signature = (a, b))]
     fn pair(&self, py: Python<'_>, a: &str, b: &str) -> PyResult<Py<Pair>> {
         let (one, two) = (self.label(a)?, self.label(b)?);
@@ -251,7 +167,7 @@ impl Comparison {
         found.ok_or_else(|| PyKeyError::new_err(format!("{one} and {two} were not compared")))
     }
 
-    /// "same", "different" or "undecided" for two runs, named as in `pair`.
+    #[doc = include_str!("../docs/Comparison.verdict.txt")]
     #[pyo3(signature = (a, b))]
     fn verdict(&self, py: Python<'_>, a: &str, b: &str) -> PyResult<String> {
         Ok(self.pair(py, a, b)?.get().verdict.clone())
@@ -265,7 +181,7 @@ impl Comparison {
 impl Comparison {
     fn label(&self, name: &str) -> PyResult<String> {
         let runs = || self.runs.iter().map(Py::get);
-        let found = runs().find(|r| r.label == name).or_else(|| runs().find(|r| r.formulation == name));
+        let found = runs().find(|r| r.label == name || r.title == name).or_else(|| runs().find(|r| r.formulation == name));
         let known = || runs().map(|r| r.label.as_str()).collect::<Vec<_>>().join(", ");
         found.map(|r| r.label.clone()).ok_or_else(|| errors::unknown(format!("no run `{name}`; there are {}", known())))
     }
@@ -273,7 +189,7 @@ impl Comparison {
     pub(crate) fn new(system: &Bound<'_, System>, compared: Compared) -> PyResult<Comparison> {
         let py = system.py();
         let Compared { scene, settings, integrability, runs, pairs, fits, decided, contradictions } = compared;
-        let labels: Vec<String> = runs.iter().map(|r| r.0.label.clone()).collect();
+        let labels: Vec<String> = runs.iter().map(|r| identifier(&r.0)).collect();
         let names: Vec<&str> = scene.system.coordinates.iter().map(|c| c.name.as_str()).collect();
         let vector = |values: Vec<f64>| {
             let count = Some(values.len());
@@ -343,11 +259,9 @@ impl Comparison {
                 }
                 Err(error) => (None, Some(error.to_string())),
             };
+            let (label, formulation) = (identifier(&choice), choice.formulation.name.into());
             let removal = choice.removal.map(|r| r.name);
-            Py::new(
-                py,
-                Run { label: choice.label, formulation: choice.formulation.name.into(), removal, motion, error },
-            )
+            Py::new(py, Run { label, title: choice.label, formulation, removal, motion, error })
         };
         let membership = |d: comparison::Decided| {
             Py::new(py, Decided::new(py, labels[d.family].clone(), labels[d.curve].clone(), d.outcome)?)
@@ -362,6 +276,12 @@ impl Comparison {
             fits: fits.into_iter().map(fit).collect::<PyResult<_>>()?,
         })
     }
+}
+
+/// What a run is called.
+fn identifier(choice: &motion::Choice) -> String {
+    let removal = choice.removal.as_ref().map_or(String::new(), |removal| format!(":{}", removal.name));
+    choice.formulation.name.to_owned() + &removal
 }
 
 fn words(gap: &Gap) -> (&'static str, Option<String>) {
@@ -384,11 +304,30 @@ pub(crate) struct Compared {
     decided: Vec<comparison::Decided>,
 }
 
-/// Compares all formulations of `scene`.
-pub(crate) fn compare(scene: Scene, fits: Fits, settings: &motion::Settings) -> Result<Compared, motion::SolveError> {
-    let choices = motion::choices(&scene);
-    let mut compared = comparison::compare_unfitted(scene, choices, Vec::new(), settings)?;
-    compared.fit(fits, settings)?;
+/// What is asked of a comparison.
+pub(crate) struct Wanted {
+    /// Formulations, all where none are named.
+    pub(crate) only: Option<Vec<&'static Formulation>>,
+    pub(crate) extent: Extent,
+    /// Whether families are decided on.
+    pub(crate) decision: bool,
+    pub(crate) fits: Fits,
+}
+
+/// Compares formulations of `scene`.
+pub(crate) fn compare(
+    scene: Scene,
+    wanted: &Wanted,
+    settings: &motion::Settings,
+) -> Result<Compared, motion::SolveError> {
+    let is_wanted = |own: &Formulation| wanted.only.as_ref().is_none_or(|only| only.iter().any(|other| *other == own));
+    let choices = motion::choices_among(&scene, is_wanted);
+    let mut compared = comparison::Comparison::new(scene, wanted.extent, settings)?;
+    for choice in choices {
+        compared.solve(choice, settings)?;
+    }
+    while wanted.decision && compared.decide_next().is_some() {}
+    compared.fit(wanted.fits, settings)?;
     let contradictions = compared.contradictions().iter().map(ToString::to_string).collect();
     let comparison::Comparison { scene, integrability, runs, pairs, fits, decided, .. } = compared;
     let read = |motion| Sampled::new(motion, motion::setting(&scene), None);

@@ -102,18 +102,7 @@ impl Connection {
 
 #[pymethods]
 impl System {
-    /// The motions under a formulation that end at other coordinates: a two-point problem.
-    ///
-    /// to: coordinates at the end, name to number, as many as there are unknowns: start velocities that the
-    /// constraints leave free, and free constants. at: time of the end; by default that of `duration`.
-    /// mu0, constants: a first guess. starts: from how many starts motions are searched. Else as in `solve`.
-    ///
-    /// BoundaryError where there are more or fewer coordinates than unknowns; no motion found is no error.
-    ///
-    /// >>> geodesics = deltaq.built_in("heisenberg").connect({"x": 0.2, "y": 0.5, "z": 0.3})
-    /// >>> [shortest] = geodesics.motions
-    /// >>> shortest.is_minimum, round(shortest.unknowns["mu0_1"], 9)
-    /// (True, 0.443803456)
+    #[doc = include_str!("../docs/System.connect.txt")]
     #[expect(clippy::too_many_arguments, reason = "named in Python, and most of them left out")]
     #[pyo3(signature = (
         to, at=None, formulation="vakonomic", *, removal=None, mu0=None, constants=None, starts=60, tolerance=1e-11,

@@ -10,7 +10,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use scene::Scene;
 
-use crate::arrays::{Floats, fixed, list, within};
+use crate::arrays::{Floats, fixed, list, times, within};
 use crate::kept::kept;
 use crate::system::System;
 
@@ -60,8 +60,7 @@ pub(crate) struct Task {
     pub(crate) varied: Varied,
     pub(crate) scene: Scene,
     pub(crate) choice: Choice,
-    pub(crate) times: Vec<f64>,
-    pub(crate) end: f64,
+    pub(crate) instants: Instants,
     pub(crate) settings: Settings,
     pub(crate) options: EnsembleOptions,
 }
@@ -72,7 +71,7 @@ const CHUNK: usize = 4096;
 /// Everything that is computed without Python's lock.
 pub(crate) struct Integrated {
     varied: Varied,
-    times: Vec<f64>,
+    instants: Instants,
     names: Vec<String>,
     choice: Choice,
     done: Columns,
@@ -114,35 +113,57 @@ impl Cube {
         self.values.resize(end, f64::NAN);
     }
 
-    fn columns<'py>(self, py: Python<'py>, names: &[String]) -> PyResult<Bound<'py, PyDict>> {
+    /// Columns by name, each of the shape (members, *times).
+    fn columns<'py>(self, py: Python<'py>, names: &[String], times: Option<usize>) -> PyResult<Bound<'py, PyDict>> {
         let (dict, members) = (PyDict::new(py), self.values.len() / (self.times * self.width).max(1));
+        let tail: Vec<usize> = times.into_iter().collect();
         for (i, name) in names.iter().enumerate() {
             let column = self.values.iter().skip(i).step_by(self.width).copied().collect();
-            dict.set_item(name, fixed(py, column, Some(members), &[self.times])?)?;
+            dict.set_item(name, fixed(py, column, Some(members), &tail)?)?;
         }
         Ok(dict)
     }
 }
 
-/// The times at which a run is read off, ascending, from the start on, and its end: the last of them or, of a
-/// single start, that of the scene.
-pub(crate) fn times(given: &Floats<'_>, scene: &Scene) -> PyResult<(Vec<f64>, f64)> {
-    let (start, times) = (scene.start.t, list("times", given)?);
-    let refused = |text: String| Err(PyValueError::new_err(format!("times{text}")));
-    if let Some(pair) = times.windows(2).find(|pair| pair[1] < pair[0]) {
-        return refused(format!(": {} comes after {}; ascending order is needed", pair[1], pair[0]));
+/// The times at which a run is read off: one, or ascending ones.
+#[derive(Clone)]
+pub(crate) struct Instants {
+    pub(crate) values: Vec<f64>,
+    /// How many there are; `None` of one that was given as a number.
+    pub(crate) count: Option<usize>,
+    /// The end of the run: the last of them or, of a single start, that of the scene.
+    pub(crate) end: f64,
+}
+
+impl Instants {
+    /// The end of a scene.
+    pub(crate) fn end_of(scene: &Scene) -> Instants {
+        let end = setting(scene).end;
+        Instants { values: vec![end], count: Some(1), end }
     }
-    let reached: Option<Vec<f64>> = times.iter().map(|&t| within(t, start, f64::INFINITY)).collect();
-    let Some(times) = reached else { return refused(format!(" contains {}, before the start {start}", times[0])) };
-    let end = times.last().copied().filter(|&t| t > start).unwrap_or(setting(scene).end);
-    Ok((times, end))
+
+    /// Those of a run from `start` on, for a scene.
+    pub(crate) fn read(given: &Floats<'_>, start: f64, scene: &Scene) -> PyResult<Instants> {
+        let given = times("times", given)?;
+        let refused = |text: String| Err(PyValueError::new_err(format!("times{text}")));
+        if let Some(pair) = given.values().windows(2).find(|pair| pair[1] < pair[0]) {
+            return refused(format!(": {} comes after {}; ascending order is needed", pair[1], pair[0]));
+        }
+        let reached: Option<Vec<f64>> = given.values().iter().map(|&t| within(t, start, f64::INFINITY)).collect();
+        let Some(values) = reached else {
+            return refused(format!(" contains {}, before the start {start}", given.values()[0]));
+        };
+        let end = values.last().copied().filter(|&t| t > start).unwrap_or(setting(scene).end);
+        Ok(Instants { values, count: given.count(), end })
+    }
 }
 
 impl Task {
     pub(crate) fn run(self) -> Result<Integrated, SolveError> {
-        let Task { varied, scene, choice, times, end, settings, options } = self;
+        let Task { varied, scene, choice, instants, settings, options } = self;
+        let times = &instants.values;
         let names: Vec<&str> = varied.values.keys().map(String::as_str).collect();
-        let ensemble = motion::Ensemble::new(&scene, &choice, &names, &settings)?.until(end);
+        let ensemble = motion::Ensemble::new(&scene, &choice, &names, &settings)?.until(instants.end);
         let (equations, n) = (ensemble.equations(), scene.system.dimension());
         let cube = |width: usize| Cube::new(varied.count, times.len(), width);
         let named = |list: &[Named]| (list.iter().map(|n| n.name.clone()).collect(), cube(list.len()));
@@ -156,12 +177,12 @@ impl Task {
         for first in (0..varied.count).step_by(CHUNK) {
             let rows: Vec<Vec<f64>> = (first..varied.count.min(first + CHUNK)).map(|i| varied.row(i)).collect();
             let members = ensemble.members(&rows, options.threads);
-            let (motions, seconds) = ensemble.timed_answers(members, &times, &options);
+            let (motions, seconds) = ensemble.timed_answers(members, times, &options);
             done.seconds += seconds;
             motions.into_iter().for_each(|motion| done.add(motion));
         }
         let names = scene.system.coordinates.iter().map(|c| c.name.clone()).collect();
-        Ok(Integrated { varied, times, names, choice, done })
+        Ok(Integrated { varied, instants, names, choice, done })
     }
 }
 
@@ -236,9 +257,10 @@ kept!(
 impl Ensemble {
     pub(crate) fn new(system: &Bound<'_, System>, integrated: Integrated) -> PyResult<Ensemble> {
         let py = system.py();
-        let Integrated { varied: Varied { values, count: m }, times, names, choice, done } = integrated;
-        let k = times.len();
-        let cube = |cube: Cube| fixed(py, cube.values, Some(m), &[k, cube.width]).map(Bound::unbind);
+        let Integrated { varied: Varied { values, count: m }, instants, names, choice, done } = integrated;
+        let k = instants.count;
+        let tail = |width: usize| k.into_iter().chain([width]).collect::<Vec<_>>();
+        let cube = |cube: Cube| fixed(py, cube.values, Some(m), &tail(cube.width)).map(Bound::unbind);
         let varied = PyDict::new(py);
         for (name, values) in values {
             varied.set_item(name, fixed(py, values, Some(m), &[])?)?;
@@ -247,13 +269,13 @@ impl Ensemble {
             system: system.clone().unbind(),
             formulation: choice.formulation.name.into(),
             removal: choice.removal.map(|removal| removal.name),
-            times: fixed(py, times, Some(k), &[])?.unbind(),
+            times: fixed(py, instants.values, k, &[])?.unbind(),
             varied: varied.unbind(),
             coordinate_names: names,
             coordinates: cube(done.coordinates)?,
             velocities: cube(done.velocities)?,
-            multipliers: done.multipliers.1.columns(py, &done.multipliers.0)?.unbind(),
-            invariants: done.invariants.1.columns(py, &done.invariants.0)?.unbind(),
+            multipliers: done.multipliers.1.columns(py, &done.multipliers.0, k)?.unbind(),
+            invariants: done.invariants.1.columns(py, &done.invariants.0, k)?.unbind(),
             error_estimate: fixed(py, done.error_estimate, Some(m), &[])?.unbind(),
             relative_error_estimate: fixed(py, done.relative_error_estimate, Some(m), &[])?.unbind(),
             status: done.status,

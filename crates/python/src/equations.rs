@@ -75,7 +75,7 @@ impl Equations {
             system: system.clone().unbind(),
             spare: Shared::default(),
             dimension: scene.system.dimension(),
-            at_run_time: AtRunTime::new(scene, choice, states.clone()),
+            at_run_time: AtRunTime::new(scene, choice, states.clone(), made.constants.clone()),
             formulation: equations.formulation,
             removal: equations.removal.as_ref().map(|r| r.name.clone()),
             states,
@@ -167,6 +167,12 @@ fn state(equations: &equations::Equations, q: &[f64], v: &[f64], mu: &[f64]) -> 
 
 #[pymethods]
 impl Equations {
+    /// Values of the parameters of the system, by name: those that `rates`, `jacobian` and `integrate` take.
+    #[getter]
+    fn parameters<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        self.system.get().parameters(py)
+    }
+
     /// The equations and what was left out of them, in the language of scenes.
     #[getter]
     fn text(&self) -> PyResult<String> {
@@ -184,29 +190,87 @@ impl Equations {
         })
     }
 
-    /// A file of C99: functions for rates and outputs without allocation, the start, the parameters.
+    /// The equations as a file of C99: rates and outputs without allocation, the start, the parameters.
     ///
-    /// SolveError where unknowns of the instant are not found by linear equations; so in all three languages.
+    /// Returns
+    /// -------
+    /// str
+    ///     The file.
+    ///
+    /// Raises
+    /// ------
+    /// SolveError
+    ///     If unknowns of the instant are not found by linear equations.
     #[pyo3(signature = ())]
     fn to_c(&self, py: Python<'_>) -> PyResult<String> {
         self.code(py, Language::C)
     }
 
-    /// A module of Python: rates(t, y) and outputs(t, y) in NumPy, for one state or many at once.
+    /// The equations as a module of Python: rates and outputs in NumPy, for one state or many at once.
+    ///
+    /// Returns
+    /// -------
+    /// str
+    ///     The module.
+    ///
+    /// Raises
+    /// ------
+    /// SolveError
+    ///     If unknowns of the instant are not found by linear equations.
     #[pyo3(signature = ())]
     fn to_numpy(&self, py: Python<'_>) -> PyResult<String> {
         self.code(py, Language::Numpy)
     }
 
-    /// A module of Python: RATES, OUTPUTS, MATRIX and RIGHT as matrices of SymPy in STATES and UNKNOWNS.
+    /// The module of `to_numpy` for JAX: jit, grad and vmap go through rates and outputs.
+    ///
+    /// Returns
+    /// -------
+    /// str
+    ///     The module.
+    ///
+    /// Raises
+    /// ------
+    /// SolveError
+    ///     If unknowns of the instant are not found by linear equations.
+    #[pyo3(signature = ())]
+    fn to_jax(&self, py: Python<'_>) -> PyResult<String> {
+        self.code(py, Language::Jax)
+    }
+
+    /// The equations as a module of Python: rates and outputs for one state, compiled by Numba.
+    ///
+    /// Returns
+    /// -------
+    /// str
+    ///     The module.
+    ///
+    /// Raises
+    /// ------
+    /// SolveError
+    ///     If unknowns of the instant are not found by linear equations.
+    #[pyo3(signature = ())]
+    fn to_numba(&self, py: Python<'_>) -> PyResult<String> {
+        self.code(py, Language::Numba)
+    }
+
+    /// The equations as a module of Python: RATES, OUTPUTS, MATRIX, RIGHT as matrices of SymPy.
+    ///
+    /// Returns
+    /// -------
+    /// str
+    ///     The module.
+    ///
+    /// Raises
+    /// ------
+    /// SolveError
+    ///     If unknowns of the instant are not found by linear equations.
     #[pyo3(signature = ())]
     fn to_sympy(&self, py: Python<'_>) -> PyResult<String> {
         self.code(py, Language::Sympy)
     }
 
-    /// The state y(t0) that belongs to the start of the system, shape (m,).
-    ///
-    /// constants: the free constants, "zero", {"horizon": T} (natural at T) or an array; default: as derived.
+    #[doc = include_str!("../docs/Equations.initial_state.txt")]
     #[pyo3(signature = (constants=None))]
     fn initial_state<'py>(&self, py: Python<'py>, constants: Option<Bound<'_, PyAny>>) -> Array<'py> {
         let rule = arguments::constants(constants.as_ref(), None)?;
@@ -224,10 +288,7 @@ impl Equations {
         array(py, start, None, &[width])
     }
 
-    /// Rates y' = F(t, y), of the shape of y.
-    ///
-    /// parameters: name to number, for this call. Its first use compiles equations that have parameters of
-    /// these names as inputs; from then on a call costs the evaluation.
+    #[doc = include_str!("../docs/Equations.rates.txt")]
     #[pyo3(signature = (t, y, parameters=None))]
     fn rates<'py>(&self, py: Python<'py>, t: Floats<'_>, y: Floats<'_>, parameters: Option<Numbers>) -> Array<'py> {
         let (width, at) = (self.states.len(), self.at(&t, &y)?);
@@ -235,8 +296,7 @@ impl Equations {
         array(py, rows, at.count, &[width])
     }
 
-    /// The exact Jacobian dF/dy, shape (m, m) or (k, m, m): [i, j] is the derivative of rate i by state j.
-    /// parameters: as in `rates`.
+    #[doc = include_str!("../docs/Equations.jacobian.txt")]
     #[pyo3(signature = (t, y, parameters=None))]
     fn jacobian<'py>(&self, py: Python<'py>, t: Floats<'_>, y: Floats<'_>, parameters: Option<Numbers>) -> Array<'py> {
         let (width, at) = (self.states.len(), self.at(&t, &y)?);
@@ -244,7 +304,7 @@ impl Equations {
         array(py, rows, at.count, &[width, width])
     }
 
-    /// Coordinates, velocities, multipliers and invariants at (t, y).
+    #[doc = include_str!("../docs/Equations.outputs.txt")]
     #[pyo3(signature = (t, y))]
     fn outputs(&self, py: Python<'_>, t: Floats<'_>, y: Floats<'_>) -> PyResult<Outputs> {
         let at = self.at(&t, &y)?;
@@ -261,9 +321,7 @@ impl Equations {
         Outputs::new(py, &rows, self.dimension, &names, at.count)
     }
 
-    /// Accelerations q'' at one point, shape (n,): t a number, q and v of shape (n,).
-    ///
-    /// The vakonomic formulation also needs mu, shape (h,). ValueError where the states are others.
+    #[doc = include_str!("../docs/Equations.acceleration.txt")]
     #[pyo3(signature = (t, q, v, mu=None))]
     fn acceleration<'py>(
         &self,

@@ -70,6 +70,10 @@ impl _Fitted {
 
 #[pymethods]
 impl _Fitted {
+    fn __repr__(&self) -> String {
+        format!("<deltaq._Fitted, {} films>", self.films.len())
+    }
+
     /// Names of the unknowns of formulation `place`, in the order of theta, with the least that each can be.
     fn unknowns(&self, py: Python<'_>, place: usize) -> PyResult<Vec<(String, Option<f64>)>> {
         self.ask(py, |rows| {

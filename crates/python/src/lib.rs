@@ -13,6 +13,7 @@ mod connect;
 mod ensemble;
 mod equations;
 mod errors;
+mod families;
 mod films;
 mod kept;
 mod linearization;
@@ -26,6 +27,7 @@ mod review;
 mod scene_text;
 mod sensitivities;
 mod shared;
+mod state;
 mod system;
 mod trajectory;
 
@@ -34,7 +36,7 @@ mod _native {
     #[pymodule_export]
     use crate::{
         again::_again,
-        comparison::{Comparison, Decided, Fit, Growth, LeadingTerm, Pair, Run},
+        comparison::{Comparison, Growth, LeadingTerm, Pair, Run},
         connect::{Connection, Connections},
         ensemble::Ensemble,
         equations::Equations,
@@ -42,13 +44,15 @@ mod _native {
             BoundaryError, CallError, CompileError, DeltaqError, DerivationError, EvaluationError, FaultError,
             RemovalError, SceneError, SolveError, StartError,
         },
+        families::{Decided, Fit},
         films::_Fitted,
         linearization::{Linearization, LinearizationSweep, StabilityChange},
         motion::Motion,
         outputs::Outputs,
         reading::{_read_again, built_in, load, parse},
         residuals::Residuals,
-        system::{State, System},
+        state::State,
+        system::System,
         trajectory::Trajectory,
     };
 

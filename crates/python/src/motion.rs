@@ -14,7 +14,8 @@ use pyo3::types::{IntoPyDict, PyDict};
 
 use crate::arguments::rule_value;
 use crate::arrays::{Floats, columns, fixed, times, within};
-use crate::kept::kept;
+use crate::ensemble::Instants;
+use crate::kept::{Kept, kept};
 use crate::outputs::{Names, Outputs, Row, observed};
 use crate::shared::Shared;
 use crate::system::System;
@@ -24,6 +25,8 @@ use crate::{errors, sensitivities};
 pub(crate) struct Sampled {
     motion: motion::Motion,
     times: Vec<f64>,
+    /// How many these are; `None` of one that was given as a number.
+    count: Option<usize>,
     /// One at each of the times that were reached.
     rows: Vec<Row>,
     coordinates: Vec<String>,
@@ -43,13 +46,16 @@ impl Sampled {
     pub(crate) fn new(
         mut motion: motion::Motion,
         setting: Setting,
-        times: Option<Vec<f64>>,
+        instants: Option<Instants>,
     ) -> Result<Sampled, SolveError> {
         let (from, length) = (setting.start.t, setting.end - setting.start.t);
         let instant = |i: usize| from + length * i as f64 / (INSTANTS - 1) as f64;
-        let times = times.unwrap_or_else(|| (0..INSTANTS).map(instant).collect());
+        let (times, count) = instants.map_or_else(
+            || ((0..INSTANTS).map(instant).collect(), Some(INSTANTS)),
+            |instants| (instants.values, instants.count),
+        );
         let reached = |motion: &motion::Motion| -> Vec<f64> {
-            times.iter().map_while(|&t| within(t, motion.start(), motion.end())).collect()
+            times.iter().map_while(|&t| within(t, motion.start(), motion.end())).collect::<Vec<f64>>()
         };
         let asked = reached(&motion);
         let (mut so_far, estimate) = error_estimates(&mut motion, setting, &asked)?;
@@ -60,7 +66,7 @@ impl Sampled {
         let rows = reached.iter().map(row).collect::<Result<_, SolveError>>()?;
         let coordinates = setting.system.coordinates.iter().map(|c| c.name.clone()).collect();
         let dimension = setting.system.dimension();
-        Ok(Sampled { motion, times, rows, coordinates, observables, so_far, estimate, dimension, derived: None })
+        Ok(Sampled { motion, times, count, rows, coordinates, observables, so_far, estimate, dimension, derived: None })
     }
 
     /// The times that were reached.
@@ -123,7 +129,8 @@ pub(crate) struct Motion {
     /// Name of the removal, None where the formulation needs none.
     #[pyo3(get)]
     removal: Option<String>,
-    /// Times, shape (k,), in the unit of time of the system.
+    /// Times, shape (k,), in the unit of time of the system. If one time was asked for as a number, all arrays
+    /// lack this axis.
     #[pyo3(get)]
     times: Py<PyArrayDyn<f64>>,
     /// How many of the times it reached.
@@ -229,10 +236,9 @@ pub(crate) fn work(py: Python<'_>, work: &Work) -> PyResult<Py<PyDict>> {
 impl Motion {
     pub(crate) fn new(system: &Bound<'_, System>, sampled: Sampled, asked: &Asked<'_>) -> PyResult<Motion> {
         let py = system.py();
-        let Sampled { motion, times, rows, coordinates: coordinate_names, observables: program, .. } = sampled;
+        let Sampled { motion, times, count, rows, coordinates: coordinate_names, observables: program, .. } = sampled;
         let Sampled { so_far, estimate, dimension, derived, .. } = sampled;
         let names = Names::of(&motion.equations, &program);
-        let count = Some(times.len());
         let Outputs { coordinates, velocities, multipliers, invariants, observables } =
             Outputs::new(py, &rows, dimension, &names, count)?;
         let (status, cause) = estimate.status(&motion);
@@ -302,13 +308,10 @@ impl Motion {
 
 #[pymethods]
 impl Motion {
-    /// Everything at time t, read off the dense output (order 7 for dop853).
-    ///
-    /// t is a number or of shape (k,), from start to end, where its last digit does not count; ValueError
-    /// elsewhere.
+    #[doc = include_str!("../docs/Motion.at.txt")]
     #[pyo3(signature = (t))]
     fn at(&self, py: Python<'_>, t: Floats<'_>) -> PyResult<Outputs> {
-        let (t, start, end) = (times(&t)?, self.start, self.end);
+        let (t, start, end) = (times("t", &t)?, self.start, self.end);
         let inside = |i| {
             let t = t.row(i)[0];
             let outside = || PyValueError::new_err(format!("t = {t} is outside of the motion, {start} to {end}"));
@@ -323,6 +326,11 @@ impl Motion {
         };
         let (rows, names) = py.detach(|| integrated.with(read))?.map_err(|error: SolveError| errors::solve(error))?;
         Outputs::new(py, &rows, self.coordinate_names.len(), &names, t.count())
+    }
+
+    /// The motion with these fields, read off as this one is.
+    fn _with(&self, state: &Bound<'_, PyDict>) -> PyResult<Motion> {
+        Ok(Motion { motion: self.motion.clone(), ..Motion::again(state)? })
     }
 
     fn __repr__(&self) -> String {

@@ -25,6 +25,16 @@ pub(crate) struct Outputs {
 
 kept!(Outputs: coordinates velocities multipliers invariants observables);
 
+#[pymethods]
+impl Outputs {
+    fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
+        let names = |table: &Py<PyDict>| table.bind(py).keys().iter().map(|name| name.to_string()).collect::<Vec<_>>();
+        let all = [names(&self.multipliers), names(&self.invariants), names(&self.observables)].concat();
+        let shape = self.coordinates.bind(py).getattr("shape")?;
+        Ok(format!("<deltaq.Outputs, coordinates of shape {shape}; {}>", all.join(", ")))
+    }
+}
+
 /// A row of outputs, and the observables there.
 pub(crate) type Row = (equations::Outputs, Vec<f64>);
 
@@ -61,7 +71,7 @@ impl Outputs {
         count: Option<usize>,
     ) -> PyResult<Outputs> {
         let flat = |pick: fn(&equations::Outputs) -> &[f64]| rows.iter().flat_map(|(r, _)| pick(r).to_vec()).collect();
-        let missing = count.unwrap_or(rows.len()) - rows.len();
+        let missing = count.unwrap_or(1) - rows.len();
         let matrix = |pick| {
             let mut values: Vec<f64> = flat(pick);
             values.resize(values.len() + missing * dimension, f64::NAN);

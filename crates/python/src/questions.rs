@@ -2,7 +2,8 @@
 
 use std::convert::Infallible;
 
-use comparison::{Sweep, SweepPoint};
+use comparison::{Extent, Fits, Sweep, SweepPoint};
+use equations::Formulation;
 use integrate::Interrupt;
 use motion::{EnsembleOptions, Settings, SolveError, number_of_threads, over_threads, setting, solve_choice};
 use picture::Style;
@@ -11,11 +12,11 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use scenery::{Drawn, moving};
 
-use crate::arguments::Table;
+use crate::arguments::{Numbers, Table};
 use crate::arrays::{Floats, Rows, list};
 use crate::background::whole;
-use crate::comparison::{Comparison, compare};
-use crate::ensemble::{self, Ensemble, Varied};
+use crate::comparison::{Comparison, Wanted, compare};
+use crate::ensemble::{Ensemble, Instants, Task, Varied};
 use crate::equations::Equations;
 use crate::linearization::{Linearization, LinearizationSweep};
 use crate::motion::{Asked, Motion, Sampled};
@@ -24,16 +25,7 @@ use crate::{arguments, background, errors};
 
 #[pymethods]
 impl System {
-    /// The equations of motion under a formulation, one of FORMULATIONS.
-    ///
-    /// removal: a name in `removals`, "coordinates" or "quasi-velocities"; by default the first.
-    /// constants: those of `Equations.initial_state`, as in `solve`; by default zero if natural at a horizon.
-    ///
-    /// >>> equations = sledge.equations("chetaev")
-    /// >>> equations.states
-    /// ['x', 'y', 'phi', "x'", "y'", "phi'"]
-    /// >>> equations.rates(0.0, equations.initial_state())[:3]
-    /// array([0., 0., 1.])
+    #[doc = include_str!("../docs/System.equations.txt")]
     #[pyo3(signature = (formulation="chetaev", removal=None, *, mu0=None, constants=None))]
     fn equations(
         slf: &Bound<'_, Self>,
@@ -46,11 +38,7 @@ impl System {
         Equations::derived(slf, (arguments::formulation(formulation)?, removal), given)
     }
 
-    /// The equations of motion to first order about the start, which has to be a steady motion.
-    ///
-    /// free: coordinates whose eigenvalues are asked for, with those of all that is coupled with them both
-    /// ways; by default all. at: a time; about the motion there, steady or not. find: about a steady motion
-    /// of Chetaev's equations near the start. Else as in `equations`. SolveError with what moves.
+    #[doc = include_str!("../docs/System.linearize.txt")]
     #[expect(clippy::too_many_arguments, reason = "named in Python, and most of them left out")]
     #[pyo3(signature = (formulation="chetaev", *, free=None, at=None, find=false, removal=None, mu0=None, constants=None))]
     fn linearize(
@@ -72,12 +60,7 @@ impl System {
         Linearization::about(py, scene, choice, free.unwrap_or_default(), (at, find))
     }
 
-    /// `linearize` over the values of one number, and where stability changes between them: `deltaq
-    /// linearize --sweep`.
-    ///
-    /// over: one name to its values, shape (k,): a parameter, a start value ("x", "x'"), a multiplier
-    /// ("mu0_1"). Between neighbours of different stability the value where it changes is found by
-    /// bisection.
+    #[doc = include_str!("../docs/System.linearize_over.txt")]
     #[expect(clippy::too_many_arguments, reason = "named in Python, and most of them left out")]
     #[pyo3(signature = (over, formulation="chetaev", *, free=None, find=false, removal=None, mu0=None, constants=None))]
     fn linearize_over(
@@ -102,37 +85,18 @@ impl System {
         LinearizationSweep::over(slf, scene, choice, (&name, values), (free.unwrap_or_default(), find))
     }
 
-    /// Derives and integrates the motion under a formulation, one of FORMULATIONS.
-    ///
-    /// times: where it is read off, shape (k,), ascending, to the last. By default 101 over `duration`.
-    /// removal: a name in `removals`, "coordinates" or "quasi-velocities"; by default the first.
-    /// mu0: start multipliers of the vakonomic formulations, shape (h,). By default those of the system.
-    /// constants: free constants, "zero", {"horizon": T} (natural at T) or an array. By default those of the
-    /// removal or of the system.
-    /// form: of the equations, "multipliers", "costates", "quasi-velocities" or auto, which suits the system.
-    /// method: one of METHODS, or auto, which suits the motion. tolerance: of the looser run; the one that is
-    /// kept has a hundredth of it.
-    /// project: move velocities onto the constraint after every step. max_steps, time_limit: limits on the
-    /// steps of a run and on its seconds, after which it stops. max_step: no step is longer.
-    /// sensitivities: names of parameters, start values ("x", "x'"), multipliers ("mu0_1", ...) or costates
-    /// ("P0_w") by which all is derived: `Motion.sensitivities`.
-    ///
-    /// Other threads go on; Ctrl-C ends it. SolveError without a motion; `status` says if it stops early.
-    ///
-    /// >>> motion = sledge.solve("chetaev", [0.0, 0.5, 1.0])
-    /// >>> motion.coordinates[:, 2].round(9)
-    /// array([0. , 0.5, 1. ])
-    /// >>> motion.status, motion.error_estimate < 1e-9
-    /// ('completed', True)
+    #[doc = include_str!("../docs/System.solve.txt")]
     #[expect(clippy::too_many_arguments, reason = "named in Python, and most of them left out")]
     #[pyo3(signature = (
-        formulation="chetaev", times=None, *, removal=None, mu0=None, constants=None, form="auto", method="auto",
-        tolerance=1e-11, project=true, max_steps=1_000_000, max_step=None, time_limit=None, sensitivities=None
+        formulation="chetaev", times=None, *, parameters=None, start=None, removal=None, mu0=None, constants=None,
+        form="auto", method="auto", tolerance=1e-11, project=true, max_steps=1_000_000, max_step=None, time_limit=None, sensitivities=None
     ))]
     fn solve(
         slf: &Bound<'_, Self>,
         formulation: &str,
         times: Option<Floats<'_>>,
+        parameters: Option<Numbers>,
+        start: Option<Numbers>,
         removal: Option<&str>,
         mu0: Option<Floats<'_>>,
         constants: Option<Bound<'_, PyAny>>,
@@ -149,17 +113,14 @@ impl System {
         let (settings, interrupt) = arguments::settings(method, tolerance, project, max_steps, max_step, time_limit)?;
         let (formulation, in_form) = arguments::in_form(form, formulation)?;
         let settings = Settings { form: in_form, ..settings };
+        let slf = &System::for_call(slf, parameters, start)?;
         let scene = slf.get().scene()?;
         let (mut scene, choice) = arguments::choice(py, &interrupt, scene, (formulation, removal), given)?;
-        let times = match times {
-            None => None,
-            Some(times) => {
-                let (times, end) = ensemble::times(&times, &scene)?;
-                scene.duration = end - scene.start.t;
-                Some(times)
-            }
-        };
-        let (limits, instants) = (settings.clone(), times.clone());
+        let instants = times.map(|times| Instants::read(&times, scene.start.t, &scene)).transpose()?;
+        if let Some(instants) = &instants {
+            scene.duration = instants.end - scene.start.t;
+        }
+        let (limits, times) = (settings.clone(), instants.as_ref().map(|instants| instants.values.clone()));
         let work = move || {
             let motion = solve_choice(&scene, &choice, &limits)?;
             let mut sampled = Sampled::new(motion, setting(&scene), instants)?;
@@ -175,18 +136,7 @@ impl System {
         Motion::new(slf, sampled, &asked)
     }
 
-    /// Integrates many motions at once, by Taylor series, under a formulation: starts or parameters differ.
-    ///
-    /// vary: name to array, shape (m,): parameters, start values ("x", "x'"), multipliers ("mu0_1", ...).
-    /// times: where they are read off, shape (k,), ascending, to the last. By default the end of `duration`.
-    /// threads: 0 for one per processor; results do not depend on it. estimate: whether each member is run
-    /// twice, as in `solve`, or once and without an error estimate. Else as in `solve`, constants for all,
-    /// and time_limit for one run of 4096 members.
-    ///
-    /// A member that cannot start or that stops is in the answer with its cause. Ctrl-C as in `solve`.
-    ///
-    /// >>> sledge.ensemble("chetaev", [1.0], vary={"phi'": [0.5, 1.0]}).coordinates[:, 0, 2].round(9)
-    /// array([0.5, 1. ])
+    #[doc = include_str!("../docs/System.ensemble.txt")]
     #[expect(clippy::too_many_arguments, reason = "named in Python, and most of them left out")]
     #[pyo3(signature = (
         formulation="chetaev", times=None, *, vary, removal=None, mu0=None, constants=None, tolerance=1e-11, project=true,
@@ -213,54 +163,61 @@ impl System {
         let (scene, given) = (slf.get().scene()?, constants.is_some());
         let formulation = arguments::formulation(formulation)?;
         let (scene, choice) = arguments::choice(py, &interrupt, scene, (formulation, removal), constants)?;
-        let (times, end) = times.map_or_else(
-            || Ok((vec![setting(&scene).end], setting(&scene).end)),
-            |times| ensemble::times(&times, &scene),
-        )?;
+        let read = |times| Instants::read(&times, scene.start.t, &scene);
+        let instants = times.map_or_else(|| Ok(Instants::end_of(&scene)), read)?;
         let varied = Varied::read(&vary.0)?;
         let options = EnsembleOptions { threads, estimate };
         if let (true, Some(name)) = (given, varied.multiplier(&scene)) {
             return Err(PyValueError::new_err(format!("{name} varies, and mu0 or constants fix it")));
         }
-        let task = ensemble::Task { varied, scene, choice, times, end, settings, options };
+        let task = Task { varied, scene, choice, instants, settings, options };
         let integrated = background::run(py, &interrupt, move || task.run())?;
         Ensemble::new(slf, integrated.map_err(errors::solve)?)
     }
 
-    /// Compares the motions of all formulations pair by pair; tolerance, max_steps, max_step and time_limit
-    /// as in `solve`. fits: free constants are fitted where nothing is decided ("undecided"), always ("all"),
-    /// which takes most of the time, or never ("none").
-    ///
-    /// >>> comparison = sledge.compare()
-    /// >>> comparison.verdict("chetaev", "vakonomic")
-    /// 'different'
-    /// >>> comparison.decided[0].answer, comparison.decided[0].proved
-    /// ('none', True)
-    #[pyo3(signature = (*, tolerance=1e-11, max_steps=1_000_000, max_step=None, time_limit=None, fits="undecided"))]
+    #[doc = include_str!("../docs/System.compare.txt")]
+    #[expect(clippy::too_many_arguments, reason = "named in Python, and most of them left out")]
+    #[pyo3(signature = (
+        formulations=None, *, extent="answer", decision=true, fits="undecided", tolerance=1e-11, max_steps=1_000_000,
+        max_step=None, time_limit=None
+    ))]
     fn compare(
         slf: &Bound<'_, Self>,
+        formulations: Option<Vec<String>>,
+        extent: &str,
+        decision: bool,
+        fits: &str,
         tolerance: f64,
         max_steps: usize,
         max_step: Option<f64>,
         time_limit: Option<f64>,
-        fits: &str,
     ) -> PyResult<Comparison> {
-        let (py, fits) = (slf.py(), arguments::fits(fits)?);
+        let py = slf.py();
+        let named = |names: Vec<String>| names.iter().map(|name| arguments::formulation(name)).collect();
+        let only: Option<Vec<&Formulation>> = formulations.map(named).transpose()?;
+        let extent = arguments::extent(extent)?;
+        let fits = match arguments::fits(fits)? {
+            // what is not decided on is not searched for
+            Fits::Undecided if !decision || extent == Extent::Gaps => Fits::None,
+            fits => fits,
+        };
         let (settings, interrupt) = arguments::settings("auto", tolerance, true, max_steps, max_step, time_limit)?;
         let scene = slf.get().scene()?;
-        let compared = background::run(py, &interrupt, move || compare(scene, fits, &settings))?;
+        let wanted = Wanted { only, extent, decision, fits };
+        let compared = background::run(py, &interrupt, move || compare(scene, &wanted, &settings))?;
         Comparison::new(slf, compared.map_err(errors::solve)?)
     }
 
     /// What `deltaq.sweep` finds at some points: columns by name.
     #[expect(clippy::too_many_arguments, reason = "named in Python")]
-    #[pyo3(signature = (names, values, formulations, tolerance, max_steps, max_step, time_limit, threads))]
+    #[pyo3(signature = (names, values, formulations, decision, tolerance, max_steps, max_step, time_limit, threads))]
     fn _sweep_points<'py>(
         &self,
         py: Python<'py>,
         names: Vec<String>,
         values: Floats<'_>,
         formulations: Option<[String; 2]>,
+        decision: bool,
         tolerance: f64,
         max_steps: usize,
         max_step: Option<f64>,
@@ -276,6 +233,7 @@ impl System {
         let (name, width) = (self.name()?, names.len());
         let work = || -> Result<Vec<SweepPoint>, motion::SolveError> {
             let sweep = Sweep::new(&name, &self.text, &self.overrides, &names, formulations, &settings)?;
+            let sweep = if decision { sweep } else { sweep.without_decision() };
             let rows: Vec<&[f64]> = values.chunks_exact(width.max(1)).collect();
             Ok(over_threads(number_of_threads(threads), rows.len(), |i| sweep.point(rows[i])))
         };

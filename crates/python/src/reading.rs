@@ -10,10 +10,7 @@ use crate::arguments::{Numbers, unknown};
 use crate::errors;
 use crate::system::{Overrides, System};
 
-/// A system from a scene file of at most 1 MiB.
-///
-/// overrides: name to number: parameter, start value ("x", "x'"), "time", "duration", multiplier ("mu0_1").
-/// FileNotFoundError where there is no file; UnknownNameError for a name that the scene has not.
+#[doc = include_str!("../docs/load.txt")]
 #[pyfunction]
 #[pyo3(signature = (path, overrides=None))]
 pub(crate) fn load(py: Python<'_>, path: PathBuf, overrides: Option<Numbers>) -> PyResult<System> {
@@ -24,7 +21,7 @@ pub(crate) fn load(py: Python<'_>, path: PathBuf, overrides: Option<Numbers>) ->
     System::read(py, ("", Some(&path)), text, overrides)
 }
 
-/// A system from the text of a scene file. `name` stands for the file in errors; overrides as in `load`.
+#[doc = include_str!("../docs/parse.txt")]
 #[pyfunction]
 #[pyo3(signature = (text, overrides=None, *, name="scene"))]
 pub(crate) fn parse(py: Python<'_>, text: &str, overrides: Option<Numbers>, name: &str) -> PyResult<System> {
@@ -32,14 +29,7 @@ pub(crate) fn parse(py: Python<'_>, text: &str, overrides: Option<Numbers>, name
     System::read(py, (name, None), text.into(), overrides)
 }
 
-/// The system of a built-in scene: one of SCENES, or "n-trailer-N", a car with N trailers.
-///
-/// overrides: as in `load`.
-///
-/// >>> deltaq.built_in("sledge", {"g": 1.6}).parameters["g"]
-/// 1.6
-///
-/// UnknownNameError for another name.
+#[doc = include_str!("../docs/built_in.txt")]
 #[pyfunction]
 #[pyo3(signature = (name, overrides=None))]
 pub(crate) fn built_in(py: Python<'_>, name: &str, overrides: Option<Numbers>) -> PyResult<System> {

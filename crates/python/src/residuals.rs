@@ -159,7 +159,7 @@ impl Residuals {
         array(py, values, None, &[count])
     }
 
-    /// Their exact derivatives by p, shape (columns times k, P), finite whatever p is.
+    #[doc = include_str!("../docs/Residuals.jac.txt")]
     #[pyo3(signature = (p))]
     fn jac<'py>(&self, py: Python<'py>, p: Floats<'py>) -> Array<'py> {
         let reading = self.read(py, &p, |model, p| model.derivatives(p))?;
@@ -198,25 +198,13 @@ impl Residuals {
 
 #[pymethods]
 impl System {
-    /// What a motion misses of data, as a function of numbers of the system that never raises: for
-    /// `scipy.optimize.least_squares`.
-    ///
-    /// names: parameters, start values ("x", "x'"), multipliers ("mu0_1", ...) or costates ("P0_w") that are
-    /// to vary. times: of the data, shape (k,), ascending. data: name of a column, a coordinate, a velocity
-    /// ("x'") or a multiplier, to its values, shape (k,). sigma: name of a column to its unit, 1 by default.
-    /// constants: zero by default where the removal's are natural at a horizon. penalty: what
-    /// residuals are at times that a motion does not reach. Else as in `solve`, in one run.
-    ///
-    /// >>> times = [0.5, 1.0]
-    /// >>> miss = sledge.residuals(["phi'"], times, {"phi": [0.6, 1.2]}, sigma={"phi": 0.1})
-    /// >>> miss([1.0]).round(9), miss.jac([1.0]).round(9).tolist()
-    /// (array([-1., -2.]), [[5.0], [10.0]])
+    /// `residuals` of columns by name.
     #[expect(clippy::too_many_arguments, reason = "named in Python, and most of them left out")]
     #[pyo3(signature = (
-        names, times, data, formulation="chetaev", *, sigma=None, removal=None, mu0=None, constants=None,
-        method="auto", tolerance=1e-11, max_steps=100_000, penalty=1e6
+        names, times, data, formulation, *, sigma=None, removal=None, mu0=None, constants=None, method="auto",
+        tolerance=1e-11, max_steps=100_000, penalty=1e6
     ))]
-    fn residuals(
+    fn _residuals(
         slf: &Bound<'_, Self>,
         names: Vec<String>,
         times: Floats<'_>,
@@ -244,7 +232,7 @@ impl System {
         options.set_item("penalty", penalty)?;
         let times = list("times", &times)?;
         let positional = (names.clone(), times.clone(), &data.0).into_pyobject(py)?;
-        let call = partial(slf.getattr("residuals")?, &options)?.unbind();
+        let call = partial(slf.getattr("_residuals")?, &options)?.unbind();
         let is_given = given.is_some();
         let scene = slf.get().scene()?;
         let formulation = arguments::formulation(formulation)?;

@@ -1,74 +1,26 @@
 //! Systems, and what can be asked of them.
 
+use std::hash::{DefaultHasher, Hash, Hasher};
 use std::path::Path;
 
 use comparison::integrability;
 use integrate::Interrupt;
 use motion::removals;
-use numpy::PyArrayDyn;
+use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::types::{IntoPyDict, PyDict};
 use scene::Scene;
 use symbolic::{work_on, worked_on};
 
-use crate::arguments::{Numbers, Table};
+use crate::arguments::{Numbers, Table, unknown};
 use crate::arrays::{Array, Floats, Points, array, fixed};
 use crate::background::apart;
-use crate::kept::kept;
 use crate::scene_text::{Arguments, Formula, Formulas, write};
 use crate::shared::Shared;
+use crate::state::State;
 use crate::{background, errors};
 
-/// A point of a motion: time, coordinates, velocities.
-#[pyclass(frozen, get_all, module = "deltaq")]
-pub(crate) struct State {
-    /// Time.
-    pub(crate) t: f64,
-    /// Coordinates, shape (n,), in the units of the system.
-    pub(crate) q: Py<PyArrayDyn<f64>>,
-    /// Velocities, shape (n,), in units of the coordinates per unit of time.
-    pub(crate) v: Py<PyArrayDyn<f64>>,
-}
-
-kept!(State: t q v);
-
-#[pymethods]
-impl State {
-    fn __repr__(&self) -> String {
-        format!("<deltaq.State t={}, q={}, v={}>", self.t, self.q, self.v)
-    }
-}
-
-/// A mechanical system with velocity constraints, its start and everything else that a scene file says.
-///
-/// Expressions: numbers, or strings as in scene files: coordinates, velocities (`x'`), parameters, time `t`;
-/// or SymPy's: coordinates are dynamicsymbols or names, velocities their derivatives, parameters symbols.
-///
-/// coordinates: names of the n coordinates. lagrangian: L(q, v, t). constraints: f(q, v, t), h of them, each
-/// to be zero. parameters: name to number. definitions: name to expression, usable in all others. units:
-/// coordinate to text. forces: coordinate to expression, generalized forces Q. virtual: what rates of virtual
-/// displacements satisfy, h of them, for the formulation prescribed. observables: name to
-/// expression, what motions list besides; invariants: likewise, what should stay constant. view: name of a
-/// body to {"shape": ..., "size": [...], "at": ..., "rotation": ...}, as in [view.NAME]. start: every
-/// coordinate to its start. velocities: some ("x'") to their start; constraints supply the others, and
-/// start_equations, as in ["dot(W, n) = 5"] or what is zero. guess: velocities near which these are sought.
-/// project: move given velocities onto the constraints.
-/// removals: name to {"parameters": [...], "rates": {...}, ...}, as in [removal.NAME] of scene files.
-/// multipliers: mu0, shape (h,), zero by default. time: t0. duration: length of the run. breakpoints: times
-/// at which a step ends, where something is switched. notes: remarks.
-///
-/// >>> sledge = deltaq.System(
-/// ...     coordinates=["x", "y", "phi"],
-/// ...     lagrangian="(x'^2 + y'^2)/2 + k^2*phi'^2/2 + g*sin(alpha)*x",
-/// ...     constraints=["y'*cos(phi) - x'*sin(phi)"],
-/// ...     parameters={"g": 9.81, "alpha": 0.4, "k": 0.7},
-/// ...     start={"x": 0, "y": 0, "phi": 0},
-/// ...     velocities={"phi'": 1, "x'": 0},
-/// ... )
-/// >>> sledge.constraint(0.0, sledge.start.q, sledge.start.v)
-/// array([0.])
-///
-/// SceneError names the line of the scene file that the arguments amount to.
+#[doc = include_str!("../docs/System.txt")]
 #[pyclass(frozen, module = "deltaq")]
 pub(crate) struct System {
     scene: Shared<Scene>,
@@ -96,6 +48,48 @@ impl System {
         })?;
         let scene = Shared::new(scene.map_err(|error| errors::scene(py, &error))?);
         Ok(System { scene, about: worked_on(), text, overrides })
+    }
+
+    /// The same system with these numbers over those that were set.
+    fn with(&self, py: Python<'_>, numbers: Overrides) -> PyResult<System> {
+        let is_new = |name: &String| numbers.iter().any(|(new, _)| new == name);
+        let kept = self.overrides.iter().filter(|(name, _)| !is_new(name)).cloned();
+        let all = kept.chain(numbers.iter().cloned()).collect();
+        System::read(py, (&self.name()?, None), self.text.clone(), all)
+    }
+
+    /// What is watched along motions, as text, by name.
+    fn watched<'py>(&self, py: Python<'py>, is_constant: bool) -> PyResult<Bound<'py, PyDict>> {
+        let texts = |Scene { system, .. }: &mut Scene| -> Vec<(String, String)> {
+            let own = system.watched.iter().filter(|watched| watched.is_constant() == is_constant);
+            own.map(|watched| (watched.name.clone(), system.graph.plain(watched.expression))).collect()
+        };
+        self.scene.with(texts)?.into_py_dict(py)
+    }
+
+    /// The system for one call: with these parameters, and these coordinates and velocities at its start.
+    pub(crate) fn for_call<'py>(
+        slf: &Bound<'py, Self>,
+        parameters: Option<Numbers>,
+        start: Option<Numbers>,
+    ) -> PyResult<Bound<'py, Self>> {
+        if parameters.is_none() && start.is_none() {
+            return Ok(slf.clone());
+        }
+        let scene = slf.get().scene()?;
+        let coordinates = || scene.system.coordinates.iter().map(|c| c.name.clone());
+        let starts: Vec<String> = coordinates().chain(coordinates().map(|name| name + "'")).collect();
+        let own = scene.system.parameters.iter().map(|p| scene.system.graph.name(p.symbol)).collect();
+        let mut numbers = Vec::new();
+        for (what, given, known) in [("parameter", parameters, own), ("start value", start, starts)] {
+            for (name, number) in given.map_or(Vec::new(), |given| given.0) {
+                if !known.contains(&name) {
+                    return Err(unknown(what, &name, known.iter().map(String::as_str)));
+                }
+                numbers.push((name, number));
+            }
+        }
+        Bound::new(slf.py(), slf.get().with(slf.py(), numbers)?)
     }
 
     /// A copy of the scene, on which this thread works from now on.
@@ -215,7 +209,7 @@ impl System {
 
     /// Values of the parameters, by name.
     #[getter]
-    fn parameters<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+    pub(crate) fn parameters<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let scene = self.scene()?;
         scene.system.parameters.iter().map(|p| (scene.system.graph.name(p.symbol), p.value)).into_py_dict(py)
     }
@@ -248,6 +242,18 @@ impl System {
             pairs.map(|(c, &force)| (c.name.clone(), g.plain(force))).collect()
         };
         self.scene.with(texts)?.into_py_dict(py)
+    }
+
+    /// What motions list in addition, as text, by name.
+    #[getter]
+    fn observables<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        self.watched(py, false)
+    }
+
+    /// What should stay constant along motions, as text, by name.
+    #[getter]
+    fn invariants<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        self.watched(py, true)
     }
 
     /// The Lagrangian and the constraints in LaTeX: one `aligned` environment.
@@ -309,17 +315,35 @@ impl System {
         Ok(found.map_err(errors::solve)?.to_string())
     }
 
-    /// The same system with other numbers in some places; overrides as in `load`, over those of before.
-    ///
-    /// >>> sledge.replace({"g": 1.6}).parameters["g"]
-    /// 1.6
-    #[pyo3(signature = (overrides))]
-    fn replace(&self, py: Python<'_>, overrides: Numbers) -> PyResult<System> {
-        let Numbers(overrides) = overrides;
-        let is_new = |name: &String| overrides.iter().any(|(new, _)| new == name);
-        let kept = self.overrides.iter().filter(|(name, _)| !is_new(name)).cloned();
-        let all = kept.chain(overrides.iter().cloned()).collect();
-        System::read(py, (&self.name()?, None), self.text.clone(), all)
+    #[doc = include_str!("../docs/System.replace.txt")]
+    #[pyo3(signature = (overrides=None, /, **numbers))]
+    fn replace(
+        &self,
+        py: Python<'_>,
+        overrides: Option<Numbers>,
+        numbers: Option<Bound<'_, PyDict>>,
+    ) -> PyResult<System> {
+        let mut all = overrides.map_or(Overrides::new(), |numbers| numbers.0);
+        let more: Option<Numbers> = numbers.map(|numbers| numbers.extract()).transpose()?;
+        for (name, number) in more.map_or(Overrides::new(), |more| more.0) {
+            if all.iter().any(|(known, _)| *known == name) {
+                return Err(PyTypeError::new_err(format!("{name} is given twice")));
+            }
+            all.push((name, number));
+        }
+        self.with(py, all)
+    }
+
+    /// Whether two systems say the same, with the same numbers.
+    fn __eq__(&self, other: &Bound<'_, PyAny>) -> PyResult<bool> {
+        let Ok(other) = other.cast::<System>() else { return Ok(false) };
+        Ok(self.to_toml()? == other.get().to_toml()?)
+    }
+
+    fn __hash__(&self) -> PyResult<u64> {
+        let mut hasher = DefaultHasher::new();
+        self.to_toml()?.hash(&mut hasher);
+        Ok(hasher.finish())
     }
 
     fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<(Bound<'py, PyAny>, (String, String, Overrides))> {
@@ -328,13 +352,18 @@ impl System {
         Ok((slf.py().import("deltaq")?.getattr("_read_again")?, arguments))
     }
 
-    /// The system as a scene file's text, every start value a number; `parse` of it gives the same system.
+    /// The system as the text of a scene file, with every start value as a number.
+    ///
+    /// Returns
+    /// -------
+    /// str
+    ///     The text; `parse` of it gives an equal system.
     #[pyo3(signature = ())]
     fn to_toml(&self) -> PyResult<String> {
         self.scene.with(|scene| scene.to_toml())
     }
 
-    /// Constraint residuals f(q, v, t), shape (h,) or (k, h); q, v: (n,) or (k, n); t: a number or (k,).
+    #[doc = include_str!("../docs/System.constraint.txt")]
     #[pyo3(signature = (t, q, v))]
     fn constraint<'py>(&self, py: Python<'py>, t: Floats<'_>, q: Floats<'_>, v: Floats<'_>) -> Array<'py> {
         let points = Points::read([t, q, v], self.dimension()?)?;
@@ -345,9 +374,7 @@ impl System {
         array(py, apart(py, || points.values(program))?, points.count, &[width])
     }
 
-    /// Mass matrix M(q, v, t) = d²L/dv², shape (n, n) or (k, n, n); arguments as in `constraint`.
-    ///
-    /// Distances of configurations are measured by it everywhere: sqrt(dq' M dq).
+    #[doc = include_str!("../docs/System.mass.txt")]
     #[pyo3(signature = (t, q, v))]
     fn mass<'py>(&self, py: Python<'py>, t: Floats<'_>, q: Floats<'_>, v: Floats<'_>) -> Array<'py> {
         let n = self.dimension()?;

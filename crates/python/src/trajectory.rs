@@ -10,11 +10,12 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use crate::arguments::Numbers;
-use crate::arrays::{Floats, fixed, list, within};
+use crate::arrays::{Floats, fixed, list, times, within};
 use crate::equations::Equations;
 use crate::kept::kept;
 use crate::motion::work;
-use crate::{arguments, background, ensemble, errors};
+use crate::ensemble::Instants;
+use crate::{arguments, background, errors};
 
 /// One run of the time loop, without a second one: only its tolerance tells anything of its error.
 #[pyclass(frozen, get_all, module = "deltaq")]
@@ -44,26 +45,48 @@ impl Trajectory {
     }
 }
 
+/// The time of y0: `t0` or the first of `instants`, which then must not be all there is.
+fn start_of(instants: &Floats<'_>, t0: Option<f64>) -> PyResult<f64> {
+    let instants = times("times", instants)?;
+    let refused = |text: String| Err(PyValueError::new_err(text));
+    let (begin, last) = match (t0, instants.values().first(), instants.values().last()) {
+        (_, _, None) => return refused("times is empty".into()),
+        (Some(t0), ..) if !t0.is_finite() => return refused(format!("t0 is {t0}; it must be finite")),
+        (Some(t0), _, Some(&last)) => (t0, last),
+        (None, Some(&first), Some(&last)) if last > first => return Ok(first),
+        (None, _, Some(&last)) => {
+            return refused(format!("y0 belongs to the first of times, t = {last}, and no later one follows; give t0"));
+        }
+    };
+    if last <= begin {
+        return refused(format!("times ends at {last}; after t0 = {begin} is needed"));
+    }
+    Ok(begin)
+}
+
+/// What `run` gives from a time and a state on; the equations keep their own start.
+fn started_from<T>(
+    ready: &mut Prepared,
+    (t, y): (f64, Vec<f64>),
+    run: impl FnOnce(&mut Prepared) -> Result<T, SolveError>,
+) -> Result<T, SolveError> {
+    let own = (std::mem::replace(&mut ready.t, t), std::mem::replace(&mut ready.start, y));
+    let result = run(ready);
+    (ready.t, ready.start) = own;
+    result
+}
+
 #[pymethods]
 impl Equations {
-    /// One run of the time loop from the start of the system to the last of `times`, shape (k,), in ascending
-    /// order: half of what `System.solve` does, for those who know the error from elsewhere.
-    ///
-    /// y0: the state to start from, shape (m,). parameters: name to number, for this run; without y0 the
-    /// start follows, as of `System.replace`. constants, mu0: the free constants of this run, as in
-    /// `solve`. The first use of parameters of some names compiles equations that have them as inputs; then
-    /// a call costs the run. method: one of METHODS; its first run compiles what it needs. tolerance:
-    /// relative and absolute. project, max_steps, max_step, time_limit: as in `System.solve`. For the start
-    /// and the last time alone nothing else is kept.
-    ///
-    /// Other threads go on; Ctrl-C ends it. SolveError without a run; `status` says if it stops early.
+    #[doc = include_str!("../docs/Equations.integrate.txt")]
     #[expect(clippy::too_many_arguments, reason = "named in Python, and most of them left out")]
-    #[pyo3(signature = (times, *, y0=None, parameters=None, constants=None, mu0=None, method="auto", tolerance=1e-11, project=true, max_steps=1_000_000, max_step=None, time_limit=None))]
+    #[pyo3(signature = (times, *, y0=None, t0=None, parameters=None, constants=None, mu0=None, method="auto", tolerance=1e-11, project=true, max_steps=1_000_000, max_step=None, time_limit=None))]
     fn integrate(
         &self,
         py: Python<'_>,
         times: Floats<'_>,
         y0: Option<Floats<'_>>,
+        t0: Option<f64>,
         parameters: Option<Numbers>,
         constants: Option<Bound<'_, PyAny>>,
         mu0: Option<Floats<'_>>,
@@ -82,7 +105,17 @@ impl Equations {
             return Err(PyValueError::new_err(format!("y0 has {found} entries; {width} are needed")));
         }
         let (scene, _) = self.at_run_time.scene_and_choice()?;
-        let (begin, (times, end)) = (scene.start.t, ensemble::times(&times, &scene)?);
+        let begin = match &y0 {
+            Some(_) => start_of(&times, t0)?,
+            None if t0.is_some() => {
+                return Err(PyValueError::new_err(format!(
+                    "t0 is the time of y0; without y0 a run starts with the system, at t = {}",
+                    scene.start.t
+                )));
+            }
+            None => scene.start.t,
+        };
+        let Instants { values: times, count, end } = Instants::read(&times, begin, &scene)?;
         let is_end = |&t: &f64| t == begin || t == end;
         let mut options = Options {
             projection: settings.projection,
@@ -105,18 +138,24 @@ impl Equations {
             }
             Ok((run, reached.len(), states, clock.elapsed().as_secs_f64()))
         };
-        let as_derived = y0.is_none() && parameters.is_none() && rule.is_none();
-        let numbers = parameters.map_or(Vec::new(), |numbers| numbers.0);
-        let ran = background::run(py, &interrupt, || match as_derived {
-            true => self.with(run)?.map_err(errors::solve),
-            false => self.at_run_time.started(numbers, rule, y0, run),
+        let from = y0.map(|y0| (begin, y0));
+        let ran = background::run(py, &interrupt, || match (parameters, rule, from) {
+            (None, None, None) => self.with(run)?.map_err(errors::solve),
+            (None, None, Some(from)) => self.with(|ready| started_from(ready, from, run))?.map_err(errors::solve),
+            (Some(Numbers(numbers)), None, Some(from)) => {
+                let run = |ready: &mut Prepared| started_from(ready, from, run);
+                self.at_run_time.with_numbers(numbers, run)?.map_err(errors::solve)
+            }
+            (numbers, rule, from) => {
+                let numbers = numbers.map_or(Vec::new(), |numbers| numbers.0);
+                self.at_run_time.started(numbers, rule, from, run)
+            }
         })?;
         let (run, reached, states, seconds) = ran?;
         let (status, cause) = match &run.solution.status {
             Status::Completed => ("completed", None),
             Status::Stopped { t, cause } => ("stopped", Some(format!("stopped at t = {t}: {cause}"))),
         };
-        let count = Some(times.len());
         Ok(Trajectory {
             states: fixed(py, states, count, &[width])?.unbind(),
             times: fixed(py, times, count, &[])?.unbind(),

@@ -265,13 +265,13 @@ def test_a_number_in_the_place_of_a_list_is_named(system):
     equations = system.equations()
     y = equations.initial_state()
     for name, ask in {
-        "times": lambda: system.solve(times=1.0), "times ": lambda: equations.integrate(1.0), "mu0": lambda: system.solve("vakonomic", mu0=0.3),
+        "mu0": lambda: system.solve("vakonomic", mu0=0.3),
         "g": lambda: system.ensemble(vary={"g": 1.0}), "q": lambda: equations.acceleration(0, 1.0, y[3:6]), "constants": lambda: system.solve("vakonomic", constants=0.3),
         "phi": lambda: deltaq.sweep(system, {"phi": 1.0}), "k": lambda: deltaq.ensemble(system, vary={"k": 1.0}), "alpha": lambda: system.linearize_over({"alpha": 1.0}),
     }.items():
         with pytest.raises(ValueError, match=rf"\b{name.strip()}\b.*is a number"):
             ask()
-    with pytest.raises(ValueError, match=r"times has shape \[1, 2\]; a list or an array is needed"):
+    with pytest.raises(ValueError, match=r"times has shape \[1, 2\]; a number or \(k,\) is needed"):
         system.solve(times=[[0, 1]])
 
 

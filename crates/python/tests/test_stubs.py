@@ -2,6 +2,7 @@
 
 import ast
 import inspect
+import re
 from pathlib import Path
 
 import pytest
@@ -13,7 +14,8 @@ STUBS = Path(deltaq.__file__).with_name("_native.pyi")
 TREE = ast.parse(STUBS.read_text())
 CLASSES = {node.name: node for node in TREE.body if isinstance(node, ast.ClassDef)}
 FUNCTIONS = {node.name: node for node in TREE.body if isinstance(node, ast.FunctionDef)}
-PYTHON = {"designs", "FilmFit", "FormulationFit", "Profile", "Proof", "Sweep", "ensemble", "from_sympy", "review", "sweep"}
+PYTHON = {"Design", "Estimate", "FilmFit", "FormulationFit", "Functions", "Integrals", "Profile", "Proof", "Sweep"}
+PYTHON |= {"designs", "ensemble", "from_sympy", "review", "sweep"}
 VALUES = {node.target.id for node in TREE.body if isinstance(node, ast.AnnAssign) and not node.target.id.startswith("_")}
 
 
@@ -87,12 +89,50 @@ def test_functions(name):
 
 def same_parameters(stub, real, without=0):
     arguments = stub.args
-    positional = [a.arg for a in arguments.args][without:]
+    positional = [a.arg for a in arguments.posonlyargs + arguments.args][without:]
     found = inspect.signature(real).parameters.values()
-    assert positional == [p.name for p in found if p.kind not in (p.KEYWORD_ONLY, p.VAR_POSITIONAL)], stub.name
+    assert positional == [p.name for p in found if p.kind not in (p.KEYWORD_ONLY, p.VAR_POSITIONAL, p.VAR_KEYWORD)], stub.name
+    assert [a.arg for a in [arguments.kwarg] if a] == [p.name for p in found if p.kind is p.VAR_KEYWORD], stub.name
     assert [a.arg for a in [arguments.vararg] if a] == [p.name for p in found if p.kind is p.VAR_POSITIONAL], stub.name
     assert [a.arg for a in arguments.kwonlyargs] == [p.name for p in found if p.kind is p.KEYWORD_ONLY], stub.name
     defaults = [p.default for p in found if p.kind is p.KEYWORD_ONLY]
     for node, default in zip(arguments.kw_defaults, defaults):
         expected = inspect.Parameter.empty if node is None else ast.literal_eval(node)
         assert expected == default, stub.name
+
+
+def documented():
+    """Functions and methods with what they take, of all classes that the package names."""
+    for name in deltaq.__all__:
+        member = getattr(deltaq, name)
+        if inspect.isclass(member) and member.__module__.startswith("deltaq") and not issubclass(member, BaseException):
+            for of, method in vars(member).items():
+                if not of.startswith("_") and callable(method):
+                    yield f"{name}.{of}", inspect.getattr_static(member, of), 1
+        elif inspect.isroutine(member):
+            yield name, member, 0
+
+
+@pytest.mark.parametrize(("name", "member", "without"), [pytest.param(*case, id=case[0]) for case in documented()])
+def test_sections_of_numpydoc_name_what_is_taken(name, member, without):
+    """Parameters in the order of the signature, each described; what is returned."""
+    if isinstance(member, (classmethod, staticmethod)):
+        member, without = member.__func__, 1
+    text = inspect.getdoc(member)
+    assert text, name
+    stars = {inspect.Parameter.VAR_POSITIONAL: "*", inspect.Parameter.VAR_KEYWORD: "**"}
+    taken = [stars.get(p.kind, "") + p.name for p in list(inspect.signature(member).parameters.values())[without:]]
+    sections = dict(zip(re.findall(r"^(\w+)\n-+$", text, re.M), re.split(r"^\w+\n-+$", text, flags=re.M)[1:]))
+    found = [n.strip() for line in re.findall(r"^(\S.*?)(?: : .*)?$", sections.get("Parameters", ""), re.M) for n in line.split(",")]
+    assert sorted(found) == sorted(taken), name
+    for line in re.findall(r"^\S.*\n(.*)", sections.get("Parameters", ""), re.M):
+        assert line.startswith("    "), (name, line)
+    signature = inspect.signature(member)
+    assert "Returns" in sections or signature.return_annotation in ("None", None), name
+
+
+def test_everything_has_a_repr_of_its_own():
+    for name in deltaq.__all__:
+        member = getattr(deltaq, name)
+        if inspect.isclass(member) and not issubclass(member, BaseException):
+            assert member.__repr__ is not object.__repr__, name

@@ -295,7 +295,7 @@ def test_what_is_no_formula_is_refused(expression, error, words):
 
 
 def test_wrong_arguments():
-    with pytest.raises(TypeError, match="LagrangesMethod is expected"):
+    with pytest.raises(TypeError, match="a LagrangesMethod, a KanesMethod or a System of SymPy is expected"):
         deltaq.from_sympy(test_kane5.KanesMethod, start={})
     with pytest.raises(TypeError, match="a string or an expression of SymPy is expected"):
         deltaq.System([x], sp.Matrix([x]), start={x: 0})

@@ -17,6 +17,10 @@ pub enum Language {
     C,
     /// Python, on arrays of NumPy, which is called `np`.
     Numpy,
+    /// Python, on arrays of JAX, whose `jax.numpy` is called `np`.
+    Jax,
+    /// Python, on numbers, for Numba; NumPy is called `np`.
+    Numba,
     /// Python, on expressions of SymPy, which is called `sp`.
     Sympy,
 }
@@ -156,11 +160,11 @@ impl Language {
         let inverse = Function::ALL.iter().any(|f| f.name() == name) && name.starts_with('a');
         match (self, name) {
             (Language::C, _) => name.into(),
-            (Language::Numpy, "pow") => "np.power".into(),
             (Language::Sympy, "pow") => "sp.Pow".into(),
-            (Language::Numpy, _) if inverse || name == "atan2" => format!("np.arc{}", &name[1..]),
-            (Language::Numpy, _) => format!("np.{name}"),
             (Language::Sympy, _) => format!("sp.{name}"),
+            (_, "pow") => "np.power".into(),
+            (_, _) if inverse || name == "atan2" => format!("np.arc{}", &name[1..]),
+            (_, _) => format!("np.{name}"),
         }
     }
 
@@ -175,7 +179,7 @@ impl Language {
             (Language::Sympy, Some(factor), _) => {
                 (format!("{factor}sp.pi{}", below.map_or(String::new(), |d| format!("/{d}"))), PRODUCT)
             }
-            (Language::Sympy | Language::Numpy, _, Number::Exact(r)) if r.denominator() == 1 => (above, ATOM),
+            (_, _, Number::Exact(r)) if self != Language::C && r.denominator() == 1 => (above, ATOM),
             (Language::Sympy, _, Number::Exact(r)) => {
                 (format!("sp.Rational({}, {})", r.numerator(), r.denominator()), ATOM)
             }

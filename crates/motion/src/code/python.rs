@@ -1,29 +1,39 @@
-//! Modules of Python: functions of arrays, and expressions of SymPy.
+//! Modules of Python: functions of arrays or of one state, and expressions of SymPy.
 
 use std::fmt::Write;
 
-use symbolic::{Code, Expr};
+use symbolic::{Code, Expr, Language};
 
 use super::{Listing, Place};
 use crate::SolveError;
 
 pub(super) fn numpy(listing: &Listing) -> Result<String, SolveError> {
-    let singular = listing.singular().map_or(String::new(), |regular| {
-        format!("\nnumpy.linalg.LinAlgError where the equations are singular to the last digit; needed: {regular}.")
+    let is_jax = listing.language == Language::Jax;
+    let singular = listing.singular().map_or(String::new(), |regular| match is_jax {
+        true => format!("\nNaN if the equations are singular; needed: {regular}."),
+        false => {
+            format!("\nnumpy.linalg.LinAlgError where the equations are singular to the last digit; needed: {regular}.")
+        }
     });
+    let double = if is_jax {
+        "\njit, grad and vmap go through both. For double precision: jax.config.update(\"jax_enable_x64\", True)."
+    } else {
+        ""
+    };
     let mut text = about(
         listing,
         &format!(
             "rates(t, state, parameters) is F(t, y), outputs(t, state, parameters) what is read off; state has the shape \
              (..., {}),\nthe answer one like it, t is a number or of shape (...). parameters are PARAMETERS, or \
-             PARAMETERS | {{name: value}}.{singular}",
+             PARAMETERS | {{name: value}}.{singular}{double}",
             listing.rates.len()
         ),
     );
+    let numpy = if is_jax { "jax.numpy" } else { "numpy" };
     let constants: Vec<String> = listing.constants.iter().map(|(_, name, x)| format!("{name:?}: {x:?}")).collect();
     let _ = write!(
         text,
-        "import numpy as np\n\nSTATES = {:?}\nOUTPUTS = {:?}\nPARAMETERS = {{{}}}\nTIME = {:?}\nSTART = \
+        "import {numpy} as np\n\nSTATES = {:?}\nOUTPUTS = {:?}\nPARAMETERS = {{{}}}\nTIME = {:?}\nSTART = \
          np.array({:?})\n\n\ndef _rows(t, state, *entries):\n    return np.stack(np.broadcast_arrays(t, state[..., 0], \
          *entries)[2:], axis=-1)\n",
         listing.state_names(),
@@ -65,13 +75,71 @@ pub(super) fn numpy(listing: &Listing) -> Result<String, SolveError> {
     Ok(text)
 }
 
+/// Functions of one state, compiled by Numba.
+pub(super) fn numba(listing: &Listing) -> Result<String, SolveError> {
+    let mut text = about(
+        listing,
+        "rates(t, state, parameters) is F(t, y), outputs(t, state, parameters) what is read off, both for one state, an \
+         array.\nparameters is VALUES or another array in the order of PARAMETERS. Numba solves linear equations by SciPy.",
+    );
+    let constants: Vec<String> = listing.constants.iter().map(|(_, name, x)| format!("{name:?}: {x:?}")).collect();
+    let _ = write!(
+        text,
+        "import numba\nimport numpy as np\n\nSTATES = {:?}\nOUTPUTS = {:?}\nPARAMETERS = {{{}}}\nVALUES = \
+         np.array([*PARAMETERS.values()], dtype=float)\nTIME = {:?}\nSTART = np.array({:?})\n",
+        listing.state_names(),
+        listing.output_names(),
+        constants.join(", "),
+        listing.prepared.t,
+        listing.prepared.start
+    );
+    if !listing.systems.is_empty() {
+        let code = listing.instant()?;
+        text += "\n\n@numba.njit\ndef _unknowns(t, state, parameters):\n";
+        body(&mut text, listing, &code);
+        let count: usize = listing.systems.iter().map(|system| system.right.len()).sum();
+        let _ = writeln!(text, "    found = np.empty({count})");
+        let mut first = 0;
+        for (rows, right) in listing.instant_of(&code) {
+            let n = right.len();
+            let _ = writeln!(text, "    matrix = np.empty(({n}, {n}))\n    right = np.empty({n})");
+            for (i, (row, entry)) in rows.into_iter().zip(right).enumerate() {
+                for (j, value) in row.iter().enumerate() {
+                    let _ = writeln!(text, "    matrix[{i}, {j}] = {value}");
+                }
+                let _ = writeln!(text, "    right[{i}] = {entry}");
+            }
+            let _ = writeln!(text, "    found[{first}:{}] = np.linalg.solve(matrix, right)", first + n);
+            first += n;
+        }
+        text += "    return found\n";
+    }
+    for (function, expressions) in [("rates", &listing.rates), ("outputs", &listing.output_expressions())] {
+        let code = listing.code(expressions)?;
+        let _ = write!(text, "\n\n@numba.njit\ndef {function}(t, state, parameters):\n");
+        if listing.uses_unknowns(&code) {
+            text += "    unknowns = _unknowns(t, state, parameters)\n";
+        }
+        body(&mut text, listing, &code);
+        let _ = writeln!(text, "    found = np.empty({})", code.outputs.len());
+        for (i, value) in code.outputs.iter().enumerate() {
+            let _ = writeln!(text, "    found[{i}] = {value}");
+        }
+        text += "    return found\n";
+    }
+    Ok(text)
+}
+
 /// What a function takes, under the names of the system, and the lines of `code`.
 fn body(text: &mut String, listing: &Listing, code: &Code) {
+    let of_one = listing.language == Language::Numba;
+    let all = if of_one { "" } else { "..., " };
     for (name, place) in listing.used(code) {
         let _ = match place {
             Place::Time => Ok(()), // bears its name already
-            Place::State(i) => writeln!(text, "    {name} = state[..., {i}]"),
-            Place::Unknown(i) => writeln!(text, "    {name} = unknowns[..., {i}]"),
+            Place::State(i) => writeln!(text, "    {name} = state[{all}{i}]"),
+            Place::Unknown(i) => writeln!(text, "    {name} = unknowns[{all}{i}]"),
+            Place::Constant(i) if of_one => writeln!(text, "    {name} = parameters[{i}]"),
             Place::Constant(i) => writeln!(text, "    {name} = parameters[{:?}]", listing.constants[i].1),
         };
     }

@@ -19,7 +19,7 @@ All arrays are of float64. Results cannot be written to, and can be pickled. Eve
 DeltaqError, an unknown name an UnknownNameError; a wrong shape is a ValueError, a missing file a FileNotFoundError.
 """
 
-from . import _animate, _films, _notebook, _plots, _proof, _tables
+from . import _animate, _code, _columns, _films, _motion, _notebook, _plots, _proof, _tables
 from ._native import (
     FORMULATIONS,
     METHODS,
@@ -64,8 +64,10 @@ from ._native import (
     load,
     parse,
 )
+from ._code import Functions
 from ._films import FilmFit, FormulationFit, Profile, designs
 from ._proof import Proof
+from ._results import Design, Estimate, Integrals
 from ._review import review
 from ._sweep import Sweep, ensemble, sweep
 from ._sympy import from_sympy
@@ -83,14 +85,18 @@ __all__ = [
     "Decided",
     "DeltaqError",
     "DerivationError",
+    "Design",
     "Ensemble",
     "Equations",
+    "Estimate",
     "EvaluationError",
     "FaultError",
     "FilmFit",
     "Fit",
     "FormulationFit",
+    "Functions",
     "Growth",
+    "Integrals",
     "LeadingTerm",
     "Linearization",
     "LinearizationSweep",
@@ -131,7 +137,16 @@ for _class, _module in ((Motion, "motion"), (Ensemble, "ensemble"), (Comparison,
         if _function is not None:
             setattr(_class, f"to_{_kind}", _function)
 
+for _class in (Motion, Ensemble):
+    setattr(_class, "__getitem__", _motion.column)
+    setattr(_class, "__contains__", _motion.is_column)
+for _name, _function in (("__getitem__", _motion.item), ("__len__", _motion.length), ("__iter__", _motion.instants)):
+    setattr(Motion, _name, _function)
+
+setattr(Equations, "functions", _code.functions)
+setattr(Equations, "to_scipy", _code.to_scipy)
 setattr(System, "prove", _proof.prove)
 setattr(System, "integrals", _proof.integrals)
 setattr(System, "fit", _films.fit)
+setattr(System, "residuals", _columns.residuals)
 setattr(System, "design", _films.design)

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from ._motion import times
 from ._native import Comparison, Ensemble, Motion, System
 from ._plots import COLOURS
 
@@ -36,25 +37,59 @@ class Animation:
 
 
 def _curve(label: str, motion: Motion) -> tuple[str, str, Any, Any]:
-    times = np.linspace(motion.start, motion.end, _POINTS)
-    return label, motion.formulation, times, motion.at(times).coordinates
+    instants = np.linspace(motion.start, motion.end, _POINTS)
+    return label, motion.formulation, instants, motion.at(instants).coordinates
 
 
 def motion(self: Motion) -> Animation:
-    """The bodies of the system's view along the motion, as a picture that plays by itself."""
+    """The bodies of the system's view along the motion, as a picture that plays by itself.
+
+    Returns
+    -------
+    Animation
+        An SVG, which notebooks show.
+
+    Raises
+    ------
+    ValueError
+        If the system has no view.
+    """
     return Animation(self.system, [_curve(self.formulation, self)])
 
 
 def comparison(self: Comparison) -> Animation:
-    """The bodies of the system's view along the first motion of each formulation, in one picture that plays by itself."""
-    shown = {run.formulation: (run.label, run.motion) for run in reversed(self.runs) if run.motion is not None}
+    """The bodies of the system's view along the first motion of each formulation, in one picture that plays by itself.
+
+    Returns
+    -------
+    Animation
+        An SVG, which notebooks show.
+
+    Raises
+    ------
+    ValueError
+        If the system has no view.
+    """
+    shown = {run.formulation: (run.title, run.motion) for run in reversed(self.runs) if run.motion is not None}
     return Animation(self.system, [_curve(*shown[name]) for name in COLOURS if name in shown])
 
 
 def ensemble(self: Ensemble) -> Animation:
-    """The bodies of the system's view along eight of the members, straight between the ensemble's times."""
+    """The bodies of the system's view along eight of the members, straight between the ensemble's times.
+
+    Returns
+    -------
+    Animation
+        An SVG, which notebooks show.
+
+    Raises
+    ------
+    ValueError
+        If the system has no view.
+    """
     name, values = next(iter(self.varied.items()))
     members = np.unique(np.linspace(0, len(self) - 1, min(len(self), _MEMBERS)).round().astype(int))
     reached = lambda i: slice(0, int(self.reached[i]))  # noqa: E731
-    curve = lambda i: (f"{name} = {values[i]:g}", "", self.times[reached(i)], self.coordinates[i, reached(i)])  # noqa: E731
+    places = np.reshape(self.coordinates, (len(self), len(times(self)), -1))
+    curve = lambda i: (f"{name} = {values[i]:g}", "", times(self)[reached(i)], places[i, reached(i)])  # noqa: E731
     return Animation(self.system, [curve(i) for i in members])

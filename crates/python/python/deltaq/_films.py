@@ -11,9 +11,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
-from . import _parts
+from . import _columns, _parts
 from ._native import _TABLE_SIZE, DeltaqError, System, UnknownNameError, __version__, _Fitted
 from ._needs import needed
+from ._results import Design, Estimate, ResidualTest, Shown
 from ._sweep import _Grid, _written
 
 if TYPE_CHECKING:
@@ -32,7 +33,23 @@ class Profile:
         self.name, self.label, self.at, self.rise = name, label, at, rise
 
     def plot(self, ax: Any = None) -> Any:
-        """The rise over the number, with that of 95 %; a Figure of matplotlib."""
+        """The rise over the number, with that of 95 %.
+
+        Parameters
+        ----------
+        ax : matplotlib Axes or array of these, optional
+            Axes to draw into.
+
+        Returns
+        -------
+        matplotlib.figure.Figure
+            The picture.
+
+        Raises
+        ------
+        ImportError
+            If matplotlib is not installed.
+        """
         from ._plots import profile
 
         return profile(self, ax)
@@ -44,7 +61,7 @@ class Profile:
 class FormulationFit:
     """A formulation fitted to films; `FilmFit` has one per formulation.
 
-    `label`, `formulation`: its name. `verdict`: "supported", "excluded", "not-settled", "cannot-tell", "none" or
+    `label`: its identifier; `title`: the same in words; `formulation`: its name. `verdict`: "supported", "excluded", "not-settled", "cannot-tell", "none" or
     "not-fitted", in `words`. `names`: of the unknowns, in the order of theta. `estimates`: by name value, error, low, high
     (of 95 %), profiled and at_bound, None for infinite. `shown`: whether such films can show the unknowns at all, with answer
     "proved", "hidden" or "open", hidden, order and words. `chi_squared`, `freedom`, `bic`, `tests`, `hidden`, `minima`,
@@ -53,17 +70,19 @@ class FormulationFit:
 
     def __init__(self, fitted: _Fitted, place: int, answer: Mapping[str, Any]):
         self._fitted, self._place = fitted, place
-        self.label: str = answer["label"]
+        self.title: str = answer["label"]
         self.formulation: str = answer["formulation"]
+        removal = self.title.partition(" (")[2].removesuffix(")")
+        self.label: str = f"{self.formulation}:{removal}" if removal else self.formulation
         self.verdict: str = answer["verdict"]
         self.words: str = answer["words"]
-        self.shown: dict[str, Any] | None = answer["shown"]
+        self.shown: Shown | None = None if answer["shown"] is None else Shown.of(answer["shown"])
         fit = answer["fit"] or {}
-        self.estimates: dict[str, dict[str, Any]] = {own["name"]: own for own in fit.get("estimates", [])}
+        self.estimates: dict[str, Estimate] = {own["name"]: Estimate.of(own) for own in fit.get("estimates", [])}
         self.chi_squared: float = fit.get("chi_squared", np.inf)
         self.freedom: int = fit.get("freedom", 0)
         self.bic: float = fit.get("bic", np.inf)
-        self.tests: list[dict[str, Any]] = fit.get("tests", [])
+        self.tests: list[ResidualTest] = [ResidualTest.of(own) for own in fit.get("tests", [])]
         self.hidden: list[str] = fit.get("hidden", [])
         self.minima: list[float] = fit.get("minima", [])
         self.starts: int = fit.get("starts", 0)
@@ -74,23 +93,75 @@ class FormulationFit:
     @property
     def theta(self) -> npt.NDArray[np.float64]:
         """The estimates in the order of `names`, shape (P,)."""
-        return np.array([self.estimates[name]["value"] for name in self.names])
+        return np.array([self.estimates[name].value for name in self.names])
 
     def logp(self, theta: npt.ArrayLike) -> float:
-        """Logarithm of the likelihood with priors, -chi^2/2, for samplers; -inf where there is no motion."""
+        """Logarithm of the likelihood with priors, -chi^2/2, for samplers.
+
+        Parameters
+        ----------
+        theta : array_like of shape (P,)
+            The unknowns, in the order of `names`.
+
+        Returns
+        -------
+        float
+            -inf if there is no motion.
+
+        Raises
+        ------
+        ValueError
+            If theta has another length.
+        """
         return -0.5 * self._fitted.chi_squared(self._place, np.asarray(theta, dtype=float))
 
     def grad(self, theta: npt.ArrayLike) -> npt.NDArray[np.float64]:
-        """Its derivatives by theta, shape (P,), exact; zero where there is no motion."""
+        """Derivatives of `logp` by theta, exact.
+
+        Parameters
+        ----------
+        theta : array_like of shape (P,)
+            The unknowns, in the order of `names`.
+
+        Returns
+        -------
+        ndarray of shape (P,)
+            Zero if there is no motion.
+
+        Raises
+        ------
+        ValueError
+            If theta has another length.
+        """
         return -0.5 * self._fitted.slopes(self._place, np.asarray(theta, dtype=float))
 
     def profile(self, name: str, at: npt.ArrayLike | None = None) -> Profile:
-        """How chi squared rises where a number has these values, shape (k,); about its interval if left out."""
+        """How chi squared rises if a number has these values and the others are fitted again.
+
+        Parameters
+        ----------
+        name : str
+            The number.
+        at : array_like of shape (k,), optional
+            Its values; by default about its interval.
+
+        Returns
+        -------
+        Profile
+            Values and rises.
+
+        Raises
+        ------
+        UnknownNameError
+            If there is no such unknown.
+        ValueError
+            If `at` is left out and the interval is open.
+        """
         name = {"eps": "epsilon"}.get(name, name)
         if name not in self.names:
             raise UnknownNameError(f"no unknown {name!r}; there are {', '.join(self.names)}")
         if at is None:
-            low, high = self.estimates[name]["low"], self.estimates[name]["high"]
+            low, high = self.estimates[name].low, self.estimates[name].high
             if low is None or high is None:
                 raise ValueError(f"the interval of {name} is open: say where the profile is wanted")
             bound = self._bounds[name]
@@ -101,7 +172,13 @@ class FormulationFit:
         return Profile(name, self.label, values, np.array(rise, dtype=float))
 
     def residuals(self) -> dict[tuple[int, str], tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]]:
-        """By film, from 1, and column: times and (fitted - seen)/sigma, each of shape (k,)."""
+        """Residuals by film, from 1, and column.
+
+        Returns
+        -------
+        dict
+            (film, column) to times and (fitted - seen)/sigma, each of shape (k,).
+        """
         found: dict[tuple[int, str], list[tuple[float, float]]] = {}
         for film, column, t, value in self._fitted.residuals(self._place):
             found.setdefault((film + 1, self._fitted.films[film][2][column][0]), []).append((t, value))
@@ -133,24 +210,92 @@ class FilmFit:
 
     def __getitem__(self, name: str) -> FormulationFit:
         for row in self.rows:
-            if name in (row.label, row.formulation):
+            if name in (row.label, row.title, row.formulation):
                 return row
         raise UnknownNameError(f"no formulation {name!r}; there are {', '.join(row.label for row in self.rows)}")
 
     def logp(self, theta: npt.ArrayLike) -> float:
-        """See `FormulationFit.logp`."""
+        """Logarithm of the likelihood of `best` with priors, -chi^2/2, for samplers.
+
+        Parameters
+        ----------
+        theta : array_like of shape (P,)
+            The unknowns, in the order of `names`.
+
+        Returns
+        -------
+        float
+            -inf if there is no motion.
+
+        Raises
+        ------
+        ValueError
+            If theta has another length.
+        """
         return self.best.logp(theta)
 
     def grad(self, theta: npt.ArrayLike) -> npt.NDArray[np.float64]:
-        """See `FormulationFit.grad`."""
+        """Derivatives of `logp` by theta, exact.
+
+        Parameters
+        ----------
+        theta : array_like of shape (P,)
+            The unknowns, in the order of `names`.
+
+        Returns
+        -------
+        ndarray of shape (P,)
+            Zero if there is no motion.
+
+        Raises
+        ------
+        ValueError
+            If theta has another length.
+        """
         return self.best.grad(theta)
 
     def profile(self, name: str, at: npt.ArrayLike | None = None) -> Profile:
-        """See `FormulationFit.profile`."""
+        """How chi squared of `best` rises if a number has these values and the others are fitted again.
+
+        Parameters
+        ----------
+        name : str
+            The number.
+        at : array_like of shape (k,), optional
+            Its values; by default about its interval.
+
+        Returns
+        -------
+        Profile
+            Values and rises.
+
+        Raises
+        ------
+        UnknownNameError
+            If there is no such unknown.
+        ValueError
+            If `at` is left out and the interval is open.
+        """
         return self.best.profile(name, at)
 
     def plot(self, ax: Any = None) -> Any:
-        """The films' columns over time with the fitted motions, one above the other; a Figure. ax: as many axes."""
+        """The films' columns over time with the fitted motions, one above the other.
+
+        Parameters
+        ----------
+        ax : matplotlib Axes or array of these, optional
+            Axes to draw into.
+
+        Returns
+        -------
+        matplotlib.figure.Figure
+            The picture.
+
+        Raises
+        ------
+        ImportError
+            If matplotlib is not installed.
+        """
         from ._plots import films
 
         return films(self, ax)
@@ -164,7 +309,7 @@ class FilmFit:
 
 def _table(table: Any) -> str:
     """A film as CSV: numbers to their last digit."""
-    columns = {str(name): np.asarray(table[name], dtype=float) for name in table}
+    columns, _ = _columns.columns(table)
     if len({len(values) for values in columns.values()}) > 1:
         raise ValueError(f"columns have different lengths: {', '.join(f'{name} {len(x)}' for name, x in columns.items())}")
     rows = zip(*columns.values())
@@ -203,15 +348,52 @@ def fit(
 ) -> FilmFit:
     """Fits what is not known of the system to films of its motions, in each formulation: `deltaq fit`.
 
-    film: path of a CSV file, or a mapping (a dict, a DataFrame) with "t" and columns that are expressions by their names,
-    shape (k,) each; NaN for a gap. free: unknowns, "g", "x~0.1", "Omega~0.7±0.01", "x@2". sigma: standard deviation of all
-    columns, or by column. law: "eps", "slip". known: "psi'@2" to a number of one film. Else as in the command.
+    Parameters
+    ----------
+    film : path or table
+        A CSV file; or a mapping, a DataFrame, a Dataset of xarray, a table of Arrow or a Motion, with the time "t", as a
+        column or as the index, and columns that are expressions by their names; NaN for a gap. Multipliers and invariants of
+        a motion are not fitted.
+    *more : path or table
+        Further films.
+    free : iterable of str
+        Unknowns: "g", "x~0.1", "Omega~0.7±0.01", "x@2".
+    sigma : float, str or mapping of str to these, optional
+        Standard deviation of all columns, or by column: 1e-3, "1mm", "free".
+    law : iterable of str
+        Parameters of the first-order law to fit as well: "eps", "slip".
+    known : mapping of str to float, optional
+        Numbers of one film: "psi'@2".
+    formulations : iterable of str
+        Those to fit.
+    starts : int
+        Starts of the search.
+    robust : bool
+        Whether outliers count less.
+    tolerance : float
+        Tolerance of the looser run; the one that is kept has a hundredth of it.
+    max_steps : int
+        Limit on the steps of a run.
 
+    Returns
+    -------
+    FilmFit
+        A fit per formulation, with a verdict.
+
+    Raises
+    ------
+    ValueError
+        If a table cannot be read; it names the place.
+    UnknownNameError
+        If a name is unknown.
+
+    Examples
+    --------
     >>> import numpy as np
     >>> times = np.linspace(0.05, 2, 40)
     >>> motion = sledge.solve("chetaev", times)
     >>> noise = 1e-3 * np.random.default_rng(2).normal(size=(2, 40))
-    >>> film = {"t": times, "x": motion.coordinates[:, 0] + noise[0], "y": motion.coordinates[:, 1] + noise[1]}
+    >>> film = {"t": times, "x": motion["x"] + noise[0], "y": motion["y"] + noise[1]}
     >>> found = sledge.fit(film, free=["g", "phi'"], sigma=1e-3)
     >>> found["chetaev"].verdict, found["vakonomic"].verdict
     ('supported', 'excluded')
@@ -239,16 +421,58 @@ def design(
     tolerance: float = 1e-9,
     max_steps: int = 2_000,
     threads: int = 0,
-) -> dict[str, Any]:
-    """The film that would tell two formulations apart best, or show a number best: `deltaq design`, and its schema.
+) -> Design:
+    """The film that would tell two formulations apart best, or show a number best: `deltaq design`.
 
-    tell: the formulation that is right, and the other one. estimate: the number, in place of tell. film: "60Hz,0.5mm,10s".
-    over: what can be chosen, by name its bounds. free, sigma, law: as in `fit`.
+    Parameters
+    ----------
+    tell : sequence of two str, optional
+        The formulation that is right, and the other one.
+    film : str
+        Rate, error and length: "60Hz,0.5mm,10s".
+    estimate : str, optional
+        The number to show, instead of `tell`.
+    over : mapping of str to (float, float), optional
+        What can be chosen, with its bounds.
+    free : iterable of str
+        Unknowns, as in `fit`.
+    films : int
+        How many films of this kind.
+    columns : iterable of str
+        What a film shows; by default the coordinates.
+    sigma : float, str or mapping of str to these, optional
+        Standard deviation of all columns, or by column: 1e-3, "1mm", "free".
+    law : iterable of str
+        Parameters of the first-order law to fit as well: "eps", "slip".
+    starts : int
+        Starts of each fit.
+    points : int
+        Choices that are tried first.
+    tolerance : float
+        Tolerance of the looser run; the one that is kept has a hundredth of it.
+    max_steps : int
+        Limit on the steps of a run.
+    threads : int
+        0 for one per processor.
 
+    Returns
+    -------
+    Design
+        The answer of `deltaq design --format json`: as attributes, and as a mapping.
+
+    Raises
+    ------
+    ValueError
+        If neither or both of `tell` and `estimate` are given.
+    UnknownNameError
+        If a name is unknown.
+
+    Examples
+    --------
     >>> heisenberg = deltaq.built_in("heisenberg")
     >>> found = heisenberg.design(("vakonomic", "chetaev"), film="20Hz,1mm,1s", over={"mu0_1": (0.1, 1)}, free=["x'", "y'"], points=4)
-    >>> found["best"]["at"], found["best"]["value"] > 15
-    ([1.0], True)
+    >>> found.best.at, found.best.value > 15
+    ((1.0,), True)
     """
     if (tell is None) == (estimate is None):
         raise ValueError("design asks for tell or for estimate")
@@ -259,7 +483,7 @@ def design(
     found: dict[str, Any] = json.loads(
         self._design(aim, ranges, film, films, list(columns), _sigmas(sigma), list(free), list(law), starts, points, tolerance, max_steps, threads)
     )
-    return {"schema": "deltaq/design/1"} | found
+    return Design.of({"schema": "deltaq/design/1"} | found)
 
 
 class _DesignPart(_Grid):
@@ -275,8 +499,8 @@ class _DesignPart(_Grid):
         found: list[tuple[float | None, int, str]] = []
         for row in values:
             try:
-                best = self.system.replace(dict(zip(self.over, row.tolist()))).design(points=0, threads=1, **self.options)["best"]
-                found.append((best["value"], best["minima"], ""))
+                best = self.system.replace(dict(zip(self.over, row.tolist()))).design(points=0, threads=1, **self.options).best
+                found.append((best.value, best.minima, ""))
             except UnknownNameError:
                 raise
             except (ValueError, DeltaqError) as fault:
@@ -299,12 +523,38 @@ def designs(
 ) -> pa.Table | ds.Dataset:
     """What films show at all combinations of some numbers, a row each, on a cluster as in `sweep`.
 
-    over: name to values. tell, and film, estimate, free, films, columns, sigma, law, starts, tolerance, max_steps in
-    options: as in `System.design`; nothing else is looked for. client, out, part, progress: as in `sweep`.
+    Parameters
+    ----------
+    system : System
+        The system.
+    over : mapping of str to array_like
+        Values by name.
+    tell : sequence of two str, optional
+        As in `System.design`.
+    client : dask.distributed.Client, optional
+        Its workers compute; by default this machine does.
+    out : path, optional
+        A folder for Parquet files; what a call that was cut off has left there is kept.
+    part : int
+        rows of a file.
+    progress : callable, optional
+        Called with the number of parts that are there, and of all.
+    **options
+        film, estimate, free, films, columns, sigma, law, starts, tolerance, max_steps: as in `System.design`.
 
-    Columns: what varies, then `value` (least chi squared of the other formulation, or the standard error; null where
-    films do not show it or there is no motion), `minima` (that the search saw), `cause` (why there is no value).
+    Returns
+    -------
+    pyarrow.Table or pyarrow.dataset.Dataset
+        What varies, then `value` (least chi squared of the other formulation, or the standard error; null if films do not show it or
+        there is no motion), `minima` (that the search found), `cause` (why there is no value).
 
+    Raises
+    ------
+    ValueError
+        If `over` has no finite values, or an option cannot be given.
+
+    Examples
+    --------
     >>> grid = deltaq.designs(deltaq.built_in("heisenberg"), {"mu0_1": [0.01, 1.0]}, ("vakonomic", "chetaev"), film="20Hz,1mm,1s", free=["x'", "y'"])
     >>> [value > 15 for value in grid["value"].to_pylist()]
     [False, True]

@@ -1,12 +1,14 @@
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from os import PathLike
-from typing import Any, Final, Literal, TypeAlias, final
+from typing import Any, Final, Literal, TypeAlias, final, overload
 
 import numpy as np
 import numpy.typing as npt
 
+from ._code import Functions
 from ._films import FilmFit
 from ._proof import Proof
+from ._results import Design, Integrals
 
 _Array: TypeAlias = npt.NDArray[np.float64]
 _Floats: TypeAlias = npt.ArrayLike
@@ -57,23 +59,81 @@ _TABLE_SIZE: Final[int]
 def load(path: str | PathLike[str], overrides: Mapping[str, float] | None = None) -> System:
     """A system from a scene file of at most 1 MiB.
 
-    overrides: name to number: parameter, start value ("x", "x'"), "time", "duration", multiplier ("mu0_1").
-    FileNotFoundError where there is no file; UnknownNameError for a name that the scene has not.
+    Parameters
+    ----------
+    path : str or path-like
+        The file.
+    overrides : mapping of str to float, optional
+        Numbers in place of those of the text: parameters, start values ("x", "x'"), "time", "duration",
+        multipliers ("mu0_1").
+
+    Returns
+    -------
+    System
+        The system.
+
+    Raises
+    ------
+    FileNotFoundError
+        If there is no such file.
+    SceneError
+        If the text has a fault, with its place.
+    UnknownNameError
+        If `overrides` has a name that is not in the scene.
     """
 def built_in(name: str, overrides: Mapping[str, float] | None = None) -> System:
-    """The system of a built-in scene: one of SCENES, or "n-trailer-N", a car with N trailers.
+    """The system of a built-in scene.
 
-    overrides: as in `load`.
+    Parameters
+    ----------
+    name : str
+        One of `SCENES`, or "n-trailer-N", a car with N trailers.
+    overrides : mapping of str to float, optional
+        Numbers in place of those of the text: parameters, start values ("x", "x'"), "time", "duration",
+        multipliers ("mu0_1").
 
+    Returns
+    -------
+    System
+        The system.
+
+    Raises
+    ------
+    UnknownNameError
+        If there is no such scene, or no such number.
+
+    Examples
+    --------
     >>> deltaq.built_in("sledge", {"g": 1.6}).parameters["g"]
     1.6
-
-    UnknownNameError for another name.
     """
 def _read_again(name: str, text: str, overrides: list[tuple[str, float]]) -> System: ...
 def _again(name: str, state: dict[str, Any]) -> Any: ...
 def parse(text: str, overrides: Mapping[str, float] | None = None, *, name: str = "scene") -> System:
-    """A system from the text of a scene file. `name` stands for the file in errors; overrides as in `load`."""
+    """A system from the text of a scene file.
+
+    Parameters
+    ----------
+    text : str
+        The text, TOML.
+    overrides : mapping of str to float, optional
+        Numbers in place of those of the text: parameters, start values ("x", "x'"), "time", "duration",
+        multipliers ("mu0_1").
+    name : str
+        Stands for the file in errors.
+
+    Returns
+    -------
+    System
+        The system.
+
+    Raises
+    ------
+    SceneError
+        If the text has a fault, with its place.
+    UnknownNameError
+        If `overrides` has a name that is not in the scene.
+    """
 
 @final
 class State:
@@ -89,22 +149,68 @@ class State:
 class System:
     """A mechanical system with velocity constraints, its start and everything else that a scene file says.
 
-    Expressions: numbers, or strings as in scene files: coordinates, velocities (`x'`), parameters, time `t`;
-    or SymPy's: coordinates are dynamicsymbols or names, velocities their derivatives, parameters symbols.
+    A formula is a number or a string as in scene files, of coordinates, velocities (`x'`), parameters and the time
+    `t`; or an expression of SymPy, whose coordinates are dynamicsymbols or names. Two systems are equal if they say
+    the same, with the same numbers.
 
-    coordinates: names of the n coordinates. lagrangian: L(q, v, t). constraints: f(q, v, t), h of them, each
-    to be zero. parameters: name to number. definitions: name to expression, usable in all others. units:
-    coordinate to text. forces: coordinate to expression, generalized forces Q. virtual: what rates of virtual
-    displacements satisfy, h of them, for the formulation prescribed. observables: name to
-    expression, what motions list besides; invariants: likewise, what should stay constant. view: name of a
-    body to {"shape": ..., "size": [...], "at": ..., "rotation": ...}, as in [view.NAME]. start: every
-    coordinate to its start. velocities: some ("x'") to their start; constraints supply the others, and
-    start_equations, as in ["dot(W, n) = 5"] or what is zero. guess: velocities near which these are sought.
-    project: move given velocities onto the constraints.
-    removals: name to {"parameters": [...], "rates": {...}, ...}, as in [removal.NAME] of scene files.
-    multipliers: mu0, shape (h,), zero by default. time: t0. duration: length of the run. breakpoints: times
-    at which a step ends, where something is switched. notes: remarks.
+    Parameters
+    ----------
+    coordinates : iterable of formulas
+        Names of the n coordinates.
+    lagrangian : formula
+        L(q, v, t).
+    constraints : iterable of formulas, optional
+        f(q, v, t), h of them, each to be zero.
+    start : mapping
+        Every coordinate to its start.
+    parameters : mapping, optional
+        Parameters to numbers.
+    definitions : mapping, optional
+        Names to expressions that all others can contain.
+    units : mapping, optional
+        Coordinates to the text of their unit.
+    virtual : iterable of formulas, optional
+        Equations of the rates of virtual displacements, h of them, for the formulation "prescribed".
+    forces : mapping, optional
+        Coordinates to generalized forces Q.
+    observables : mapping, optional
+        Names to expressions that motions list in addition.
+    invariants : mapping, optional
+        Names to expressions that should stay constant.
+    view : mapping, optional
+        Names of bodies to {"shape": ..., "size": [...], "at": ..., "rotation": ...}, as in [view.NAME].
+    velocities : mapping, optional
+        Some velocities ("x'") to their start; constraints and `start_equations` determine the others.
+    start_equations : iterable of formulas, optional
+        Equations of the start, as in ["dot(W, n) = 5"], or expressions that are zero.
+    guess : mapping, optional
+        Velocities near which the others are sought.
+    project : bool
+        Whether given velocities are projected onto the constraints.
+    removals : mapping, optional
+        Names to {"parameters": [...], "rates": {...}, ...}, as in [removal.NAME].
+    multipliers : array_like of shape (h,), optional
+        Start multipliers mu0; zero by default.
+    time : float
+        Time t0 of the start.
+    duration : float
+        Length of the run.
+    breakpoints : iterable of float, optional
+        Times at which a step ends because something is switched.
+    name : str
+        Name of the system.
+    title : str, optional
+        One line; by default the name.
+    notes : str
+        Remarks.
 
+    Raises
+    ------
+    SceneError
+        If an argument has a fault; it names the line of the scene file that the arguments amount to.
+
+    Examples
+    --------
     >>> sledge = deltaq.System(
     ...     coordinates=["x", "y", "phi"],
     ...     lagrangian="(x'^2 + y'^2)/2 + k^2*phi'^2/2 + g*sin(alpha)*x",
@@ -115,8 +221,6 @@ class System:
     ... )
     >>> sledge.constraint(0.0, sledge.start.q, sledge.start.v)
     array([0.])
-
-    SceneError names the line of the scene file that the arguments amount to.
     """
     def __new__(
         cls,
@@ -170,6 +274,10 @@ class System:
     """What rates of virtual displacements satisfy, as text, length h; empty where that is not prescribed."""
     forces: Final[dict[str, str]]
     """The generalized forces other than zero, as text, by coordinate."""
+    observables: Final[dict[str, str]]
+    """What motions list in addition, as text, by name."""
+    invariants: Final[dict[str, str]]
+    """What should stay constant along motions, as text, by name."""
     start: Final[State]
     """The start: t0, q0 and v0 with f(q0, v0, t0) = 0."""
     multipliers: Final[list[float]]
@@ -187,20 +295,85 @@ class System:
     """Frobenius' verdict on the constraints, in words; RemovalError where they are dependent at the start."""
     latex: Final[str]
     """The Lagrangian and the constraints in LaTeX: one `aligned` environment."""
-    def replace(self, overrides: Mapping[str, float]) -> System:
-        """The same system with other numbers in some places; overrides as in `load`, over those of before.
+    def replace(self, overrides: Mapping[str, float] | None = None, /, **numbers: float) -> System:
+        """The same system with other numbers in some places, over those that were replaced before.
 
-        >>> sledge.replace({"g": 1.6}).parameters["g"]
-        1.6
+        Parameters
+        ----------
+        overrides : mapping of str to float, optional
+            Numbers in place of the system's: parameters, start values ("x", "x'"), "time", "duration",
+            multipliers ("mu0_1").
+        **numbers : float
+            The same by keyword.
+
+        Returns
+        -------
+        System
+            The other system.
+
+        Raises
+        ------
+        UnknownNameError
+            If the system has no such number.
+        TypeError
+            If a number is given twice.
+
+        Examples
+        --------
+        >>> sledge.replace(g=1.6) == sledge.replace({"g": 1.6})
+        True
         """
     def to_toml(self) -> str:
-        """The system as a scene file's text, every start value a number; `parse` of it gives the same system."""
-    def constraint(self, t: _Floats, q: _Floats, v: _Floats) -> _Array:
-        """Constraint residuals f(q, v, t), shape (h,) or (k, h); q, v: (n,) or (k, n); t: a number or (k,)."""
-    def mass(self, t: _Floats, q: _Floats, v: _Floats) -> _Array:
-        """Mass matrix M(q, v, t) = d²L/dv², shape (n, n) or (k, n, n); arguments as in `constraint`.
+        """The system as the text of a scene file, with every start value as a number.
 
-        Distances of configurations are measured by it everywhere: sqrt(dq' M dq).
+        Returns
+        -------
+        str
+            The text; `parse` of it gives an equal system.
+        """
+    def constraint(self, t: _Floats, q: _Floats, v: _Floats) -> _Array:
+        """Constraint residuals f(q, v, t).
+
+        Parameters
+        ----------
+        t : float or array_like of shape (k,)
+            Times.
+        q : array_like of shape (n,) or (k, n)
+            Coordinates.
+        v : array_like of shape (n,) or (k, n)
+            Velocities.
+
+        Returns
+        -------
+        ndarray of shape (h,) or (k, h)
+            The residuals.
+
+        Raises
+        ------
+        ValueError
+            If a shape is wrong, or a number not finite.
+        """
+    def mass(self, t: _Floats, q: _Floats, v: _Floats) -> _Array:
+        """Mass matrix M(q, v, t) = d²L/dv². Distances of configurations are sqrt(dq' M dq) everywhere.
+
+        Parameters
+        ----------
+        t : float or array_like of shape (k,)
+            Times.
+        q : array_like of shape (n,) or (k, n)
+            Coordinates.
+        v : array_like of shape (n,) or (k, n)
+            Velocities.
+
+        Returns
+        -------
+        ndarray of shape (n, n) or (k, n, n)
+            The matrix.
+
+        Raises
+        ------
+        ValueError
+            If a shape is wrong, or a number not finite.
         """
     def equations(
         self,
@@ -210,11 +383,34 @@ class System:
         mu0: _Floats | None = None,
         constants: _Constants | None = None,
     ) -> Equations:
-        """The equations of motion under a formulation, one of FORMULATIONS.
+        """The equations of motion under a formulation.
 
-        removal: a name in `removals`, "coordinates" or "quasi-velocities"; by default the first.
-        constants: those of `Equations.initial_state`, as in `solve`; by default zero if natural at a horizon.
+        Parameters
+        ----------
+        formulation : str
+            One of `FORMULATIONS`.
+        removal : str, optional
+            A name in `System.removals`, "coordinates" or "quasi-velocities"; by default the first.
+        mu0 : array_like of shape (h,), optional
+            Start multipliers of the vakonomic formulations; by default those of the system.
+        constants : "zero", {"horizon": T} or array_like, optional
+            Free constants: zero, natural at time T, or their values; by default as in `solve`, and zero
+            instead of natural.
 
+        Returns
+        -------
+        Equations
+            Functions of arrays, and code.
+
+        Raises
+        ------
+        UnknownNameError
+            If there is no such formulation or removal.
+        SolveError
+            If the formulation has no equations for the system.
+
+        Examples
+        --------
         >>> equations = sledge.equations("chetaev")
         >>> equations.states
         ['x', 'y', 'phi', "x'", "y'", "phi'"]
@@ -234,9 +430,35 @@ class System:
     ) -> Linearization:
         """The equations of motion to first order about the start, which has to be a steady motion.
 
-        free: coordinates whose eigenvalues are asked for, with those of all that is coupled with them both
-        ways; by default all. at: a time; about the motion there, steady or not. find: about a steady motion
-        of Chetaev's equations near the start. Else as in `equations`. SolveError with what moves.
+        Parameters
+        ----------
+        formulation : str
+            One of `FORMULATIONS`.
+        free : list of str, optional
+            Coordinates whose eigenvalues are wanted, with those of all that is coupled with them both ways; by
+            default all.
+        at : float, optional
+            A time: about the motion there, steady or not.
+        find : bool
+            About a steady motion of Chetaev's equations near the start.
+        removal : str, optional
+            A name in `System.removals`, "coordinates" or "quasi-velocities"; by default the first.
+        mu0 : array_like of shape (h,), optional
+            Start multipliers of the vakonomic formulations; by default those of the system.
+        constants : "zero", {"horizon": T} or array_like, optional
+            Free constants: zero, natural at time T, or their values.
+
+        Returns
+        -------
+        Linearization
+            Jacobian and eigenvalues.
+
+        Raises
+        ------
+        SolveError
+            If the start is not a steady motion; it names what moves.
+        UnknownNameError
+            If a name is unknown.
         """
     def linearize_over(
         self,
@@ -249,30 +471,88 @@ class System:
         mu0: _Floats | None = None,
         constants: _Constants | None = None,
     ) -> LinearizationSweep:
-        """`linearize` over the values of one number, and where stability changes between them: `deltaq
-        linearize --sweep`.
+        """`linearize` over the values of one number, and where stability changes between them: `deltaq linearize --sweep`.
 
-        over: one name to its values, shape (k,): a parameter, a start value ("x", "x'"), a multiplier
-        ("mu0_1"). Between neighbours of different stability the value where it changes is found by
-        bisection.
+        Parameters
+        ----------
+        over : mapping of str to array_like of shape (k,)
+            One name to its values: a parameter, a start value ("x", "x'") or a multiplier ("mu0_1").
+        formulation : str
+            One of `FORMULATIONS`.
+        free : list of str, optional
+            Coordinates whose eigenvalues are wanted, with those of all that is coupled with them both ways; by
+            default all.
+        find : bool
+            About steady motions of Chetaev's equations near the starts.
+        removal : str, optional
+            A name in `System.removals`, "coordinates" or "quasi-velocities"; by default the first.
+        mu0 : array_like of shape (h,), optional
+            Start multipliers of the vakonomic formulations; by default those of the system.
+        constants : "zero", {"horizon": T} or array_like, optional
+            Free constants: zero, natural at time T, or their values.
+
+        Returns
+        -------
+        LinearizationSweep
+            A linearization per value, and the values at which stability changes, by bisection.
+
+        Raises
+        ------
+        ValueError
+            If `over` does not have one name.
+        SolveError
+            If a start is not a steady motion.
         """
     def prove(self, almost_every_start: bool = False) -> Proof:
-        """Proves that no multipliers mu0 make the vakonomic motion Chetaev's, from the start or from almost every one.
+        """Proves that no multipliers mu0 make the vakonomic motion Chetaev's.
 
+        Parameters
+        ----------
+        almost_every_start : bool
+            For almost every start instead of the system's own.
+
+        Returns
+        -------
+        Proof
+            The certificate, or why there is none.
+
+        Raises
+        ------
+        SolveError
+            If a motion has no start.
+
+        Examples
+        --------
         >>> sledge.prove().certificate["order"] >= 1
         True
         """
-    def integrals(self, formulation: str = "chetaev", degree: int = 2, names: Iterable[str] = ()) -> dict[str, Any]:
-        """Which invariant measure and first integrals there are: printed, counted, or proved to be none.
+    def integrals(self, formulation: str = "chetaev", degree: int = 2, names: Iterable[str] = ()) -> Integrals:
+        """Which invariant measure and first integrals there are: printed, counted, or proved not to exist.
 
-        formulation: its own equations are looked at in the ansatz; measures and numbers of integrals are answered for
-        "chetaev" alone.
-        degree: the highest one in the velocities, from 1 to 3.
-        names: coordinates that the functions of the ansatz contain; those in L and in the constraints if left out.
+        Parameters
+        ----------
+        formulation : str
+            Its own equations are used in the ansatz; measures and numbers of integrals are answered for "chetaev" alone.
+        degree : int
+            The highest degree in the velocities, from 1 to 3.
+        names : iterable of str
+            Coordinates that the functions of the ansatz contain; by default those in L and in the constraints.
 
-        As `deltaq integrals --format json` and its schema. Numbers count as they were written.
+        Returns
+        -------
+        Integrals
+            The answer of `deltaq integrals --format json`: as attributes, and as a mapping. Numbers count as they were written.
 
-        >>> sledge.integrals(degree=1)["polynomials"][0]["answer"]
+        Raises
+        ------
+        ValueError
+            If `degree` is not from 1 to 3.
+        UnknownNameError
+            If a name is unknown.
+
+        Examples
+        --------
+        >>> sledge.integrals(degree=1).polynomials[0].answer
         'local'
         """
     def fit(
@@ -291,15 +571,52 @@ class System:
     ) -> FilmFit:
         """Fits what is not known of the system to films of its motions, in each formulation: `deltaq fit`.
 
-        film: path of a CSV file, or a mapping (a dict, a DataFrame) with "t" and columns that are expressions by their names,
-        shape (k,) each; NaN for a gap. free: unknowns, "g", "x~0.1", "Omega~0.7±0.01", "x@2". sigma: standard deviation of all
-        columns, or by column. law: "eps", "slip". known: "psi'@2" to a number of one film. Else as in the command.
+        Parameters
+        ----------
+        film : path or table
+            A CSV file; or a mapping, a DataFrame, a Dataset of xarray, a table of Arrow or a Motion, with the time "t", as a
+            column or as the index, and columns that are expressions by their names; NaN for a gap. Multipliers and invariants of
+            a motion are not fitted.
+        *more : path or table
+            Further films.
+        free : iterable of str
+            Unknowns: "g", "x~0.1", "Omega~0.7±0.01", "x@2".
+        sigma : float, str or mapping of str to these, optional
+            Standard deviation of all columns, or by column: 1e-3, "1mm", "free".
+        law : iterable of str
+            Parameters of the first-order law to fit as well: "eps", "slip".
+        known : mapping of str to float, optional
+            Numbers of one film: "psi'@2".
+        formulations : iterable of str
+            Those to fit.
+        starts : int
+            Starts of the search.
+        robust : bool
+            Whether outliers count less.
+        tolerance : float
+            Tolerance of the looser run; the one that is kept has a hundredth of it.
+        max_steps : int
+            Limit on the steps of a run.
 
+        Returns
+        -------
+        FilmFit
+            A fit per formulation, with a verdict.
+
+        Raises
+        ------
+        ValueError
+            If a table cannot be read; it names the place.
+        UnknownNameError
+            If a name is unknown.
+
+        Examples
+        --------
         >>> import numpy as np
         >>> times = np.linspace(0.05, 2, 40)
         >>> motion = sledge.solve("chetaev", times)
         >>> noise = 1e-3 * np.random.default_rng(2).normal(size=(2, 40))
-        >>> film = {"t": times, "x": motion.coordinates[:, 0] + noise[0], "y": motion.coordinates[:, 1] + noise[1]}
+        >>> film = {"t": times, "x": motion["x"] + noise[0], "y": motion["y"] + noise[1]}
         >>> found = sledge.fit(film, free=["g", "phi'"], sigma=1e-3)
         >>> found["chetaev"].verdict, found["vakonomic"].verdict
         ('supported', 'excluded')
@@ -321,16 +638,58 @@ class System:
         tolerance: float = 1e-9,
         max_steps: int = 2_000,
         threads: int = 0,
-    ) -> dict[str, Any]:
-        """The film that would tell two formulations apart best, or show a number best: `deltaq design`, and its schema.
+    ) -> Design:
+        """The film that would tell two formulations apart best, or show a number best: `deltaq design`.
 
-        tell: the formulation that is right, and the other one. estimate: the number, in place of tell. film: "60Hz,0.5mm,10s".
-        over: what can be chosen, by name its bounds. free, sigma, law: as in `fit`.
+        Parameters
+        ----------
+        tell : sequence of two str, optional
+            The formulation that is right, and the other one.
+        film : str
+            Rate, error and length: "60Hz,0.5mm,10s".
+        estimate : str, optional
+            The number to show, instead of `tell`.
+        over : mapping of str to (float, float), optional
+            What can be chosen, with its bounds.
+        free : iterable of str
+            Unknowns, as in `fit`.
+        films : int
+            How many films of this kind.
+        columns : iterable of str
+            What a film shows; by default the coordinates.
+        sigma : float, str or mapping of str to these, optional
+            Standard deviation of all columns, or by column: 1e-3, "1mm", "free".
+        law : iterable of str
+            Parameters of the first-order law to fit as well: "eps", "slip".
+        starts : int
+            Starts of each fit.
+        points : int
+            Choices that are tried first.
+        tolerance : float
+            Tolerance of the looser run; the one that is kept has a hundredth of it.
+        max_steps : int
+            Limit on the steps of a run.
+        threads : int
+            0 for one per processor.
 
+        Returns
+        -------
+        Design
+            The answer of `deltaq design --format json`: as attributes, and as a mapping.
+
+        Raises
+        ------
+        ValueError
+            If neither or both of `tell` and `estimate` are given.
+        UnknownNameError
+            If a name is unknown.
+
+        Examples
+        --------
         >>> heisenberg = deltaq.built_in("heisenberg")
         >>> found = heisenberg.design(("vakonomic", "chetaev"), film="20Hz,1mm,1s", over={"mu0_1": (0.1, 1)}, free=["x'", "y'"], points=4)
-        >>> found["best"]["at"], found["best"]["value"] > 15
-        ([1.0], True)
+        >>> found.best.at, found.best.value > 15
+        ((1.0,), True)
         """
     def _fit(
         self,
@@ -382,12 +741,40 @@ class System:
     ) -> Connections:
         """The motions under a formulation that end at other coordinates: a two-point problem.
 
-        to: coordinates at the end, name to number, as many as there are unknowns: start velocities that the
-        constraints leave free, and free constants. at: time of the end; by default that of `duration`.
-        mu0, constants: a first guess. starts: from how many starts motions are searched. Else as in `solve`.
+        Parameters
+        ----------
+        to : mapping of str to float
+            Coordinates at the end, as many as there are unknowns: start velocities that the constraints leave free,
+            and free constants.
+        at : float, optional
+            Time of the end; by default that of `duration`.
+        formulation : str
+            One of `FORMULATIONS`.
+        removal : str, optional
+            A name in `System.removals`, "coordinates" or "quasi-velocities"; by default the first.
+        mu0 : array_like of shape (h,), optional
+            First guess of the start multipliers of the vakonomic formulations.
+        constants : "zero", {"horizon": T} or array_like, optional
+            First guess of the free constants: zero, natural at time T, or their values.
+        starts : int
+            From how many starts motions are searched.
+        tolerance : float
+            Tolerance of the looser run; the one that is kept has a hundredth of it.
+        threads : int
+            0 for one per processor.
 
-        BoundaryError where there are more or fewer coordinates than unknowns; no motion found is no error.
+        Returns
+        -------
+        Connections
+            The motions that were found; there may be none.
 
+        Raises
+        ------
+        BoundaryError
+            If there are more or fewer coordinates than unknowns.
+
+        Examples
+        --------
         >>> geodesics = deltaq.built_in("heisenberg").connect({"x": 0.2, "y": 0.5, "z": 0.3})
         >>> [shortest] = geodesics.motions
         >>> shortest.is_minimum, round(shortest.unknowns["mu0_1"], 9)
@@ -397,8 +784,8 @@ class System:
     def residuals(
         self,
         names: Sequence[str],
-        times: _Floats,
-        data: Mapping[str, _Floats],
+        times: Any = None,
+        data: Any = None,
         formulation: str = "chetaev",
         *,
         sigma: Mapping[str, float] | None = None,
@@ -410,26 +797,81 @@ class System:
         max_steps: int = 100_000,
         penalty: float = 1e6,
     ) -> Residuals:
-        """What a motion misses of data, as a function of numbers of the system that never raises: for
+        """Residuals between a motion and data, as a function of numbers of the system that never raises: for
         `scipy.optimize.least_squares`.
 
-        names: parameters, start values ("x", "x'"), multipliers ("mu0_1", ...) or costates ("P0_w") that are
-        to vary. times: of the data, shape (k,), ascending. data: name of a column, a coordinate, a velocity
-        ("x'") or a multiplier, to its values, shape (k,). sigma: name of a column to its unit, 1 by default.
-        constants: zero by default where the removal's are natural at a horizon. penalty: what
-        residuals are at times that a motion does not reach. Else as in `solve`, in one run.
+        Parameters
+        ----------
+        names : sequence of str
+            What varies: parameters, start values ("x", "x'"), multipliers ("mu0_1", ...) or costates ("P0_w").
+        times : array_like of shape (k,), or table, optional
+            Times of the data, ascending; without `data` the table, which has them.
+        data : mapping of str to array_like of shape (k,), or table, optional
+            Values by the name of a coordinate, a velocity ("x'") or a multiplier. A DataFrame, a Dataset of xarray, a table of
+            Arrow or a Motion may have the time as column or index "t"; invariants and observables of a motion are left out.
+        formulation : str
+            One of `FORMULATIONS`.
+        sigma : mapping of str to float, optional
+            Columns to their units, 1 by default.
+        removal : str, optional
+            A name in `System.removals`, "coordinates" or "quasi-velocities"; by default the first.
+        mu0 : array_like of shape (h,), optional
+            Start multipliers of the vakonomic formulations; by default those of the system.
+        constants : "zero", {"horizon": T} or array_like, optional
+            Free constants: zero, natural at time T, or their values; zero by default
+            instead of natural.
+        method : str
+            One of `METHODS`, or "auto".
+        tolerance : float
+            Tolerance of the run.
+        max_steps : int
+            Limit on the steps of a run.
+        penalty : float
+            Residuals at times that a motion does not reach.
 
+        Returns
+        -------
+        Residuals
+            A function of the numbers, with exact derivatives.
+
+        Raises
+        ------
+        ValueError
+            If a column has another length than the times, or a value that is not finite.
+        UnknownNameError
+            If a name is unknown.
+
+        Examples
+        --------
         >>> times = [0.5, 1.0]
         >>> miss = sledge.residuals(["phi'"], times, {"phi": [0.6, 1.2]}, sigma={"phi": 0.1})
         >>> miss([1.0]).round(9), miss.jac([1.0]).round(9).tolist()
         (array([-1., -2.]), [[5.0], [10.0]])
         """
 
+    def _residuals(
+        self,
+        names: Sequence[str],
+        times: _Floats,
+        data: Mapping[str, _Floats],
+        formulation: str,
+        *,
+        sigma: Mapping[str, float] | None = None,
+        removal: str | None = None,
+        mu0: _Floats | None = None,
+        constants: _Constants | None = None,
+        method: str = "auto",
+        tolerance: float = 1e-11,
+        max_steps: int = 100_000,
+        penalty: float = 1e6,
+    ) -> Residuals: ...
     def solve(
         self,
         formulation: str = "chetaev",
         times: _Floats | None = None,
         *,
+        parameters: Mapping[str, float] | None = None,
+        start: Mapping[str, float] | None = None,
         removal: str | None = None,
         mu0: _Floats | None = None,
         constants: _Constants | None = None,
@@ -442,28 +884,68 @@ class System:
         time_limit: float | None = None,
         sensitivities: Sequence[str] | None = None,
     ) -> Motion:
-        """Derives and integrates the motion under a formulation, one of FORMULATIONS.
+        """Derives and integrates the motion under a formulation.
 
-        times: where it is read off, shape (k,), ascending, to the last. By default 101 over `duration`.
-        removal: a name in `removals`, "coordinates" or "quasi-velocities"; by default the first.
-        mu0: start multipliers of the vakonomic formulations, shape (h,). By default those of the system.
-        constants: free constants, "zero", {"horizon": T} (natural at T) or an array. By default those of the
-        removal or of the system.
-        form: of the equations, "multipliers", "costates", "quasi-velocities" or auto, which suits the system.
-        method: one of METHODS, or auto, which suits the motion. tolerance: of the looser run; the one that is
-        kept has a hundredth of it.
-        project: move velocities onto the constraint after every step. max_steps, time_limit: limits on the
-        steps of a run and on its seconds, after which it stops. max_step: no step is longer.
-        sensitivities: names of parameters, start values ("x", "x'"), multipliers ("mu0_1", ...) or costates
-        ("P0_w") by which all is derived: `Motion.sensitivities`.
+        Other threads go on; Ctrl-C ends it.
 
-        Other threads go on; Ctrl-C ends it. SolveError without a motion; `status` says if it stops early.
+        Parameters
+        ----------
+        formulation : str
+            One of `FORMULATIONS`.
+        times : float or array_like of shape (k,), optional
+            Where the motion is read off, ascending, to the last; by default at 101 over `duration`. One time as a number leaves out the axis of times.
+        parameters : mapping of str to float, optional
+            Parameters for this call; `Motion.system` has them.
+        start : mapping of str to float, optional
+            Coordinates and velocities ("x", "x'") at the start for this call; `Motion.system` has them.
+        removal : str, optional
+            A name in `System.removals`, "coordinates" or "quasi-velocities"; by default the first.
+        mu0 : array_like of shape (h,), optional
+            Start multipliers of the vakonomic formulations; by default those of the system.
+        constants : "zero", {"horizon": T} or array_like, optional
+            Free constants: zero, natural at time T, or their values; by default those of
+            the removal or of the system.
+        form : str
+            Of the equations: "multipliers", "costates", "quasi-velocities", or "auto", which suits the system.
+        method : str
+            One of `METHODS`, or "auto", which suits the motion.
+        tolerance : float
+            Tolerance of the looser run; the one that is kept has a hundredth of it.
+        project : bool
+            Whether velocities are projected onto the constraints after every step.
+        max_steps : int
+            Limit on the steps of a run.
+        max_step : float, optional
+            No step is longer.
+        time_limit : float, optional
+            Limit on the seconds of a run.
+        sensitivities : sequence of str, optional
+            Parameters, start values ("x", "x'"), multipliers ("mu0_1", ...) or costates ("P0_w") by which all is
+            derived: `Motion.sensitivities`.
 
+        Returns
+        -------
+        Motion
+            The motion; `status` tells if it stops early.
+
+        Raises
+        ------
+        SolveError
+            If there is no motion.
+        UnknownNameError
+            If a name is unknown.
+        ValueError
+            If times do not ascend, or begin before the start.
+
+        Examples
+        --------
         >>> motion = sledge.solve("chetaev", [0.0, 0.5, 1.0])
-        >>> motion.coordinates[:, 2].round(9)
+        >>> motion["phi"].round(9)
         array([0. , 0.5, 1. ])
         >>> motion.status, motion.error_estimate < 1e-9
         ('completed', True)
+        >>> sledge.solve("chetaev", 1.0, start={"phi'": 2}).coordinates[2].round(9)
+        np.float64(2.0)
         """
     def ensemble(
         self,
@@ -484,30 +966,103 @@ class System:
     ) -> Ensemble:
         """Integrates many motions at once, by Taylor series, under a formulation: starts or parameters differ.
 
-        vary: name to array, shape (m,): parameters, start values ("x", "x'"), multipliers ("mu0_1", ...).
-        times: where they are read off, shape (k,), ascending, to the last. By default the end of `duration`.
-        threads: 0 for one per processor; results do not depend on it. estimate: whether each member is run
-        twice, as in `solve`, or once and without an error estimate. Else as in `solve`, constants for all,
-        and time_limit for one run of 4096 members.
+        Ctrl-C ends it, as in `solve`.
 
-        A member that cannot start or that stops is in the answer with its cause. Ctrl-C as in `solve`.
+        Parameters
+        ----------
+        formulation : str
+            One of `FORMULATIONS`.
+        times : float or array_like of shape (k,), optional
+            Where the members are read off, ascending, to the last; by default at the end of `duration`. One time as a number leaves out the axis of times.
+        vary : mapping of str to array_like of shape (m,)
+            Parameters, start values ("x", "x'") or multipliers ("mu0_1", ...).
+        removal : str, optional
+            A name in `System.removals`, "coordinates" or "quasi-velocities"; by default the first.
+        mu0 : array_like of shape (h,), optional
+            Start multipliers of the vakonomic formulations; by default those of the system.
+        constants : "zero", {"horizon": T} or array_like, optional
+            Free constants: zero, natural at time T, or their values, for all members.
+        tolerance : float
+            Tolerance of the looser run; the one that is kept has a hundredth of it.
+        project : bool
+            Whether velocities are projected onto the constraints after every step.
+        max_steps : int
+            Limit on the steps of a run.
+        max_step : float, optional
+            No step is longer.
+        time_limit : float, optional
+            Limit on the seconds of a run of 4096 members.
+        threads : int
+            0 for one per processor; results do not depend on it.
+        estimate : bool
+            Whether each member is run twice, as in `solve`, or once and without an error estimate.
 
-        >>> sledge.ensemble("chetaev", [1.0], vary={"phi'": [0.5, 1.0]}).coordinates[:, 0, 2].round(9)
+        Returns
+        -------
+        Ensemble
+            All members; one that cannot start, or that stops, has its cause.
+
+        Raises
+        ------
+        ValueError
+            If `vary` is empty or has arrays of different lengths.
+        UnknownNameError
+            If a name is unknown.
+
+        Examples
+        --------
+        >>> sledge.ensemble("chetaev", 1.0, vary={"phi'": [0.5, 1.0]})["phi"].round(9)
         array([0.5, 1. ])
         """
     def compare(
         self,
+        formulations: list[str] | None = None,
         *,
+        extent: Literal["answer", "everything", "gaps"] = "answer",
+        decision: bool = True,
+        fits: Literal["undecided", "all", "none"] = "undecided",
         tolerance: float = 1e-11,
         max_steps: int = 1_000_000,
         max_step: float | None = None,
         time_limit: float | None = None,
-        fits: Literal["undecided", "all", "none"] = "undecided",
     ) -> Comparison:
-        """Compares the motions of all formulations pair by pair; tolerance, max_steps, max_step and time_limit
-        as in `solve`. fits: free constants are fitted where nothing is decided ("undecided"), always ("all"),
-        which takes most of the time, or never ("none").
+        """Compares the motions of all formulations pair by pair: `deltaq compare`.
 
+        Parameters
+        ----------
+        formulations : list of str, optional
+            Those to compare; by default all.
+        extent : {"answer", "everything", "gaps"}
+            What is computed in addition to the gaps: the growth of the gap between Chetaev's and the vakonomic motion,
+            and whether some mu0 makes the second the first ("answer", which is what the command prints); the same of
+            all pairs and families ("everything"); or nothing ("gaps").
+        decision : bool
+            Whether it is decided which families have which motions.
+        fits : {"undecided", "all", "none"}
+            Whether free constants are fitted if nothing is decided, always (which takes most of the time), or never.
+        tolerance : float
+            Tolerance of the looser run; the one that is kept has a hundredth of it.
+        max_steps : int
+            Limit on the steps of a run.
+        max_step : float, optional
+            No step is longer.
+        time_limit : float, optional
+            Limit on the seconds of a run.
+
+        Returns
+        -------
+        Comparison
+            Motions, pairs, decisions and fits.
+
+        Raises
+        ------
+        SolveError
+            If the constraints are dependent at the start.
+        UnknownNameError
+            If a name is unknown.
+
+        Examples
+        --------
         >>> comparison = sledge.compare()
         >>> comparison.verdict("chetaev", "vakonomic")
         'different'
@@ -519,6 +1074,7 @@ class System:
         names: list[str],
         values: _Floats,
         formulations: list[str] | None,
+        decision: bool,
         tolerance: float,
         max_steps: int,
         max_step: float | None,
@@ -527,6 +1083,8 @@ class System:
     ) -> dict[str, list[Any]]: ...
     def _moving(self, curves: list[tuple[str, str, _Floats, _Floats]]) -> str | None: ...
     def __reduce__(self) -> tuple[Any, tuple[str, str, list[tuple[str, float]]]]: ...
+    def __eq__(self, other: object, /) -> bool: ...
+    def __hash__(self) -> int: ...
     def _repr_latex_(self) -> str: ...
 
 @final
@@ -542,6 +1100,7 @@ class Outputs:
     """Quantities that should stay constant by name, each a float or of shape (k,)."""
     observables: Final[dict[str, Any]]
     """Observables of the system by name, each a float or of shape (k,)."""
+    def __reduce__(self) -> tuple[Any, tuple[str, dict[str, Any]]]: ...
 
 @final
 class Equations:
@@ -558,46 +1117,203 @@ class Equations:
     """Names of the states y, length m."""
     constants: Final[list[str]]
     """Names of the free constants."""
+    parameters: Final[dict[str, float]]
+    """Values of the parameters of the system, by name: those that `rates`, `jacobian` and `integrate` take."""
     text: Final[str]
     """The equations and what was left out of them, in the language of scenes."""
     latex: Final[str]
     """The equations in LaTeX: one `aligned` environment."""
     def to_c(self) -> str:
-        """A file of C99: functions for rates and outputs without allocation, the start, the parameters.
+        """The equations as a file of C99: rates and outputs without allocation, the start, the parameters.
 
-        SolveError where unknowns of the instant are not found by linear equations; so in all three languages.
+        Returns
+        -------
+        str
+            The file.
+
+        Raises
+        ------
+        SolveError
+            If unknowns of the instant are not found by linear equations.
         """
     def to_numpy(self) -> str:
-        """A module of Python: rates(t, y) and outputs(t, y) in NumPy, for one state or many at once."""
-    def to_sympy(self) -> str:
-        """A module of Python: RATES, OUTPUTS, MATRIX and RIGHT as matrices of SymPy in STATES and UNKNOWNS."""
-    def initial_state(self, constants: _Constants | None = None) -> _Array:
-        """The state y(t0) that belongs to the start of the system, shape (m,).
+        """The equations as a module of Python: rates and outputs in NumPy, for one state or many at once.
 
-        constants: the free constants, "zero", {"horizon": T} (natural at T) or an array; default: as derived.
+        Returns
+        -------
+        str
+            The module.
+
+        Raises
+        ------
+        SolveError
+            If unknowns of the instant are not found by linear equations.
+        """
+    def to_jax(self) -> str:
+        """The module of `to_numpy` for JAX: jit, grad and vmap go through rates and outputs.
+
+        Returns
+        -------
+        str
+            The module.
+
+        Raises
+        ------
+        SolveError
+            If unknowns of the instant are not found by linear equations.
+        """
+    def to_numba(self) -> str:
+        """The equations as a module of Python: rates and outputs for one state, compiled by Numba.
+
+        Returns
+        -------
+        str
+            The module.
+
+        Raises
+        ------
+        SolveError
+            If unknowns of the instant are not found by linear equations.
+        """
+    def to_sympy(self) -> str:
+        """The equations as a module of Python: RATES, OUTPUTS, MATRIX, RIGHT as matrices of SymPy.
+
+        Returns
+        -------
+        str
+            The module.
+
+        Raises
+        ------
+        SolveError
+            If unknowns of the instant are not found by linear equations.
+        """
+    def initial_state(self, constants: _Constants | None = None) -> _Array:
+        """The state y(t0) that belongs to the start of the system.
+
+        Parameters
+        ----------
+        constants : "zero", {"horizon": T} or array_like, optional
+            Free constants: zero, natural at time T, or their values; by default as derived.
+
+        Returns
+        -------
+        ndarray of shape (m,)
+            The state.
+
+        Raises
+        ------
+        BoundaryError
+            If no constants meet the condition at the horizon.
         """
     def rates(self, t: _Floats, y: _Floats, parameters: Mapping[str, float] | None = None) -> _Array:
-        """Rates y' = F(t, y), of the shape of y.
+        """Rates y' = F(t, y).
 
-        parameters: name to number, for this call. Its first use compiles equations that have parameters of
-        these names as inputs; from then on a call costs the evaluation.
+        Parameters
+        ----------
+        t : float or array_like of shape (k,)
+            Times.
+        y : array_like of shape (m,) or (k, m)
+            States.
+        parameters : mapping of str to float, optional
+            Parameters for this call. The first use of some names compiles equations that have them as inputs; then a
+            call costs the evaluation.
+
+        Returns
+        -------
+        ndarray of the shape of y
+            The rates.
+
+        Raises
+        ------
+        EvaluationError
+            If the equations cannot be evaluated there.
+        UnknownNameError
+            If a parameter is unknown.
+        ValueError
+            If a shape is wrong, or a number not finite.
         """
     def jacobian(self, t: _Floats, y: _Floats, parameters: Mapping[str, float] | None = None) -> _Array:
-        """The exact Jacobian dF/dy, shape (m, m) or (k, m, m): [i, j] is the derivative of rate i by state j.
-        parameters: as in `rates`.
+        """The exact Jacobian dF/dy.
+
+        Parameters
+        ----------
+        t : float or array_like of shape (k,)
+            Times.
+        y : array_like of shape (m,) or (k, m)
+            States.
+        parameters : mapping of str to float, optional
+            Parameters for this call. The first use of some names compiles equations that have them as inputs; then a
+            call costs the evaluation.
+
+        Returns
+        -------
+        ndarray of shape (m, m) or (k, m, m)
+            [i, j] is the derivative of rate i by state j.
+
+        Raises
+        ------
+        EvaluationError
+            If the equations cannot be evaluated there.
+        UnknownNameError
+            If a parameter is unknown.
+        ValueError
+            If a shape is wrong, or a number not finite.
         """
     def outputs(self, t: _Floats, y: _Floats) -> Outputs:
-        """Coordinates, velocities, multipliers and invariants at (t, y)."""
-    def acceleration(self, t: float, q: _Floats, v: _Floats, mu: _Floats | None = None) -> _Array:
-        """Accelerations q'' at one point, shape (n,): t a number, q and v of shape (n,).
+        """Coordinates, velocities, multipliers and invariants at (t, y).
 
-        The vakonomic formulation also needs mu, shape (h,). ValueError where the states are others.
+        Parameters
+        ----------
+        t : float or array_like of shape (k,)
+            Times.
+        y : array_like of shape (m,) or (k, m)
+            States.
+
+        Returns
+        -------
+        Outputs
+            What is read off.
+
+        Raises
+        ------
+        EvaluationError
+            If the equations cannot be evaluated there.
+        ValueError
+            If a shape is wrong, or a number not finite.
+        """
+    def acceleration(self, t: float, q: _Floats, v: _Floats, mu: _Floats | None = None) -> _Array:
+        """Accelerations q'' at one point.
+
+        Parameters
+        ----------
+        t : float
+            Time.
+        q : array_like of shape (n,)
+            Coordinates.
+        v : array_like of shape (n,)
+            Velocities.
+        mu : array_like of shape (h,), optional
+            Multipliers, which the vakonomic formulation needs.
+
+        Returns
+        -------
+        ndarray of shape (n,)
+            The accelerations.
+
+        Raises
+        ------
+        ValueError
+            If the states are not coordinates, velocities and mu.
+        EvaluationError
+            If the equations cannot be evaluated there.
         """
     def integrate(
         self,
         times: _Floats,
         *,
         y0: _Floats | None = None,
+        t0: float | None = None,
         parameters: Mapping[str, float] | None = None,
         constants: _Constants | None = None,
         mu0: _Floats | None = None,
@@ -608,17 +1324,114 @@ class Equations:
         max_step: float | None = None,
         time_limit: float | None = None,
     ) -> Trajectory:
-        """One run of the time loop from the start of the system to the last of `times`, shape (k,), in ascending
-        order: half of what `System.solve` does, for those who know the error from elsewhere.
+        """One run of the time loop: half of what `System.solve` does, for those who know the error from elsewhere.
 
-        y0: the state to start from, shape (m,). parameters: name to number, for this run; without y0 the
-        start follows, as of `System.replace`. constants, mu0: the free constants of this run, as in
-        `solve`. The first use of parameters of some names compiles equations that have them as inputs; then
-        a call costs the run. method: one of METHODS; its first run compiles what it needs. tolerance:
-        relative and absolute. project, max_steps, max_step, time_limit: as in `System.solve`. For the start
-        and the last time alone nothing else is kept.
+        Other threads go on; Ctrl-C ends it. For the start and the last time alone nothing else is kept.
 
-        Other threads go on; Ctrl-C ends it. SolveError without a run; `status` says if it stops early.
+        Parameters
+        ----------
+        times : float or array_like of shape (k,)
+            Where the run is read off, ascending, to the last. One time as a number leaves out the axis of times.
+        y0 : array_like of shape (m,), optional
+            The state at the first of `times`, as in SciPy, or at `t0`. Without it a run starts with the system.
+        t0 : float, optional
+            Time of y0, if that is not the first of `times`.
+        parameters : mapping of str to float, optional
+            Parameters for this call. The first use of some names compiles equations that have them as inputs; then a
+            call costs the run. Without y0 the start follows, as in `System.replace`.
+        constants : "zero", {"horizon": T} or array_like, optional
+            Free constants: zero, natural at time T, or their values.
+        mu0 : array_like of shape (h,), optional
+            Start multipliers of the vakonomic formulations; by default those of the system.
+        method : str
+            One of `METHODS`, or "auto"; its first run compiles what it needs.
+        tolerance : float
+            Relative and absolute tolerance.
+        project : bool
+            Whether velocities are projected onto the constraints after every step.
+        max_steps : int
+            Limit on the steps of a run.
+        max_step : float, optional
+            No step is longer.
+        time_limit : float, optional
+            Limit on the seconds of a run.
+
+        Returns
+        -------
+        Trajectory
+            States at the times; `status` tells if the run stops early.
+
+        Raises
+        ------
+        SolveError
+            If there is no run.
+        UnknownNameError
+            If a parameter is unknown.
+        ValueError
+            If times do not ascend, begin before t0, or end at t0.
+
+        Examples
+        --------
+        >>> equations = sledge.equations("chetaev")
+        >>> whole = equations.integrate([0.0, 0.5, 1.0])
+        >>> rest = equations.integrate([0.5, 1.0], y0=whole.states[1])
+        >>> abs(rest.states[-1] - whole.states[-1]).max() < 1e-10
+        np.True_
+        """
+    def functions(self, module: Literal["numpy", "jax", "numba"] = "numpy") -> Functions:
+        """The equations as functions of Python, which other libraries can trace or compile.
+
+        Parameters
+        ----------
+        module : {"numpy", "jax", "numba"}
+            Whose arrays the functions take; JAX and Numba have to be installed.
+
+        Returns
+        -------
+        Functions
+            `rates(t, y, parameters)`, `outputs(t, y, parameters)`, and what these start from.
+
+        Raises
+        ------
+        ImportError
+            If the module is not installed.
+        SolveError
+            If unknowns of the instant are not found by linear equations.
+
+        Examples
+        --------
+        >>> equations = sledge.equations("chetaev")
+        >>> made = equations.functions()
+        >>> made.rates(0.0, made.start, made.parameters | {"g": 1.6})[:3]
+        array([0., 0., 1.])
+        """
+    def to_scipy(
+        self, parameters: Mapping[str, float] | None = None
+    ) -> tuple[Callable[[float, _Floats], _Array], Callable[[float, _Floats], _Array]]:
+        """The pair (fun, jac) that `scipy.integrate.solve_ivp` takes: rates and their exact Jacobian.
+
+        Parameters
+        ----------
+        parameters : mapping of str to float, optional
+            Parameters with other values, by name.
+
+        Returns
+        -------
+        fun : callable
+            fun(t, y), the rates, shape (m,).
+        jac : callable
+            jac(t, y), their derivatives by the state, shape (m, m).
+
+        Raises
+        ------
+        UnknownNameError
+            At the first call, if a parameter is unknown.
+
+        Examples
+        --------
+        >>> fun, jac = sledge.equations("chetaev").to_scipy({"g": 1.6})
+        >>> jac(0.0, sledge.equations("chetaev").initial_state()).shape
+        (6, 6)
         """
     def _repr_latex_(self) -> str: ...
 
@@ -777,7 +1590,23 @@ class Residuals:
     """Why the motion of the last call ended before the last time; None where it did not."""
     def __call__(self, p: _Floats) -> _Array: ...
     def jac(self, p: _Floats) -> _Array:
-        """Their exact derivatives by p, shape (columns times k, P), finite whatever p is."""
+        """The exact derivatives of the residuals by p, finite whatever p is.
+
+        Parameters
+        ----------
+        p : array_like of shape (P,)
+            The numbers.
+
+        Returns
+        -------
+        ndarray of shape (columns times k, P)
+            The derivatives.
+
+        Raises
+        ------
+        ValueError
+            If p has another length.
+        """
     def __len__(self) -> int: ...
 
 @final
@@ -828,7 +1657,9 @@ class Motion:
     removal: Final[str | None]
     """Name of the removal, None where the formulation needs none."""
     times: Final[_Array]
-    """Times, shape (k,), in the unit of time of the system."""
+    """Times, shape (k,), in the unit of time of the system. If one time was asked for as a number, all arrays
+    lack this axis.
+    """
     reached: Final[int]
     """How many of the times it reached."""
     coordinate_names: Final[list[str]]
@@ -885,25 +1716,103 @@ class Motion:
     """What the projections moved: count, largest, total (Euclidean lengths of changes of the velocities)."""
     seconds: Final[dict[str, float]]
     """Wall-clock seconds: derive, compile, integrate."""
+    def __len__(self) -> int: ...
+    def __iter__(self) -> Iterator[State]: ...
+    def __contains__(self, name: object) -> bool: ...
+    @overload
+    def __getitem__(self, key: str) -> _Array: ...
+    @overload
+    def __getitem__(self, key: slice) -> Motion: ...
+    def __reduce__(self) -> tuple[Any, tuple[str, dict[str, Any]]]: ...
+    def _with(self, state: dict[str, Any]) -> Motion: ...
     def at(self, t: _Floats) -> Outputs:
         """Everything at time t, read off the dense output (order 7 for dop853).
 
-        t is a number or of shape (k,), from start to end, where its last digit does not count; ValueError
-        elsewhere.
+        Parameters
+        ----------
+        t : float or array_like of shape (k,)
+            From `start` to `end`, where its last digit does not count.
+
+        Returns
+        -------
+        Outputs
+            What is read off.
+
+        Raises
+        ------
+        ValueError
+            If a time is outside of the motion.
         """
     def to_arrow(self) -> Any:
-        """A pyarrow.Table, one row per time: t, coordinates, velocities (x'), multipliers, invariants, observables.
+        """The motion as a table, one row per time: t, coordinates, velocities (x'), multipliers, invariants, observables.
 
-        What the motion did not reach is null; units are in the metadata of the columns.
+        Returns
+        -------
+        pyarrow.Table
+            What the motion did not reach is null; units are in the metadata of the columns.
+
+        Raises
+        ------
+        ImportError
+            If pyarrow is not installed.
         """
     def to_pandas(self) -> Any:
-        """A pandas.DataFrame with the columns of `to_arrow`; t is the index."""
+        """The motion as a DataFrame with the columns of `to_arrow`; t is the index.
+
+        Returns
+        -------
+        pandas.DataFrame
+            One row per time.
+
+        Raises
+        ------
+        ImportError
+            If pandas is not installed.
+        """
     def to_xarray(self) -> Any:
-        """An xarray.Dataset over t with the columns of `to_arrow`; units are attributes."""
+        """The motion as a Dataset over t with the columns of `to_arrow`.
+
+        Returns
+        -------
+        xarray.Dataset
+            Units are attributes.
+
+        Raises
+        ------
+        ImportError
+            If xarray is not installed.
+        """
     def plot(self, ax: Any = None) -> Any:
-        """Coordinates over time, one above the other, by matplotlib; a Figure. ax: n axes to draw into."""
+        """Coordinates over time, one above the other, by matplotlib.
+
+        Parameters
+        ----------
+        ax : matplotlib Axes or array of these, optional
+            n axes to draw into.
+
+        Returns
+        -------
+        matplotlib.figure.Figure
+            The picture.
+
+        Raises
+        ------
+        ImportError
+            If matplotlib is not installed.
+        """
     def animate(self) -> Any:
-        """The bodies of the system's view along the motion, as a picture that plays by itself."""
+        """The bodies of the system's view along the motion, as a picture that plays by itself.
+
+        Returns
+        -------
+        Animation
+            An SVG, which notebooks show.
+
+        Raises
+        ------
+        ValueError
+            If the system has no view.
+        """
     def _repr_html_(self) -> str: ...
 
 @final
@@ -950,24 +1859,85 @@ class Ensemble:
     seconds: Final[float]
     """Wall-clock seconds of the integration of all members."""
     def to_arrow(self, first: int = 0) -> Any:
-        """A pyarrow.Table, one row per member and time: member (its place in the arrays, from `first` on), what varies
-        ("set x"), t, coordinates, velocities (x'), multipliers, invariants, error_estimate, status, cause. What a member
-        did not reach is null; units are in the metadata of the columns.
+        """The members as a table, one row per member and time: member, what varies ("set x"), t, coordinates, velocities (x'),
+        multipliers, invariants, error_estimate, status, cause.
+
+        Parameters
+        ----------
+        first : int
+            Number of the first member.
+
+        Returns
+        -------
+        pyarrow.Table
+            What a member did not reach is null; units are in the metadata of the columns.
+
+        Raises
+        ------
+        ImportError
+            If pyarrow is not installed.
         """
     def to_pandas(self) -> Any:
-        """A pandas.DataFrame with the columns of `to_arrow`."""
+        """The members as a DataFrame with the columns of `to_arrow`.
+
+        Returns
+        -------
+        pandas.DataFrame
+            One row per member and time.
+
+        Raises
+        ------
+        ImportError
+            If pandas is not installed.
+        """
     def to_xarray(self) -> Any:
-        """An xarray.Dataset over member, from 0, and t; what varies ("set x"), status and error_estimate over member.
+        """The members as a Dataset over member, from 0, and t; what varies ("set x"), status and error_estimate over member.
+
+        Returns
+        -------
+        xarray.Dataset
+            Units are attributes.
+
+        Raises
+        ------
+        ImportError
+            If xarray is not installed.
         """
     def plot(self, ax: Any = None) -> Any:
-        """Coordinates of the members over time, one above the other; a Figure. ax: n axes to draw into.
+        """Coordinates of the members over time, one above the other; if they were read off at one time, over what varies first.
 
-        Of an ensemble that was read off at one time, over what varies first.
+        Parameters
+        ----------
+        ax : matplotlib Axes or array of these, optional
+            n axes to draw into.
+
+        Returns
+        -------
+        matplotlib.figure.Figure
+            The picture.
+
+        Raises
+        ------
+        ImportError
+            If matplotlib is not installed.
         """
     def animate(self) -> Any:
-        """The bodies of the system's view along eight of the members, straight between the ensemble's times."""
+        """The bodies of the system's view along eight of the members, straight between the ensemble's times.
+
+        Returns
+        -------
+        Animation
+            An SVG, which notebooks show.
+
+        Raises
+        ------
+        ValueError
+            If the system has no view.
+        """
     def _repr_html_(self) -> str: ...
     def __len__(self) -> int: ...
+    def __contains__(self, name: object) -> bool: ...
+    def __getitem__(self, name: str) -> _Array: ...
 
 @final
 class Growth:
@@ -1077,7 +2047,9 @@ class Decided:
 class Run:
     """One formulation with all choices made, and what became of it."""
     label: Final[str]
-    """Label: the formulation, and the removal where there are several."""
+    """Its identifier: the name of the formulation, and of its removal: "removed-constraint:arc-length"."""
+    title: Final[str]
+    """The same in words, for people."""
     formulation: Final[str]
     """Name of the formulation."""
     removal: Final[str | None]
@@ -1105,20 +2077,87 @@ class Comparison:
     contradictions: Final[list[str]]
     """Results that exclude each other, in words: none, unless the program is wrong."""
     def pair(self, a: str, b: str) -> Pair:
-        """The pair of two runs, in either order, named by label, or by formulation for the first of its kind.
+        """The pair of two runs, in either order.
 
-        UnknownNameError where there is no such run, KeyError where the two were not compared.
+        Parameters
+        ----------
+        a, b : str
+            Labels, titles, or formulations for the first run of each.
+
+        Returns
+        -------
+        Pair
+            The pair.
+
+        Raises
+        ------
+        UnknownNameError
+            If there is no such run.
+        KeyError
+            If the two were not compared.
         """
     def verdict(self, a: str, b: str) -> _Verdict:
-        """"same", "different" or "undecided" for two runs, named as in `pair`."""
-    def to_pandas(self) -> Any:
-        """A pandas.DataFrame, a row a pair: verdict, times to the thresholds, largest gap, growth, why not."""
-    def plot(self, ax: Any = None) -> Any:
-        """Coordinates of all motions over time, then the gaps of the pairs with what they have to pass; a Figure.
+        """The verdict on two runs.
 
-        ax: n + 1 axes to draw into.
+        Parameters
+        ----------
+        a, b : str
+            Named as in `pair`.
+
+        Returns
+        -------
+        str
+            "same", "different" or "undecided".
+
+        Raises
+        ------
+        UnknownNameError
+            If there is no such run.
+        KeyError
+            If the two were not compared.
+        """
+    def to_pandas(self) -> Any:
+        """The pairs as a DataFrame: verdict, times to the thresholds, largest gap, growth, why not.
+
+        Returns
+        -------
+        pandas.DataFrame
+            One row per pair.
+
+        Raises
+        ------
+        ImportError
+            If pandas is not installed.
+        """
+    def plot(self, ax: Any = None) -> Any:
+        """Coordinates of all motions over time, then the gaps of the pairs with their limits.
+
+        Parameters
+        ----------
+        ax : matplotlib Axes or array of these, optional
+            n + 1 axes to draw into.
+
+        Returns
+        -------
+        matplotlib.figure.Figure
+            The picture.
+
+        Raises
+        ------
+        ImportError
+            If matplotlib is not installed.
         """
     def animate(self) -> Any:
         """The bodies of the system's view along the first motion of each formulation, in one picture that plays by itself.
+
+        Returns
+        -------
+        Animation
+            An SVG, which notebooks show.
+
+        Raises
+        ------
+        ValueError
+            If the system has no view.
         """
     def _repr_html_(self) -> str: ...

@@ -4,6 +4,8 @@ from importlib import import_module
 from typing import Any
 
 _EXTRAS = {"pyarrow": "tables", "pandas": "tables", "xarray": "tables", "matplotlib": "plot", "distributed": "cluster"}
+# What no extra brings.
+_OTHERS = {"jax", "numba"}
 
 
 def needed(name: str) -> Any:
@@ -14,5 +16,6 @@ def needed(name: str) -> Any:
         package = name.partition(".")[0]
         if (missing.name or "").partition(".")[0] != package:
             raise
-        extra = f"the extra [{_EXTRAS[package]}] of deltaq brings it, or: pip install {package}"
+        of_ours = f"the extra [{_EXTRAS.get(package)}] of deltaq brings it, or: "
+        extra = ("" if package in _OTHERS else of_ours) + f"pip install {package}"
         raise ImportError(f"this needs {package}, which is not there: {extra}", name=package) from None

@@ -3,6 +3,7 @@
 from html import escape
 from typing import Any
 
+from ._motion import rows, times
 from ._native import Comparison, Ensemble, Motion
 
 
@@ -15,15 +16,15 @@ def _table(rows: list[list[Any]], head: list[str] | None = None) -> str:
 
 def motion(self: Motion) -> str:
     method = "" if self.method is None else self.method[0]
-    rows = [
+    shown = [
         ["formulation", self.formulation],
         ["form, method", f"{self.form[0]}, {method}"],
         ["time", f"{self.start:g} to {self.end:g}"],
         ["status", self.status if self.cause is None else f"{self.status}: {self.cause}"],
         ["error estimate", f"{self.error_estimate:.1e}"],
     ]
-    rows += [[name, f"{values[self.reached - 1]:.9g} at t = {self.times[self.reached - 1]:g}"] for name, values in zip(self.coordinate_names, self.coordinates.T) if self.reached]
-    return _table(rows)
+    shown += [[name, f"{rows(self)[name][self.reached - 1]:.9g} at t = {times(self)[self.reached - 1]:g}"] for name in self.coordinate_names if self.reached]
+    return _table(shown)
 
 
 def ensemble(self: Ensemble) -> str:
@@ -42,7 +43,7 @@ def comparison(self: Comparison) -> str:
         [f"Is {d.motion} one of {d.family}, for some constants?", d.answer + (", proved" if d.proved else ""), d.dimension]
         for d in self.decided
     ]
-    runs = [[run.label, run.error] for run in self.runs if run.error is not None]
+    runs = [[run.title, run.error] for run in self.runs if run.error is not None]
     parts = [f"<p><strong>No verdict, results contradict each other: {escape(found)}</strong></p>" for found in self.contradictions]
     parts += [f"<p>The constraints: {escape(self.integrability)}</p>"]
     parts += [_table(pairs, ["motion", "motion", "verdict", "time to 1e-3", "largest gap"])] if pairs else []

@@ -4,6 +4,7 @@ from typing import Any
 
 import numpy as np
 
+from ._motion import rows, times
 from ._native import Comparison, Ensemble, Motion, UnknownNameError
 from ._needs import needed
 from ._tables import units
@@ -51,29 +52,58 @@ def _finished(axes: Any, units: dict[str, str]) -> Any:
 
 
 def motion(self: Motion, ax: Any = None) -> Any:
-    """Coordinates over time, one above the other, by matplotlib; a Figure. ax: n axes to draw into."""
+    """Coordinates over time, one above the other, by matplotlib.
+
+    Parameters
+    ----------
+    ax : matplotlib Axes or array of these, optional
+        n axes to draw into.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        The picture.
+
+    Raises
+    ------
+    ImportError
+        If matplotlib is not installed.
+    """
     axes = _columns(len(self.coordinate_names), ax)
-    for i, (name, axis) in enumerate(zip(self.coordinate_names, axes)):
-        axis.plot(self.times, self.coordinates[:, i], label=self.formulation, **_look(self.formulation))
+    for name, axis in zip(self.coordinate_names, axes):
+        axis.plot(times(self), rows(self)[name], label=self.formulation, **_look(self.formulation))
         axis.set_ylabel(_with_unit(name, units(self.system)))
     axes[0].legend(frameon=False)
     return _finished(axes, units(self.system))
 
 
 def ensemble(self: Ensemble, ax: Any = None) -> Any:
-    """Coordinates of the members over time, one above the other; a Figure. ax: n axes to draw into.
+    """Coordinates of the members over time, one above the other; if they were read off at one time, over what varies first.
 
-    Of an ensemble that was read off at one time, over what varies first.
+    Parameters
+    ----------
+    ax : matplotlib Axes or array of these, optional
+        n axes to draw into.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        The picture.
+
+    Raises
+    ------
+    ImportError
+        If matplotlib is not installed.
     """
     axes = _columns(len(self.coordinate_names), ax)
     colour = _look(self.formulation).get("color")
-    along, (name, values) = len(self.times) > 1, next(iter(self.varied.items()))
+    along, (name, values) = len(times(self)) > 1, next(iter(self.varied.items()))
     shown = np.linspace(0, len(self) - 1, min(len(self), _LINES)).astype(int)
-    for i, (coordinate, axis) in enumerate(zip(self.coordinate_names, axes)):
+    for coordinate, axis in zip(self.coordinate_names, axes):
         if along:
-            axis.plot(self.times, self.coordinates[shown, :, i].T, color=colour, alpha=0.5, linewidth=0.8)
+            axis.plot(times(self), rows(self)[coordinate][shown].T, color=colour, alpha=0.5, linewidth=0.8)
         else:
-            axis.plot(values, self.coordinates[:, 0, i], ".", color=colour, markersize=3)
+            axis.plot(values, rows(self)[coordinate][:, 0], ".", color=colour, markersize=3)
         axis.set_ylabel(_with_unit(coordinate, units(self.system)))
     axes[0].set_title(f"{self.formulation}: {len(shown) if along else len(self)} of {len(self)} members", loc="left")
     figure = _finished(axes, units(self.system))
@@ -83,9 +113,22 @@ def ensemble(self: Ensemble, ax: Any = None) -> Any:
 
 
 def comparison(self: Comparison, ax: Any = None) -> Any:
-    """Coordinates of all motions over time, then the gaps of the pairs with what they have to pass; a Figure.
+    """Coordinates of all motions over time, then the gaps of the pairs with their limits.
 
-    ax: n + 1 axes to draw into.
+    Parameters
+    ----------
+    ax : matplotlib Axes or array of these, optional
+        n + 1 axes to draw into.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        The picture.
+
+    Raises
+    ------
+    ImportError
+        If matplotlib is not installed.
     """
     # the costate form is a form of the vakonomic motion
     runs = [(run, run.motion) for run in self.runs if run.motion is not None and run.formulation in COLOURS]
@@ -95,7 +138,7 @@ def comparison(self: Comparison, ax: Any = None) -> Any:
         # of several removals the first is the widest
         width = 1.8 / (1 + sum(other.formulation == run.formulation for other, _ in runs[:place]))
         for i, axis in enumerate(axes[:-1]):
-            axis.plot(motion.times, motion.coordinates[:, i], label=_plain(run.label), linewidth=width, **_look(run.formulation))
+            axis.plot(motion.times, motion.coordinates[:, i], label=_plain(run.title), linewidth=width, **_look(run.formulation))
     for name, axis in zip(names, axes):
         axis.set_ylabel(_with_unit(name, units(self.system)))
     below = axes[-1]
@@ -163,9 +206,9 @@ def films(self: Any, ax: Any) -> Any:
     for (number, name, sigma, t, x), axis in zip(places, axes):
         axis.plot(t, x, ".", color="grey", markersize=3, label="film")
         for row in self.rows:
-            times, residuals = row.residuals().get((number, name), (np.empty(0), np.empty(0)))
-            fitted = np.interp(times, t[np.isfinite(x)], x[np.isfinite(x)]) + sigma * residuals
-            axis.plot(times, fitted, label=_plain(f"{row.label}: {row.verdict}"), **_look(row.formulation))
+            instants, residuals = row.residuals().get((number, name), (np.empty(0), np.empty(0)))
+            fitted = np.interp(instants, t[np.isfinite(x)], x[np.isfinite(x)]) + sigma * residuals
+            axis.plot(instants, fitted, label=_plain(f"{row.title}: {row.verdict}"), **_look(row.formulation))
         axis.set_ylabel(_plain(name if len(seen) == 1 else f"{name}, film {number}"))
     axes[0].legend(frameon=False, fontsize="small", loc="lower left", bbox_to_anchor=(0, 1))
     axes[-1].set_xlabel("t")

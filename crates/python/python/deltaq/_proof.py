@@ -8,11 +8,12 @@ from pathlib import Path
 from typing import Any
 
 from ._native import System
+from ._results import Integrals
 
 _SCHEMA = "deltaq/certificate/2"
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Proof:
     """`certificate`: what others can check, by JSON's types; None where there is none, and then `because` says why."""
 
@@ -20,19 +21,52 @@ class Proof:
     because: str | None
 
     def save(self, path: str | os.PathLike[str]) -> None:
-        """Writes the certificate as `deltaq prove` does. ValueError where there is none."""
+        """Writes the certificate as `deltaq prove` does.
+
+        Parameters
+        ----------
+        path : path
+            The file.
+
+        Raises
+        ------
+        ValueError
+            If there is none.
+        """
         if self.certificate is None:
             raise ValueError(f"there is no certificate: {self.because}")
         text = json.dumps(self.certificate, indent=2, ensure_ascii=False)
         Path(path).write_text(text + "\n", "utf-8")
+
+    def __repr__(self) -> str:
+        if self.certificate is None:
+            return f"<deltaq.Proof none: {self.because}>"
+        return f"<deltaq.Proof certificate of order {self.certificate.get('order')}>"
 
     def __bool__(self) -> bool:
         return self.certificate is not None
 
 
 def prove(self: System, almost_every_start: bool = False) -> Proof:
-    """Proves that no multipliers mu0 make the vakonomic motion Chetaev's, from the start or from almost every one.
+    """Proves that no multipliers mu0 make the vakonomic motion Chetaev's.
 
+    Parameters
+    ----------
+    almost_every_start : bool
+        For almost every start instead of the system's own.
+
+    Returns
+    -------
+    Proof
+        The certificate, or why there is none.
+
+    Raises
+    ------
+    SolveError
+        If a motion has no start.
+
+    Examples
+    --------
     >>> sledge.prove().certificate["order"] >= 1
     True
     """
@@ -46,20 +80,36 @@ def _sorted(value: dict[str, Any]) -> dict[str, Any]:
     return by_name
 
 
-def integrals(self: System, formulation: str = "chetaev", degree: int = 2, names: Iterable[str] = ()) -> dict[str, Any]:
-    """Which invariant measure and first integrals there are: printed, counted, or proved to be none.
+def integrals(self: System, formulation: str = "chetaev", degree: int = 2, names: Iterable[str] = ()) -> Integrals:
+    """Which invariant measure and first integrals there are: printed, counted, or proved not to exist.
 
-    formulation: its own equations are looked at in the ansatz; measures and numbers of integrals are answered for
-    "chetaev" alone.
-    degree: the highest one in the velocities, from 1 to 3.
-    names: coordinates that the functions of the ansatz contain; those in L and in the constraints if left out.
+    Parameters
+    ----------
+    formulation : str
+        Its own equations are used in the ansatz; measures and numbers of integrals are answered for "chetaev" alone.
+    degree : int
+        The highest degree in the velocities, from 1 to 3.
+    names : iterable of str
+        Coordinates that the functions of the ansatz contain; by default those in L and in the constraints.
 
-    As `deltaq integrals --format json` and its schema. Numbers count as they were written.
+    Returns
+    -------
+    Integrals
+        The answer of `deltaq integrals --format json`: as attributes, and as a mapping. Numbers count as they were written.
 
-    >>> sledge.integrals(degree=1)["polynomials"][0]["answer"]
+    Raises
+    ------
+    ValueError
+        If `degree` is not from 1 to 3.
+    UnknownNameError
+        If a name is unknown.
+
+    Examples
+    --------
+    >>> sledge.integrals(degree=1).polynomials[0].answer
     'local'
     """
     if not 1 <= degree <= 3:
         raise ValueError(f"degree: {degree} is not from 1 to 3")
     found: dict[str, Any] = json.loads(self._integrals(formulation, degree, list(names)))
-    return {"schema": "deltaq/integrals/1"} | found
+    return Integrals.of({"schema": "deltaq/integrals/1"} | found)

@@ -22,14 +22,33 @@ def review(
 ) -> dict[str, Any]:
     """Whether equations of motion are those of the system; if not, with which mistakes they are.
 
-    theirs: a text, one equation per line, in LaTeX or a function in C; a Path to such a file or to a table; a
-    `LagrangesMethod` or `KanesMethod` of SymPy; a list of its expressions, each to be zero; or a function rates(t, y) of
-    y = (q, v), in the order of `coordinates`, that gives (v, a) or a, and is asked at states drawn at random.
-    where: coordinates and parameters of the system as formulas in their names.
-    formulation: the one whose equations they are to be. tolerance: relative errors of what a function or table gives.
+    Parameters
+    ----------
+    system : System
+        The system.
+    theirs : str, Path, LagrangesMethod, KanesMethod, list of expressions or callable
+        A text, one equation per line, in LaTeX or a function in C; a path of such a file or of a table; a method of SymPy; a list of its
+        expressions, each to be zero; or a function rates(t, y) of y = (q, v), in the order of `coordinates`, that gives (v, a) or a, and
+        is called at states drawn at random.
+    where : mapping of str to formula, optional
+        Coordinates and parameters of the system as formulas in their names.
+    formulation : str
+        The one whose equations they are to be.
+    tolerance : float
+        Relative errors of what a function or table gives.
 
-    As `deltaq review --format json` and its schema. DeltaqError with the place that cannot be read.
+    Returns
+    -------
+    dict
+        The answer of `deltaq review --format json`, by its schema.
 
+    Raises
+    ------
+    DeltaqError
+        If the equations cannot be read, with the place.
+
+    Examples
+    --------
     >>> deltaq.review(sledge, "x'' = 0\\ny'' = 0\\nphi'' = 0")["verdict"]
     'wrong'
     """

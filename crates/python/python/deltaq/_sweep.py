@@ -81,16 +81,44 @@ class Sweep:
         self.table, self.over, self.title, self.units = table, over, title, units
 
     def to_arrow(self) -> pa.Table:
-        """The table, in memory."""
+        """The table, in memory.
+
+        Returns
+        -------
+        pyarrow.Table
+            One row per point.
+        """
         return self.table if hasattr(self.table, "column_names") else self.table.to_table()
 
     def to_pandas(self) -> Any:
-        """A pandas.DataFrame, one row per point."""
+        """The table as a DataFrame.
+
+        Returns
+        -------
+        pandas.DataFrame
+            One row per point.
+
+        Raises
+        ------
+        ImportError
+            If pandas is not installed.
+        """
         needed("pandas")
         return self.to_arrow().to_pandas()
 
     def to_xarray(self) -> Any:
-        """An xarray.Dataset over what varies."""
+        """The table as a Dataset over what varies.
+
+        Returns
+        -------
+        xarray.Dataset
+            Units are attributes.
+
+        Raises
+        ------
+        ImportError
+            If xarray is not installed.
+        """
         xarray = needed("xarray")
         shape, table = [len(values) for values in self.over.values()], self.to_arrow()
         cells = {name: table[name].to_numpy().reshape(shape) for name in _COLUMNS}
@@ -98,7 +126,27 @@ class Sweep:
         return with_units(data, self.units)
 
     def plot(self, column: str = "apart", ax: Any = None) -> Any:
-        """A column over one number as a line, over two as a map with dots where some constants do; a Figure."""
+        """A column over one number as a line, over two as a map with dots if some constants do.
+
+        Parameters
+        ----------
+        column : str
+            One of numbers.
+        ax : matplotlib Axes or array of these, optional
+            Axes to draw into.
+
+        Returns
+        -------
+        matplotlib.figure.Figure
+            The picture.
+
+        Raises
+        ------
+        UnknownNameError
+            If there is no such column.
+        ValueError
+            If it has no numbers, or more than two vary.
+        """
         from ._plots import sweep
 
         return sweep(self, column, ax)
@@ -119,6 +167,7 @@ def sweep(
     over: Mapping[str, npt.ArrayLike],
     *,
     formulations: Sequence[str] | None = None,
+    decision: bool = True,
     tolerance: float = 1e-10,
     max_steps: int = 1_000_000,
     max_step: float | None = None,
@@ -130,16 +179,50 @@ def sweep(
 ) -> Sweep:
     """Compares two motions of a system at all combinations of some values: `deltaq compare --sweep`.
 
-    over: name to values: parameters, start values ("x", "x'"), multipliers ("mu0_1"), costates ("P0_w") of the first
-    removal. formulations: two names; Chetaev's and the vakonomic motion by default or, where costates vary, that without
-    constraints. tolerance, max_steps, max_step, time_limit: as in `System.solve`.
-    client: a `dask.distributed.Client`, whose workers then compute; by default all processors of this machine.
-    out: a folder for Parquet files, of `part` points each; what a call that was cut off has left there is kept.
-    progress: called with the number of parts that are there, and of all.
+    A row is a pure function of its numbers: no cluster, thread or part changes a bit of it.
 
-    A row is a pure function of its numbers: no cluster, thread or part changes a bit of it. A start that there is not
-    is a row with a cause; a name that means nothing is an UnknownNameError.
+    Parameters
+    ----------
+    system : System
+        The system.
+    over : mapping of str to array_like
+        Values of parameters, start values ("x", "x'"), multipliers ("mu0_1") or costates ("P0_w") of the first removal.
+    formulations : sequence of two str, optional
+        By default Chetaev's and the vakonomic motion or, if costates vary, the one without constraints.
+    decision : bool
+        Whether it is decided if some constants make the second motion the first. Without it a point has a verdict and gaps alone,
+        and takes less time.
+    tolerance : float
+        Tolerance of the looser run; the one that is kept has a hundredth of it.
+    max_steps : int
+        Limit on the steps of a run.
+    max_step : float, optional
+        No step is longer.
+    time_limit : float, optional
+        Limit on the seconds of a run.
+    client : dask.distributed.Client, optional
+        Its workers compute; by default this machine does.
+    out : path, optional
+        A folder for Parquet files; what a call that was cut off has left there is kept.
+    part : int
+        points of a file.
+    progress : callable, optional
+        Called with the number of parts that are there, and of all.
 
+    Returns
+    -------
+    Sweep
+        One row per point; a start that does not exist is a row with a cause.
+
+    Raises
+    ------
+    UnknownNameError
+        If a name is unknown.
+    ValueError
+        If `over` has no finite values.
+
+    Examples
+    --------
     >>> where = deltaq.sweep(sledge, {"k": [0.5, 1.0], "phi'": [0.5, 1.0, 1.5]})
     >>> len(where), where.to_xarray()["answer"].sel(k=0.5).values.tolist()
     (6, ['none proved', 'none proved', 'none proved'])
@@ -155,7 +238,7 @@ def sweep(
     if formulations is not None and len(formulations) != 2:
         raise ValueError(f"formulations names {len(formulations)}; two can be compared")
     chosen = None if formulations is None else list(formulations)
-    limits = (chosen, tolerance, max_steps, max_step, time_limit)
+    limits = (chosen, decision, tolerance, max_steps, max_step, time_limit)
     lists = {name: numbers.tolist() for name, numbers in values.items()}
     # a name that means nothing is refused before anything is computed or written
     system._sweep_points(list(lists), np.empty((0, len(lists))), *limits, 1)
@@ -191,12 +274,43 @@ def ensemble(
     progress: Callable[[int, int], None] | None = None,
     **options: Any,
 ) -> pa.Table | ds.Dataset:
-    """`System.ensemble` as a table, one row per member and time, for more members than have room in memory.
+    """`System.ensemble` as a table, one row per member and time, for more members than memory has room for.
 
-    Columns as of `Ensemble.to_arrow`. client, out, progress: as in `sweep`; part: members of a file. options: those
-    of `System.ensemble`. Without `out` a pyarrow.Table comes back, with it a pyarrow.dataset.Dataset, which reads
-    only what is asked of it. An answer does not depend on the other members, nor on parts and workers.
+    A member does not depend on the others, nor on parts and workers.
 
+    Parameters
+    ----------
+    system : System
+        The system.
+    formulation : str
+        One of `FORMULATIONS`.
+    times : float or array_like of shape (k,), optional
+        Where the members are read off, ascending, to the last; by default at the end of `duration`.
+    vary : mapping of str to array_like of shape (m,)
+        As in `System.ensemble`.
+    client : dask.distributed.Client, optional
+        Its workers compute; by default this machine does.
+    out : path, optional
+        A folder for Parquet files; what a call that was cut off has left there is kept.
+    part : int
+        members of a file.
+    progress : callable, optional
+        Called with the number of parts that are there, and of all.
+    **options
+        Those of `System.ensemble`.
+
+    Returns
+    -------
+    pyarrow.Table or pyarrow.dataset.Dataset
+        A dataset with `out`, which reads only what is used. Columns as of `Ensemble.to_arrow`.
+
+    Raises
+    ------
+    ValueError
+        If `vary` is empty or has arrays of different lengths.
+
+    Examples
+    --------
     >>> table = deltaq.ensemble(sledge, "chetaev", [0.5, 1.0], vary={"phi'": [0.5, 1.0]})
     >>> table.column_names[:4], table.num_rows
     (['member', "set phi'", 't', 'x'], 4)

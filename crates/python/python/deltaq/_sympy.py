@@ -1,40 +1,147 @@
-"""SymPy's expressions as formulas of deltaq, and its LagrangesMethod as a System. SymPy is imported only by those who have it."""
+"""SymPy's expressions as formulas of deltaq, and its mechanical systems as a System. SymPy is imported only by those who have it."""
 
 from __future__ import annotations
 
 import re
 import sys
+from collections.abc import Callable
 from functools import cache
 from typing import TYPE_CHECKING, Any
 
 from ._native import System
 
 if TYPE_CHECKING:
-    from sympy.physics.mechanics import LagrangesMethod
+    from sympy.physics.mechanics import KanesMethod, LagrangesMethod
+    from sympy.physics.mechanics import System as SymPySystem
 
 NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
 
 
-def from_sympy(method: LagrangesMethod, **arguments: Any) -> System:
-    """The system of a `sympy.physics.mechanics.LagrangesMethod`: coordinates, Lagrangian, constraints, generalized forces.
+def from_sympy(method: LagrangesMethod | KanesMethod | SymPySystem, **arguments: Any) -> System:
+    """The system of a `LagrangesMethod`, a `KanesMethod` or a `System` of `sympy.physics.mechanics`.
 
-    Its holonomic constraints g(q, t) = 0 are constraints of the system as they are, and kept by their rate. Multipliers are
-    deltaq's own. arguments: those of `System` that SymPy does not know, such as start, velocities, parameters, duration.
+    Parameters
+    ----------
+    method : LagrangesMethod, KanesMethod or System
+        Coordinates, bodies or a Lagrangian, constraints and loads. Generalized speeds are replaced by their kinematic equations,
+        and auxiliary ones are zero. Holonomic constraints are kept by their rate; multipliers are deltaq's own.
+    **arguments
+        Those of `System` that SymPy does not know, such as start, velocities, parameters, duration.
 
-    TypeError for another method: KanesMethod has no Lagrangian.
+    Returns
+    -------
+    System
+        The system.
+
+    Raises
+    ------
+    TypeError
+        If a constraint was put into the velocities of a body, so that they are not the rate of a place in the coordinates: Lagrange's
+        equations would be wrong. Also for another kind of method, or one without bodies.
     """
-    from sympy.physics.mechanics import LagrangesMethod, ReferenceFrame
+    from sympy.physics.mechanics import KanesMethod, LagrangesMethod
 
-    if not isinstance(method, LagrangesMethod):
-        raise TypeError(f"{type(method)} where a LagrangesMethod is expected, which has a Lagrangian")
-    frame, (lagrangian,), holonomic = method.inertial, method._L, list(method._hol_coneqs)
-    forces = dict.fromkeys(method.q, 0)
-    for place, force in method.forcelist:
-        velocity = place.ang_vel_in(frame) if isinstance(place, ReferenceFrame) else place.vel(frame)
-        for q, rate in zip(method.q, method.u):
-            forces[q] += velocity.diff(rate, frame).dot(force)
-    constraints = holonomic + list(method.coneqs)[len(holonomic) :]
-    return System(method.q, lagrangian, constraints, forces=forces, **arguments)
+    if isinstance(method, LagrangesMethod):
+        coordinates, (lagrangian,) = list(method.q), method._L
+        constraints = list(method._hol_coneqs) + list(method.coneqs)[len(method._hol_coneqs) :]
+        forces = _forces(method.forcelist, method.inertial, coordinates, list(method.u), lambda vector: vector)
+    elif isinstance(method, KanesMethod):
+        if not method.bodies:
+            raise TypeError("the KanesMethod has no bodies: give them to it, KanesMethod(..., bodies=..., forcelist=...)")
+        zero = dict.fromkeys(method._uaux, 0)
+        kinematic = [rate - speed for rate, speed in method.kindiffdict().items()]
+        constraints = list(method._k_nh * method.u + method._f_nh) if method._k_nh else []
+        given = (list(method.q), list(method.u), kinematic, method._inertial, method.bodies, method.forcelist or ())
+        coordinates, lagrangian, constraints, forces = _by_speeds(*given, constraints, zero, has_potential=False)
+    elif _is_system(method):
+        loads = [*method.loads, *(load for actuator in method.actuators for load in actuator.to_loads())]
+        zero = dict.fromkeys(method.u_aux, 0)
+        given = (list(method.q), list(method.u), list(method.kdes), method.frame, method.bodies, loads)
+        coordinates, lagrangian, constraints, forces = _by_speeds(*given, list(method.velocity_constraints), zero, has_potential=True)
+    else:
+        raise TypeError(f"{type(method)} where a LagrangesMethod, a KanesMethod or a System of SymPy is expected")
+    return System(coordinates, lagrangian, constraints, forces=forces, **arguments)
+
+
+def _is_system(method: Any) -> bool:
+    return any(kind.__name__ == "System" and kind.__module__.startswith("sympy.physics.mechanics") for kind in type(method).__mro__)
+
+
+def _forces(loads: Any, frame: Any, coordinates: list[Any], rates: list[Any], in_rates: Callable[[Any], Any]) -> dict[Any, Any]:
+    """Generalized forces: the sum of force (or torque) times the derivative of its velocity by each rate."""
+    from sympy.physics.mechanics import ReferenceFrame
+
+    forces = dict.fromkeys(coordinates, 0)
+    for place, force in loads:
+        velocity = in_rates(place.ang_vel_in(frame) if isinstance(place, ReferenceFrame) else place.vel(frame))
+        for q, rate in zip(coordinates, rates):
+            forces[q] += velocity.diff(rate, frame).dot(in_rates(force))
+    return forces
+
+
+def _by_speeds(
+    coordinates: list[Any],
+    speeds: list[Any],
+    kinematic: list[Any],
+    frame: Any,
+    bodies: Any,
+    loads: Any,
+    constraints: list[Any],
+    zero: dict[Any, Any],
+    *,
+    has_potential: bool,
+) -> tuple[list[Any], Any, list[Any], dict[Any, Any]]:
+    """Coordinates, Lagrangian, constraints and forces of bodies that move by generalized speeds u.
+
+    The kinematic equations give u in q'. An expression in u becomes one in q'; auxiliary speeds are zero.
+    """
+    import sympy as sp
+    from sympy.physics.vector import dynamicsymbols
+
+    if len(speeds) != len(coordinates):
+        raise TypeError(
+            f"{len(coordinates)} coordinates have {len(speeds)} generalized speeds: a constraint was put into the velocities; "
+            "give speeds for all coordinates, and the constraint as one"
+        )
+    matrix, right = sp.linear_eq_to_matrix([e.subs(zero) for e in kinematic], speeds)
+    by_rates = dict(zip(speeds, matrix.LUsolve(right)))
+    rates = [q.diff(dynamicsymbols._t) for q in coordinates]
+
+    def in_rates(thing: Any) -> Any:
+        return thing.subs(zero).subs(by_rates)
+
+    places = [body.masscenter for body in bodies] + [place for place, _ in loads if hasattr(place, "pos_from")]
+    for point in dict.fromkeys(places):
+        _refuse_unless_a_rate(point, in_rates(point.vel(frame).to_matrix(frame)), coordinates, rates)
+    energy = sum(in_rates(body.kinetic_energy(frame)) for body in bodies)
+    if has_potential:
+        energy -= sum(in_rates(sp.sympify(body.potential_energy)) for body in bodies)
+    in_q = [in_rates(sp.sympify(c)) for c in constraints]
+    return coordinates, energy, in_q, _forces(loads, frame, coordinates, rates, in_rates)
+
+
+def _refuse_unless_a_rate(point: Any, velocity: Any, coordinates: list[Any], rates: list[Any]) -> None:
+    """TypeError unless a velocity is the rate of a place in the coordinates: its parts by q' then have equal mixed derivatives.
+
+    If a constraint was put in, they differ; Lagrange's equations would be wrong. This is looked at in random numbers.
+    """
+    import random
+
+    import sympy as sp
+
+    parts = velocity.jacobian(rates)
+    n = len(coordinates)
+    mixed = [parts[c, i].diff(coordinates[j]) - parts[c, j].diff(coordinates[i]) for c in range(3) for i in range(n) for j in range(i)]
+    symbols = sorted({s for e in mixed for s in e.atoms(sp.Symbol, sp.Function) if s.is_Symbol or isinstance(s, sp.core.function.AppliedUndef)}, key=str)
+    drawn = random.Random(1)
+    for _ in range(2):
+        values = {symbol: drawn.uniform(0.2, 1.2) for symbol in symbols}
+        worst = max((abs(float(e.subs(values))) for e in mixed if e != 0), default=0.0)
+        if worst > 1e-9:
+            raise TypeError(
+                f"the velocity of the point {point} is not the rate of a place in the coordinates {', '.join(map(str, coordinates))}: "
+                "a constraint was put into it; give the point coordinates of its own, and the constraint as one"
+            )
 
 
 def text(thing: object) -> str | None:
