@@ -32,6 +32,18 @@ const parts = ["uplot", "katex"].map((name) => {
   return `${name} ${version} (${license})\n\n${read(`node_modules/${name}/LICENSE`)}`;
 });
 
+// A program without its sections of names and notes, which it does not need to run.
+function bare(bytes) {
+  const parts = [bytes.subarray(0, 8)];
+  for (let at = 8, end; at < bytes.length; at = end) {
+    let [length, place, shift] = [0, at + 1, 0];
+    do length += (bytes[place] & 127) * 2 ** shift; while (((shift += 7), bytes[place++] & 128));
+    end = place + length;
+    if (bytes[at] !== 0) parts.push(bytes.subarray(at, end));
+  }
+  return Buffer.concat(parts);
+}
+
 const zipped = (bytes) => gzipSync(bytes, { level: 9 }).toString("base64");
 
 const pieces = {
@@ -40,7 +52,7 @@ const pieces = {
   licences: markup(parts.join("\n\n")),
   scenes: zipped(JSON.stringify(texts)),
   worker: script(await bundled("worker.js")),
-  program: zipped(readFileSync(program)),
+  program: zipped(bare(readFileSync(program))),
   words: zipped(await bundled("words.js", { format: "esm" })),
   script: script(await bundled("main.js")),
 };

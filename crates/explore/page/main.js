@@ -20,7 +20,7 @@ import { arrived, decode, forget, push, remember, settle, shownOnly, state, turn
 import * as store from "./store.js";
 import { Take } from "./take.js";
 import { Text } from "./text.js";
-import { SKATE, STEPS, Tour, stateOf } from "./tour.js";
+import { SKATE, STEPS, Tour, stateOf, veiled } from "./tour.js";
 
 const element = (id) => document.getElementById(id);
 const chosen = JSON.parse(element("chosen").textContent);
@@ -66,18 +66,24 @@ const motionsLegend = new Legend(element("legend"), (label, on) => {
   motions(false, false);
 });
 const editor = new Text({ area: element("area"), marks: element("marks"), faults: element("faults") }, (typed) => {
-  const write = () => Object.assign(state, { scene: OWN, text: typed });
+  const write = () => Object.assign(state, { scene: OWN, text: typed, time: 0 });
   if (own()) write();
   else turn(write);
   keep();
   remember();
   undoing();
-  readScene(false).then(keep);
+  readScene(true).then(() => {
+    keep();
+    run();
+  });
 });
 
 const tour = new Tour(element("tour"), {
   go: enter,
-  leave: () => openTab("numbers"),
+  leave() {
+    openTab("numbers");
+    run();
+  },
   write: () => openTab("text"),
   set: (numbers, moving) => set(numbers, moving),
   facts: () => ({ samples: clock.samples, decided: deciding.answer, set: state.set }),
@@ -260,7 +266,7 @@ function choose(choice) {
 
 // Runs by itself, if that is wanted.
 function run() {
-  if (!still.matches && !element("play").disabled) clock.play();
+  if (!still.matches && !clock.playing && !element("play").disabled) clock.play();
 }
 
 // Goes to a step of the tour.
@@ -274,10 +280,8 @@ function enter(step) {
 const asks = () => state.tab === "tour" && state.guess < 0;
 
 function showTour() {
-  const { classList } = document.querySelector("main");
-  classList.toggle("touring", state.tab === "tour");
-  classList.toggle("asking", asks());
-  stage.veil(asks());
+  document.querySelector("main").classList.toggle("touring", state.tab === "tour");
+  stage.veil((labels) => (asks() ? veiled(state.step, labels) : []));
   if (state.tab === "tour") tour.show(state.step, state.guess);
   deciding.look(state.tab);
 }
@@ -364,7 +368,7 @@ async function arrive(isSame = false) {
   showTour();
   await readScene(!isSame);
   keep();
-  if (!isSame && !state.time && !state.grips && !asks()) run();
+  if (!isSame && !state.time && !state.grips) run();
 }
 
 new Take(element("takes"), {

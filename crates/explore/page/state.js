@@ -2,7 +2,7 @@
 
 import { byName } from "./names.js";
 
-const EMPTY = { scene: "sledge", text: null, set: {}, off: [], on: [], time: 0, tab: "numbers", curve: "gap",
+const EMPTY = { scene: "sledge", text: null, set: {}, off: [], on: [], time: 0, tab: "numbers", curve: "path",
   step: 0, guess: -1, forces: false, follow: "", by: 1, grips: false };
 // Behind the state, what alone is to be seen: &only=stage, for slides.
 const ONLY = "&only=";

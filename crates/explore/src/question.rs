@@ -23,6 +23,8 @@ pub enum Ask {
     Derivatives,
     /// The scene as a text with the numbers that are set in it; costates are not.
     Text,
+    /// What a reviewer would ask about the text, as `deltaq check` says it.
+    Check,
 }
 
 /// A question about the text of a scene.
