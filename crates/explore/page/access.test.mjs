@@ -79,7 +79,7 @@ export async function calm({ open, leave, forget, link, must, choose, fresh, url
 const STATES = [
   ...["numbers", "verdict", "equations", "text"].map((tab) => [tab, { scene: "sledge", tab, time: 1 }]),
   ...["integrals", "derivatives"].map((tab) => [tab, { scene: "sledge", tab }, (page) => page.waitForSelector(`#${tab} table`)]),
-  ["tour, a question", { scene: "velocity-pendulum", tab: "tour", step: 1, guess: -1 }],
+  ["tour, a question", { scene: "sledge", set: { duration: 5 }, tab: "tour", step: 1, guess: -1 }],
   ["tour, an answer", { scene: "sledge", tab: "tour", step: 3, guess: 1, set: { mu0_1: 2, duration: 5 }, time: 1 }],
   ["forces", { scene: "sledge", forces: true, time: 1 }],
   ["the start in the hand", { scene: "sledge", grips: true }],

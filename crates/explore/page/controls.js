@@ -9,7 +9,7 @@ const HEADINGS = {
 
 // Rows in all up to which all groups are open; of a longer list groups are open up to there, and parameters whose names begin
 // alike, at least ALIKE, have a group of their own.
-const ROWS = 14;
+const ROWS = 20;
 const ALIKE = 4;
 
 // Controls in groups: each a heading and its controls, costates of each removal on their own.

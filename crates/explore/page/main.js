@@ -43,6 +43,7 @@ const clock = new Clock(
   (t) => {
     stage.draw(t);
     curves.at(t);
+    if (clock.playing && window.explored) window.explored.moved ??= moved ??= performance.now();
     element("key").textContent = told(clock.samples, t, state.forces);
   },
 );
@@ -65,7 +66,8 @@ const motionsLegend = new Legend(element("legend"), (label, on) => {
   outdated();
   motions(false, false);
 });
-const editor = new Text({ area: element("area"), marks: element("marks"), faults: element("faults") }, (typed) => {
+const parts = ["area", "marks", "offers", "faults", "notes", "functions", "example"].map((id) => [id, element(id)]);
+const editor = new Text(Object.fromEntries(parts), (typed) => {
   const write = () => Object.assign(state, { scene: OWN, text: typed, time: 0 });
   if (own()) write();
   else turn(write);
@@ -152,11 +154,19 @@ async function readScene(anew) {
   editor.mark([]);
   scene = answer;
   for (const name of answer.unknown) delete state.set[name];
-  if (answer.unknown.length) notice(`Nothing in the text is called ${answer.unknown.join(", ")} any more.`);
+  if (answer.unknown.length) notice(`The text no longer defines ${answer.unknown.join(", ")}.`);
   entitled(scene);
+  check();
   controls.build(scene.controls, state.set);
   legend();
   await motions(false, anew);
+}
+
+// Notes on the text, for who looks at it.
+async function check() {
+  if (state.tab !== "text") return;
+  const reply = await wordsEngine.ask("check", question("check"));
+  if (reply?.answer.remarks) editor.mark([], "", reply.answer.remarks);
 }
 
 function legend(answers = []) {
@@ -187,7 +197,7 @@ async function motions(glance, anew) {
   }
 }
 
-let drawn = 0, first;
+let drawn = 0, first, moved;
 
 function draw(samples, anew) {
   clock.samples = samples;
@@ -215,7 +225,7 @@ function show(reply, anew) {
   if (anew || answer.motions.some(({ error }) => error !== null)) legend(answer.motions);
   tour.update();
   // for tests and for who looks behind the page
-  window.explored = { answer, scenes, milliseconds: reply.milliseconds, drawn: ++drawn, samples, stage, curves, grips, first: (first ??= performance.now()) };
+  window.explored = { answer, scenes, milliseconds: reply.milliseconds, drawn: ++drawn, samples, stage, curves, grips, first: (first ??= performance.now()), moved };
 }
 
 // What takes longer, in the other worker.
@@ -301,6 +311,7 @@ function openTab(name) {
     if (scene) controls.build(scene.controls, state.set);
     if (scene) controls.shown(shown());
   }
+  if (name === "text") check();
   showTour();
   remember();
 }
@@ -332,7 +343,7 @@ function showMore(what, is) {
 
 function keepText() {
   const isKept = ownTexts.isKept(scene.title, state.text);
-  if (!ownTexts.keep(scene.title, isKept ? null : state.text)) say("This browser keeps nothing.", true);
+  if (!ownTexts.keep(scene.title, isKept ? null : state.text)) say("This browser does not store texts.", true);
   keep();
 }
 
@@ -393,7 +404,9 @@ const begin = () =>
 async function start() {
   const source = element("worker").textContent;
   const compiled = compile(element("program").textContent);
-  scenes = JSON.parse(await textOf(element("scenes").textContent));
+  const texts = JSON.parse(await textOf(element("scenes").textContent));
+  ({ scenes } = texts);
+  editor.know(texts.keys, texts.examples);
   element("scene").prepend(...groups(scenes), new Option("own text", OWN));
   const module = await compiled;
   motionsEngine = new Engine(module, source);

@@ -229,7 +229,7 @@ export async function table({ open, leave, link, must, pictures }) {
         must(from === "–" && by === "–", `${names}: ${from}, ${by} of motions that are the same`);
       }
     }
-    must(sentence.includes(verdicts[0] === "same" ? "are the same, because" : "part because"), `why: ${sentence}`);
+    must(sentence.includes(verdicts[0] === "same" ? "are the same because" : "diverge because"), `why: ${sentence}`);
     must((await page.$eval("#verdict .sentence", ({ textContent }) => textContent)) === sentence, "the sentence is not shown");
     must((await page.$eval("#said", ({ textContent }) => textContent)) === sentence, "the sentence is not below the picture");
     await page.screenshot({ path: join(pictures, `table-${state.scene}.png`) });

@@ -171,9 +171,8 @@ export class Stage {
     const followed = this.followed();
     const first = followed ?? this.samples.motions[0];
     const reach = this.reach(first);
-    if (!followed && (this.held || this.follow === REST || fit * reach >= SMALL * devicePixelRatio)) return this.window;
-    // what is in the hand is not followed
-    const t = this.held ? (this.heldAt ??= this.t) : (this.heldAt = null, this.t);
+    if (!followed && (this.follow === REST || fit * reach >= SMALL * devicePixelRatio)) return this.window;
+    const { t } = this;
     const at = this.apart.trackAt(first, t);
     const [x, y] = [right, up].map((axis) => dot(axis, at));
     if (followed || this.isNarrow()) return [x - ROUND * reach, y - ROUND * reach, x + ROUND * reach, y + ROUND * reach];
@@ -190,12 +189,14 @@ export class Stage {
     const margin = MARGIN * devicePixelRatio;
     const fitted = (w) => Math.min((width - 2 * margin) / (w[2] - w[0]), (height - 2 * margin) / (w[3] - w[1]));
     const whole = fitted(this.window);
-    const box = this.box(whole);
+    // what is in the hand is not followed
+    if (!this.held || !this.seen) this.seen = this.box(whole);
+    const box = this.seen;
     const [right, up, eye] = this.axes();
     const [x, y] = [(box[0] + box[2]) / 2, (box[1] + box[3]) / 2];
     const scale = Math.max(whole, fitted(box)) * this.zoom;
     const project = (p) => [width / 2 + (dot(right, p) - x) * scale, height / 2 - (dot(up, p) - y) * scale];
-    return { project, scale, depth: (p) => dot(eye, p), goes: box !== this.window };
+    return { project, scale, depth: (p) => dot(eye, p), goes: size(box) < 0.99 * size(this.window) };
   }
 
   // Everything at time t.

@@ -44,7 +44,7 @@ export function decode(address, otherwise = {}) {
     if (key in said && (EMPTY[key] === null || typeof said[key] === typeof EMPTY[key])) state[key] = said[key];
   }
   const numbers = Object.entries(state.set).filter(([, x]) => Number.isFinite(x));
-  if (numbers.length < Object.keys(state.set).length) fault = "a number in it is none";
+  if (numbers.length < Object.keys(state.set).length) fault = "one of its numbers is not a number";
   state.set = byName(numbers);
   return fault;
 }
