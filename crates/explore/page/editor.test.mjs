@@ -1,6 +1,6 @@
 // The editor: numbered lines, marks where faults and notes are, names completed by keys, functions and examples, bodies.
 
-import { execFileSync } from "node:child_process";
+import { execFileSync, spawnSync } from "node:child_process";
 import { join } from "node:path";
 
 const text = (page) => page.$eval("#area", ({ value }) => value);
@@ -84,5 +84,44 @@ export async function editor({ open, leave, link, must, type, after, deltaq, pic
   await page.click("#functions button");
   must((await text(page)) === `sin(x)${before}`, "a function is not put where the caret is");
   await page.screenshot({ path: join(pictures, "editor-functions.png") });
+  await leave(page);
+}
+
+// Puts equations beside the scene and has them reviewed.
+export async function yours(page, theirs) {
+  await page.$eval("#theirs", (area, theirs) => {
+    area.value = theirs;
+    area.dispatchEvent(new Event("input"));
+  }, theirs);
+  await page.click("#judge");
+  await page.waitForFunction(() => document.querySelector("#judged :not(.hint)"), { timeout: 60000 });
+}
+
+// Equations beside a scene are right as the native program says, or their wrong term is marked; a changed text clears that.
+export async function reviewed({ open, leave, link, must, after, choose, deltaq, pictures }) {
+  const page = await open(link({ scene: "sleigh", tab: "review", time: 1 }));
+  const right = `m*x'' - m*a*(phi''*sin(phi) + phi'^2*cos(phi)) = -N*sin(phi)
+m*y'' + m*a*(phi''*cos(phi) - phi'^2*sin(phi)) =  N*cos(phi)
+(I + m*a^2)*phi'' = m*a*(x''*sin(phi) - y''*cos(phi))
+y'*cos(phi) = x'*sin(phi)`;
+  const marked = () => page.$$eval("#under .bad u", (all) => all.map(({ textContent }) => textContent).join());
+  const said = () => page.$eval("#judged", ({ innerText }) => innerText);
+  await yours(page, right);
+  must((await said()).startsWith("These equations are right") && (await marked()) === "", `right equations are said to be: ${await said()}`);
+  for (const [from, to, term] of [["+ phi'^2*cos", "- phi'^2*cos", "phi'^2*cos(phi)"], ["y''*cos", "2*y''*cos", "2*y''*cos(phi)"], ["= x'*sin", "= -x'*sin", "x'*sin(phi)"], ["m*a^2", "m*a", ""]]) {
+    const wrong = right.replace(from, to);
+    await yours(page, wrong);
+    const words = await said();
+    must(words.startsWith("These equations are wrong.") && (await marked()).includes(term), `${to}: marked is ${await marked()}, said ${words}`);
+    const native = spawnSync(deltaq, ["review", "sleigh", "-"], { input: wrong, encoding: "utf8" }).stdout;
+    const [, first] = /exactly the equations of: (.*)\./.exec(native) ?? [];
+    must(first && words.includes(first), `${to}: the native program says ${first}, the page ${words}`);
+  }
+  await yours(page, right.replace("sin(phi) +", "sin(phj) +"));
+  must((await said()).includes("cannot be read") && (await said()).includes("phj"), `an unknown name: ${await said()}`);
+  await yours(page, right.replace("+ phi'^2*cos", "- phi'^2*cos"));
+  await page.screenshot({ path: join(pictures, "review.png") });
+  await choose(page, "sledge");
+  must((await said()) === "" && (await marked()) === "", "another scene stands beside the review of the one before");
   await leave(page);
 }

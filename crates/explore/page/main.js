@@ -21,6 +21,7 @@ import * as store from "./store.js";
 import { Take } from "./take.js";
 import { Text } from "./text.js";
 import { SKATE, STEPS, Tour, stateOf, veiled } from "./tour.js";
+import { Yours } from "./yours.js";
 
 const element = (id) => document.getElementById(id);
 const chosen = JSON.parse(element("chosen").textContent);
@@ -101,6 +102,9 @@ const tour = new Tour(element("tour"), {
   },
 });
 
+const yours = new Yours({ theirs: element("theirs"), under: element("under"), judge: element("judge"), judged: element("judged") },
+  async (theirs) => (await motionsEngine.ask("review", question("review", { theirs })))?.answer);
+
 function keep() {
   if (own() && (ownTexts.draft === null || state.text !== SKATE)) ownTexts.draft = state.text;
   ownTexts.offer(OWN, own() ? OWN : state.scene);
@@ -134,6 +138,7 @@ function empty(reason = null) {
 // Reads the scene; with `anew` it is another one.
 async function readScene(anew) {
   outdated();
+  yours.clear();
   if (anew) {
     motionsEngine.stop();
     empty();

@@ -5,13 +5,29 @@ import { FUNCTIONS } from "./functions.js";
 // Names that are offered at most, for words of at least so many letters.
 const [OFFERED, LETTERS] = [6, 2];
 
-const button = (text, act) => {
+export const button = (text, act) => {
   const made = document.createElement("button");
   made.type = "button";
   made.textContent = text;
   made.addEventListener("click", act);
   return made;
 };
+
+// Lines under a text, with numbers; where one of `found` is, its place is marked.
+export function mark(under, area, found) {
+  under.replaceChildren(...area.value.split("\n").map((line, i) => {
+    const row = document.createElement("div");
+    const one = found.find((one) => one.line === i + 1);
+    row.append(line || " ");
+    if (!one) return row;
+    row.className = one.kind;
+    const place = document.createElement("u");
+    const [from, to] = [one.column - 1, one.column - 1 + Math.max(1, one.length)];
+    place.textContent = line.slice(from, to);
+    row.replaceChildren(line.slice(0, from), place, line.slice(to) || " ");
+    return row;
+  }));
+}
 
 export class Text {
   // `changed` is called with the text shortly after typing; `keys` are words of the format, `examples` texts by their names.
@@ -98,20 +114,8 @@ export class Text {
 
   // Lines under the text, with numbers and marks; below it the messages of faults and notes, each of which leads to its place.
   mark(faults, message = "", notes = []) {
-    const all = [...faults.map((one) => ({ ...one, kind: "bad" })), ...notes.map((one) => ({ ...one, kind: "note" }))];
-    const lines = this.area.value.split("\n");
-    this.marks.replaceChildren(...lines.map((line, i) => {
-      const row = document.createElement("div");
-      const found = all.find((one) => one.line === i + 1);
-      row.append(line || " ");
-      if (!found) return row;
-      row.className = found.kind;
-      const place = document.createElement("u");
-      const [from, to] = [found.column - 1, found.column - 1 + Math.max(1, found.length)];
-      place.textContent = line.slice(from, to);
-      row.replaceChildren(line.slice(0, from), place, line.slice(to) || " ");
-      return row;
-    }));
+    const kinds = [[faults, "bad"], [notes, "note"]];
+    mark(this.marks, this.area, kinds.flatMap(([those, kind]) => those.map((one) => ({ ...one, kind }))));
     this.scroll();
     for (const [list, those] of [[this.faults, faults], [this.notes, notes]]) {
       list.replaceChildren(...those.map((one) => this.fault(one)));

@@ -36,6 +36,7 @@ fn answered(question: &str, kept: &mut Kept, numbers: &mut Vec<f64>) -> Result<V
         Ask::Motions => motions::sampled(&subject, &question, kept, numbers),
         Ask::Equations => words::equations(&subject),
         Ask::Check => Ok(json!({ "remarks": remarks(&question)? })),
+        Ask::Review => Ok(further::review(&subject, &question)?),
         Ask::Text => Ok(json!({ "text": subject.scene.to_toml() })),
         Ask::Integrals => further::integrals(&subject, &question),
         Ask::Derivatives => Ok(further::derivatives(&subject, &question)),

@@ -103,7 +103,9 @@ fn sentence(comparison: &Comparison) -> Option<String> {
     let verdict = &comparison.pair(chetaev, vakonomic)?.gap.verdict;
     let constraint = match &comparison.integrability {
         Integrability::Unconstrained => {
-            return Some("There is no constraint, so Chetaev's and the vakonomic equations are both Lagrange's.".into());
+            return Some(
+                "There is no constraint, so Chetaev's and the vakonomic equations are both Lagrange's.".into(),
+            );
         }
         Integrability::Integrable { .. } => "the constraint is holonomic",
         Integrability::PartlyIntegrable { .. } => "the constraints are only partly holonomic",

@@ -186,9 +186,13 @@ fn words_are_those_of_a_comparison() {
 /// Gaps are in metres: four times the mass does not change them.
 #[test]
 fn gaps_do_not_depend_on_the_unit_of_mass() {
-    let heavy = SLEDGE.replace("\"(x'^2 + y'^2)/2 + k^2*phi'^2/2 + g*x*sin(alpha)\"", "\"4*((x'^2 + y'^2)/2 + k^2*phi'^2/2 + g*x*sin(alpha))\"");
+    let heavy = SLEDGE.replace(
+        "\"(x'^2 + y'^2)/2 + k^2*phi'^2/2 + g*x*sin(alpha)\"",
+        "\"4*((x'^2 + y'^2)/2 + k^2*phi'^2/2 + g*x*sin(alpha))\"",
+    );
     let gaps = |text: &str| {
-        let question = json!({ "ask": "motions", "name": "a", "text": text, "motions": ["Chetaev", "vakonomic"], "steps": 20 });
+        let question =
+            json!({ "ask": "motions", "name": "a", "text": text, "motions": ["Chetaev", "vakonomic"], "steps": 20 });
         let (answer, numbers) = ask(question);
         let gap = &answer["gaps"][0];
         assert_eq!(gap["unit"], "m", "{answer}");
@@ -210,7 +214,10 @@ fn notes_are_those_of_the_check() {
     let remarks = Scene::remarks("a", &odd, set).unwrap();
     assert_eq!(answer["remarks"].as_array().map(Vec::len), Some(remarks.len()));
     let line = odd.lines().position(|line| line.starts_with("unused")).unwrap() + 1;
-    assert_eq!((&answer["remarks"][0]["line"], &answer["remarks"][0]["message"]), (&json!(line), &json!(remarks[0].kind.to_string())));
+    assert_eq!(
+        (&answer["remarks"][0]["line"], &answer["remarks"][0]["message"]),
+        (&json!(line), &json!(remarks[0].kind.to_string()))
+    );
 }
 
 /// The page lists and completes every function that a formula can call.
