@@ -1,8 +1,8 @@
 //! What is said of one motion beside it: its integrals, its derivatives by the numbers that can be set, and whether
 //! equations are its.
 
-use deltaq::{Choice, sensitivities, setting};
 use integrals::Integrals;
+use motion::{Choice, sensitivities, setting};
 use review::{Asked, Mend, Verdict, mends};
 use serde_json::{Value, json};
 
