@@ -13,11 +13,13 @@ from html.parser import HTMLParser
 from pathlib import Path
 from urllib.parse import unquote, urlsplit
 
+import notebooks
 import python_reference
 
 HERE = Path(__file__).resolve().parent
 ROOT = HERE.parents[1]
 PAGES = ["README.md", "NOTATION.md", "ARCHITECTURE.md", "CONTRIBUTING.md", "CHANGELOG.md", "docs/*.md", "docs/tutorials/*.md", "reports/**/*.md", "validation/benchmark/README.md"]
+NOTEBOOKS = "docs/*.ipynb"
 MODULE = "crates/python/python/deltaq"
 EXPLORER = "reports/explore.html"
 LINK = re.compile(r'(\]\(|src="|href=")([^)\s"]+)')
@@ -45,10 +47,14 @@ def stage(source):
                 return match[0].rstrip("/") + "/index.md"
             if inside not in pages and place.is_file():
                 files.add(inside)
-            return match[0]
+            return match[0].replace(".ipynb", ".md")
 
         text = LINK.sub(link, (ROOT / page).read_text("utf-8"))
         write(source / page, text)
+    for notebook in ROOT.glob(NOTEBOOKS):
+        place = source / notebook.relative_to(ROOT)
+        write(place.with_suffix(".md"), notebooks.page(notebook, lambda name, bytes, place=place: write(place.with_name(name), bytes)))
+        files.add(notebook.relative_to(ROOT))
     for folder in folders:
         listed, page = listing(folder)
         files |= {folder / file for file in listed}
@@ -116,7 +122,8 @@ def main(out, rust):
     for folder in (source, out):
         shutil.rmtree(folder, ignore_errors=True)
     files = stage(source)
-    write(source / "python.md", python_reference.page(ROOT / MODULE))
+    for name, text in python_reference.pages(ROOT / MODULE).items():
+        write(source / f"{name}.md", text)
     shutil.copy(HERE / "index.md", source)
     subprocess.run([sys.executable, "-m", "sphinx", "--quiet", "--jobs", "auto", "--conf-dir", HERE, source, out], check=True)
     for page in out.rglob("*.html"):

@@ -29,7 +29,7 @@ SCRIPT = {"E": "ℰ", "H": "ℋ", "L": "ℒ", "S": "𝒮"}
 def mathml(text, display):
     """A formula as MathML, which browsers set without a script, a font or a network."""
     text = re.sub(r"\\mathcal\s*\{?([A-Z])\}?", lambda letter: SCRIPT[letter[1]], text)
-    return convert(text, display=display)
+    return convert(text.replace("{aligned}", "{split}"), display=display)
 
 
 def formula(self, node):

@@ -3,6 +3,7 @@
 import { createRequire } from "node:module";
 import { readFileSync } from "node:fs";
 
+import { yours } from "./editor.test.mjs";
 import { STILL, resize } from "./pages.test.mjs";
 
 const SIZES = [[1280, 600], [400, 800]];
@@ -20,7 +21,7 @@ export async function tabs({ open, leave, link, must }) {
     return [tab.dataset.tab, open.join(), stops.join(), tab.getAttribute("aria-selected"), String(named)].join(" ");
   });
   await page.focus("[data-tab=numbers]");
-  for (const [key, tab] of [["ArrowRight", "verdict"], ["ArrowRight", "equations"], ["End", "text"], ["ArrowLeft", "derivatives"], ["ArrowLeft", "integrals"], ["ArrowLeft", "equations"], ["ArrowLeft", "verdict"], ["ArrowLeft", "numbers"]]) {
+  for (const [key, tab] of [["ArrowRight", "verdict"], ["ArrowRight", "equations"], ["End", "text"], ["ArrowLeft", "review"], ["ArrowLeft", "derivatives"], ["ArrowLeft", "integrals"], ["ArrowLeft", "equations"], ["ArrowLeft", "verdict"], ["ArrowLeft", "numbers"]]) {
     await page.keyboard.press(key);
     must((await now()) === `${tab} ${tab} ${tab} true true`, `${key} leads to: ${await now()}`);
   }
@@ -79,7 +80,8 @@ export async function calm({ open, leave, forget, link, must, choose, fresh, url
 const STATES = [
   ...["numbers", "verdict", "equations", "text"].map((tab) => [tab, { scene: "sledge", tab, time: 1 }]),
   ...["integrals", "derivatives"].map((tab) => [tab, { scene: "sledge", tab }, (page) => page.waitForSelector(`#${tab} table`)]),
-  ["tour, a question", { scene: "velocity-pendulum", tab: "tour", step: 1, guess: -1 }],
+  ["review", { scene: "sledge", tab: "review", time: 1 }, (page) => yours(page, "x'' = -g*sin(alpha) - l*sin(phi)\ny'' = l*cos(phi)\nphi'' = 0*t")],
+  ["tour, a question", { scene: "sledge", set: { duration: 5 }, tab: "tour", step: 1, guess: -1 }],
   ["tour, an answer", { scene: "sledge", tab: "tour", step: 3, guess: 1, set: { mu0_1: 2, duration: 5 }, time: 1 }],
   ["forces", { scene: "sledge", forces: true, time: 1 }],
   ["the start in the hand", { scene: "sledge", grips: true }],

@@ -9,6 +9,8 @@ import { gzipSync } from "node:zlib";
 
 import { build } from "esbuild";
 
+import { EXAMPLES } from "./examples.js";
+
 const [program, deltaq, out, digest] = process.argv.slice(2);
 const here = dirname(fileURLToPath(import.meta.url));
 const read = (name) => readFileSync(join(here, name), "utf8");
@@ -25,6 +27,13 @@ const markup = (text) => text.replaceAll("&", "&amp;").replaceAll("<", "&lt;");
 
 const said = (...words) => execFileSync(deltaq, words, { encoding: "utf8", maxBuffer: 1 << 26 });
 const { scenes } = JSON.parse(said("list", "--format", "json"));
+// Every word that the schema of scenes knows as a key.
+const keysOf = (schema) => Object.entries(schema ?? {}).flatMap(([key, value]) => [
+  ...(key === "properties" ? Object.keys(value) : []), ...(typeof value === "object" ? keysOf(value) : [])]);
+const keys = [...new Set(keysOf(JSON.parse(said("new", "--schema"))))].sort();
+const examples = [
+  { name: "A system in formulas, instead of this text", whole: true, text: said("new") },
+  { name: "A robot of bodies, instead of this text", whole: true, text: said("new", "--bodies") }, ...EXAMPLES];
 const texts = scenes.map(({ name, title, source, group }) => ({ name, title, source, group, text: said("show", name, "--source") }));
 
 const parts = ["uplot", "katex"].map((name) => {
@@ -32,15 +41,27 @@ const parts = ["uplot", "katex"].map((name) => {
   return `${name} ${version} (${license})\n\n${read(`node_modules/${name}/LICENSE`)}`;
 });
 
+// A program without its sections of names and notes, which it does not need to run.
+function bare(bytes) {
+  const parts = [bytes.subarray(0, 8)];
+  for (let at = 8, end; at < bytes.length; at = end) {
+    let [length, place, shift] = [0, at + 1, 0];
+    do length += (bytes[place] & 127) * 2 ** shift; while (((shift += 7), bytes[place++] & 128));
+    end = place + length;
+    if (bytes[at] !== 0) parts.push(bytes.subarray(at, end));
+  }
+  return Buffer.concat(parts);
+}
+
 const zipped = (bytes) => gzipSync(bytes, { level: 9 }).toString("base64");
 
 const pieces = {
   digest,
   style: await bundled("style.css", { format: undefined, external: [] }),
   licences: markup(parts.join("\n\n")),
-  scenes: zipped(JSON.stringify(texts)),
+  scenes: zipped(JSON.stringify({ scenes: texts, keys, examples })),
   worker: script(await bundled("worker.js")),
-  program: zipped(readFileSync(program)),
+  program: zipped(bare(readFileSync(program))),
   words: zipped(await bundled("words.js", { format: "esm" })),
   script: script(await bundled("main.js")),
 };

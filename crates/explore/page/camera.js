@@ -1,5 +1,6 @@
 // How the picture is looked at: the camera rests or goes with a motion, and differences are drawn as they are or larger.
 
+import { REST } from "./stage.js";
 import { state } from "./state.js";
 
 export class Camera {
@@ -17,9 +18,10 @@ export class Camera {
 
   // The motions that it can go with.
   show({ motions }) {
-    const labels = ["", ...motions.map(({ label }) => label)];
+    const labels = ["", REST, ...motions.map(({ label }) => label)];
+    const names = { "": "on the bodies", [REST]: "at rest" };
     if (labels.join("\n") !== [...this.follow.options].map(({ value }) => value).join("\n")) {
-      this.follow.replaceChildren(...labels.map((label) => new Option(label ? `with ${label}` : "at rest", label)));
+      this.follow.replaceChildren(...labels.map((label) => new Option(names[label] ?? `with ${label}`, label)));
     }
     this.follow.value = labels.includes(state.follow) ? state.follow : "";
   }

@@ -7,6 +7,29 @@ const HEADINGS = {
   costate: "Costates P(t₀)", kappa: "Between Chetaev and vakonomic", run: "Run",
 };
 
+// Rows in all up to which all groups are open; of a longer list groups are open up to there, and parameters whose names begin
+// alike, at least ALIKE, have a group of their own.
+const ROWS = 20;
+const ALIKE = 4;
+
+// Controls in groups: each a heading and its controls, costates of each removal on their own.
+function grouped(controls) {
+  const isLong = controls.filter(({ kind }) => kind !== "costate").length > ROWS;
+  const stem = ({ kind, name }) => {
+    const isAlike = ({ kind: other, name: also }) => other === kind && also[0] === name[0];
+    return isLong && kind === "parameter" && controls.filter(isAlike).length >= ALIKE ? `${name[0]} …` : undefined;
+  };
+  const groups = Object.keys(HEADINGS).map((kind) => controls.filter((control) => control.kind === kind)).flatMap((of) => {
+    const part = (control) => control.motion ?? stem(control);
+    return [...new Set(of.map(part))].map((name) => [name, of.filter((control) => part(control) === name)]);
+  });
+  let rows = 0;
+  return groups.map(([name, of]) => {
+    const heading = HEADINGS[of[0].kind] + (name === undefined ? "" : `, ${name}`);
+    return { heading, of, motion: of[0].motion, open: !isLong || (rows += of.length) <= ROWS };
+  });
+}
+
 export class Controls {
   // `set` is called with every change: numbers by name, or null for the number of the text.
   constructor(element, set) {
@@ -26,19 +49,14 @@ export class Controls {
       this.set(Object.fromEntries(changed.flatMap(({ control }) => namesOf(control)).map((name) => [name, null])), false);
     });
     this.element.append(all);
-    for (const [kind, heading] of Object.entries(HEADINGS)) {
-      const of = controls.filter((control) => control.kind === kind);
-      // costates of each removal on their own
-      for (const motion of new Set(of.map((control) => control.motion))) {
-        const group = document.createElement("fieldset");
-        group.innerHTML = "<legend></legend>";
-        group.firstChild.textContent = motion === undefined ? heading : `${heading}, ${motion}`;
-        if (motion !== undefined) group.dataset.motion = motion;
-        for (const control of of.filter((control) => control.motion === motion)) {
-          group.append(this.row(control, namesOf(control).map((name) => set[name]).find((x) => x !== undefined)));
-        }
-        this.element.append(group);
-      }
+    for (const { heading, of, motion, open } of grouped(controls)) {
+      const group = document.createElement("details");
+      group.innerHTML = "<summary></summary>";
+      group.firstChild.textContent = heading;
+      if (motion !== undefined) group.dataset.motion = motion;
+      group.append(...of.map((control) => this.row(control, namesOf(control).map((name) => set[name]).find((x) => x !== undefined))));
+      group.open = open || group.querySelector(".changed") !== null;
+      this.element.append(group);
     }
     this.touched();
   }
@@ -50,7 +68,7 @@ export class Controls {
 
   // Groups of motions that are not shown are not used.
   shown(labels) {
-    for (const group of this.element.querySelectorAll("fieldset[data-motion]")) group.hidden = !labels.includes(group.dataset.motion);
+    for (const group of this.element.querySelectorAll("[data-motion]")) group.hidden = !labels.includes(group.dataset.motion);
   }
 
   touched() {

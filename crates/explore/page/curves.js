@@ -1,7 +1,9 @@
-// Quantities against time, with a cursor that the animation moves and that moves the animation; a part of the time larger.
+// The path, and quantities against time, with a cursor that the animation moves and that moves the animation; a part of the
+// time larger.
 
 import uPlot from "uplot";
 
+import { add, empty, join, near } from "./frame.js";
 import { ink } from "./look.js";
 
 const NAMES = { coordinate: "", velocity: "", multiplier: "multipliers", invariant: "should be constant: ", observable: "" };
@@ -12,6 +14,8 @@ const RUNAWAY = 8;
 const PART = 0.03;
 // The largest magnification of time.
 const LARGEST = 200;
+// Gaps at a glance, of which no error is known, are shown from here.
+const GLANCE = 1e-6;
 
 export class Curves {
   // `go` is called with a time that was pointed at; `note` shows what is cut off, the button `whole` shows
@@ -20,7 +24,8 @@ export class Curves {
     Object.assign(this, { place, select, note, whole, go, window: null });
     whole.addEventListener("click", () => {
       whole.setAttribute("aria-pressed", String(whole.ariaPressed !== "true"));
-      this.magnify(1);
+      if (this.isPath) this.resize();
+      else this.magnify(1);
     });
     new ResizeObserver(() => this.resize()).observe(place);
   }
@@ -39,10 +44,8 @@ export class Curves {
   }
 
   options() {
-    const { motions, gaps, units } = this.samples;
-    const options = gaps.length ? [["gap", `gap to ${gaps[0].first}`], ["log", `gap to ${gaps[0].first}, log–log`]] : [];
-    if (motions.length) options.push(["observable:energy", "energy"]);
-    if (motions.some((motion) => motion.multipliers.length)) options.push(["multiplier", "multipliers, costates"]);
+    const { motions, gaps, units, plane } = this.samples;
+    const options = plane && motions.length ? [["path", `path: ${plane.names[1]} over ${plane.names[0]} (m)`]] : [];
     for (const group of ["coordinate", "velocity", "observable", "invariant"]) {
       const names = new Set(motions.flatMap((motion) => Object.keys(motion.columns[group])));
       for (const name of names) {
@@ -50,6 +53,8 @@ export class Curves {
         if (!options.some(([known]) => known === key)) options.push([key, NAMES[group] + name]);
       }
     }
+    if (motions.some((motion) => motion.multipliers.length)) options.push(["multiplier", "multipliers, costates"]);
+    if (gaps.length) options.push(["gap", `distance to ${gaps[0].first}, logarithmic`], ["log", `distance to ${gaps[0].first}, log–log`]);
     const unit = (key) => units[isGap(key) ? "gap" : key];
     return options.map(([key, name]) => [key, unit(key) ? `${name} (${unit(key)})` : name]);
   }
@@ -68,11 +73,12 @@ export class Curves {
     if (isGap(key)) {
       for (const { t, gap, limit, second } of gaps) {
         const { look } = motions.find((motion) => motion.label === second);
-        // in doubt, as at a glance, there is no limit; what is not certain is not drawn
-        const isCertain = (x, i) => !Number.isFinite(limit[i]) || x > limit[i];
+        // in doubt, as at a glance, there is no limit; neither what is not certain is drawn nor what is below half of all limits
+        const known = limit.filter(Number.isFinite).sort((a, b) => a - b);
+        const floor = known.length ? known[known.length >> 1] : GLANCE;
+        const isCertain = (x, i) => x > floor && (!Number.isFinite(limit[i]) || x > limit[i]);
         add(t, gap.map((x, i) => (isCertain(x, i) ? logarithm(x) : null)), second, look);
-        if (limit.every((x) => !Number.isFinite(x))) continue;
-        add(t, limit.map(logarithm), "certain above", { colour: `${look.colour}99`, dash: [2, 3], width: 1.6 });
+        if (known.length) add(t, limit.map((x) => logarithm(Math.max(x, floor))), "error", { colour: `${look.colour}99`, dash: [2, 3], width: 1.6 });
       }
       return { tables, series };
     }
@@ -86,8 +92,71 @@ export class Curves {
     return { tables, series };
   }
 
+  // Ranges of the path: of the first motion and those near it, at one scale.
+  ranges() {
+    const { motions, plane } = this.samples;
+    const boxes = motions.map((motion) => {
+      const w = empty();
+      for (let row = 0; row < motion.rows; row++) add(w, ...plane.at(motion, row));
+      return w;
+    });
+    const [together, far] = near(boxes[0], boxes);
+    this.cutting(motions.filter((_, i) => far.includes(boxes[i])).map(({ label }) => label));
+    const box = this.whole.ariaPressed === "true" ? boxes.reduce(join) : together;
+    const pixels = [this.place.clientWidth - 80, this.height() - 40].map((x) => Math.max(1, x));
+    const scale = Math.max(...pixels.map((n, i) => (1.1 * (box[i + 2] - box[i])) / n));
+    return pixels.map((n, i) => [-1, 1].map((side) => (box[i] + box[i + 2] + side * scale * n) / 2));
+  }
+
+  // Says what is cut off; the button shows it.
+  cutting(labels) {
+    const all = this.whole.ariaPressed === "true";
+    this.note.textContent = labels.length && !all ? `${[...new Set(labels)].join(", ")}: out of the picture` : "";
+    this.whole.hidden = !labels.length && !all;
+  }
+
+  // The paths of all motions, and where each is now.
+  paths(plot) {
+    const { ctx: context, bbox: { left, top, width, height } } = plot;
+    const { plane, motions } = this.samples;
+    const ratio = devicePixelRatio;
+    context.save();
+    context.beginPath();
+    context.rect(left, top, width, height);
+    context.clip();
+    for (const motion of motions) {
+      const place = (row) => plane.at(motion, row).map((x, i) => plot.valToPos(x, "xy"[i], true));
+      context.strokeStyle = context.fillStyle = motion.look.colour;
+      context.lineWidth = motion.look.width * 0.6 * ratio;
+      context.setLineDash(motion.look.dash.map((x) => x * ratio));
+      context.beginPath();
+      for (let row = 0; row < motion.rows; row++) context.lineTo(...place(row));
+      context.stroke();
+      context.setLineDash([]);
+      context.beginPath();
+      const [row, part] = motion.locate(this.t ?? this.samples.start);
+      const [from, to] = [place(row), place(Math.min(row + 1, motion.rows - 1))];
+      context.arc(...from.map((x, i) => x + part * (to[i] - x)), 5 * ratio, 0, 2 * Math.PI);
+      context.fill();
+    }
+    context.restore();
+  }
+
+  // The time at which the first motion is nearest to a point of the plane.
+  nearest(x, y) {
+    const { plane, motions: [motion] } = this.samples;
+    const far = Array.from({ length: motion.rows }, (_, row) => {
+      const [a, b] = plane.at(motion, row);
+      return Math.hypot(this.plot.valToPos(a, "x") - x, this.plot.valToPos(b, "y") - y);
+    });
+    return motion.time(far.indexOf(Math.min(...far)));
+  }
+
   draw(key) {
-    const { tables, series } = key ? this.data(key) : { tables: [], series: [] };
+    this.isPath = key === "path";
+    this.select.closest("#above").classList.toggle("path", this.isPath);
+    if (this.isPath) this.limits = this.ranges();
+    const { tables, series } = !key ? { tables: [], series: [] } : this.isPath ? { tables: [[[0, 1], [0, 1]]], series: [{ show: false }] } : this.data(key);
     const { start, end } = this.samples;
     // along the axis: t, or the logarithm of t − start
     const log = key === "log";
@@ -100,7 +169,7 @@ export class Curves {
     this.ends = log ? [Math.min(...tables.map(([t]) => t[0])), this.along(end)] : [start, end];
     this.labels = series.map(({ label }) => label);
     this.cuts = !isGap(key);
-    const looks = JSON.stringify([key, start, end, series.map(({ label, stroke }) => [label, stroke]), ink("ink")]);
+    const looks = JSON.stringify([key, this.isPath && this.limits, start, end, series.map(({ label, stroke }) => [label, stroke]), ink("ink")]);
     if (this.plot && looks === this.looks) {
       this.plot.setData(uPlot.join(tables));
       return this.at(this.t);
@@ -114,12 +183,12 @@ export class Curves {
     const powers = (is) => (is ? { incrs: [1, 2, 3, 5, 10, 20], values: (_, ticks) => ticks.map((x) => `1e${x}`) } : { values: (_, ticks) => ticks.map(label) });
     const options = {
       width: this.place.clientWidth, height: this.height(), padding: [10, 12, 0, 0],
-      cursor: { drag: { setScale: false, x: false, y: false }, y: false, points: { size: 6 } },
-      scales: { x: { time: false, range: () => this.span() }, y: { range: (plot) => this.heights(plot.data) } },
+      cursor: { show: !this.isPath, drag: { setScale: false, x: false, y: false }, y: false, points: { size: 6 } },
+      scales: { x: { time: false, range: () => (this.isPath ? this.limits[0] : this.span()) }, y: { range: (plot) => (this.isPath ? this.limits[1] : this.heights(plot.data)) } },
       axes: [{ ...axis, size: 28, ...powers(log) }, { ...axis, size: 56, space: 22, ...powers(isGap(key)) }],
       series: [{ label: "t", value: (_, x) => (x == null ? "–" : `${Number(this.time(x).toPrecision(4))} s`) }, ...series],
-      legend: { live: true },
-      hooks: { ready: [(plot) => this.ready(plot)] },
+      legend: { live: true, show: !this.isPath },
+      hooks: { ready: [(plot) => this.ready(plot)], draw: this.isPath ? [(plot) => this.paths(plot)] : [] },
     };
     this.plot = new uPlot(options, uPlot.join(tables), this.place);
   }
@@ -144,9 +213,7 @@ export class Curves {
       return i > 0 && !isFlat(seen[i - 1]) && after[1] - after[0] > RUNAWAY * (before[1] - before[0]);
     });
     const runs = last > 0 && seen.length - last <= seen.length / 2 && !all ? seen.splice(last) : [];
-    const cut = new Set([...runs, ...seen.filter((curve) => curve.cut)].map(({ label }) => label));
-    this.note.textContent = cut.size ? `${[...cut].join(", ")}: out of the picture` : "";
-    this.whole.hidden = !cut.size && this.whole.ariaPressed !== "true";
+    this.cutting([...runs, ...seen.filter((curve) => curve.cut)].map(({ label }) => label));
     const [low, high] = join(seen);
     const room = 0.06 * (high - low) || 1e-3 * Math.abs(high) || 1;
     return [low - room, high + room];
@@ -179,17 +246,20 @@ export class Curves {
 
   height() {
     // two lines for the legend, whose values are of changing length
-    return Math.max(110, this.place.clientHeight - 44);
+    return Math.max(110, this.place.clientHeight - (this.isPath ? 0 : 44));
   }
 
   resize() {
-    if (this.plot && this.place.clientWidth) this.plot.setSize({ width: this.place.clientWidth, height: this.height() });
+    if (!this.plot || !this.place.clientWidth) return;
+    if (this.isPath) this.limits = this.ranges();
+    this.plot.setSize({ width: this.place.clientWidth, height: this.height() });
   }
 
   at(t) {
     const moved = t !== this.t;
     this.t = t;
     if (!this.plot) return;
+    if (this.isPath) return this.plot.redraw(false);
     const x = this.along(t);
     const [from, to] = this.span();
     // what is shown goes with the time
@@ -208,6 +278,7 @@ export class Curves {
   listen({ over }) {
     const fingers = new Map();
     const place = ({ clientX }) => this.plot.posToVal(clientX - over.getBoundingClientRect().left, "x");
+    const time = (event) => (this.isPath ? this.nearest(event.offsetX, event.offsetY) : this.time(place(event)));
     const apart = () => {
       const [a, b] = [...fingers.values()].map(({ clientX }) => clientX);
       return Math.abs(a - b) + 1;
@@ -215,18 +286,19 @@ export class Curves {
     over.addEventListener("pointerdown", (event) => {
       over.setPointerCapture(event.pointerId);
       fingers.set(event.pointerId, event);
-      if (fingers.size === 1) this.go(this.time(place(event)));
+      if (fingers.size === 1) this.go(time(event));
     });
     over.addEventListener("pointermove", (event) => {
       if (!fingers.has(event.pointerId)) return;
-      const before = fingers.size === 2 && apart();
+      const before = fingers.size === 2 && !this.isPath && apart();
       fingers.set(event.pointerId, event);
       // one goes through time, two draw apart
       if (before) this.magnify(apart() / before, place(event));
-      else if (fingers.size === 1) this.go(this.time(place(event)));
+      else if (fingers.size === 1) this.go(time(event));
     });
     for (const end of ["pointerup", "pointercancel"]) over.addEventListener(end, ({ pointerId }) => fingers.delete(pointerId));
     over.addEventListener("wheel", (event) => {
+      if (this.isPath) return;
       event.preventDefault();
       const [from, to] = this.span();
       if (event.shiftKey || Math.abs(event.deltaX) > Math.abs(event.deltaY)) this.put(from + ((to - from) * (event.deltaX || event.deltaY)) / 1000, to - from);

@@ -20,7 +20,8 @@ import { arrived, decode, forget, push, remember, settle, shownOnly, state, turn
 import * as store from "./store.js";
 import { Take } from "./take.js";
 import { Text } from "./text.js";
-import { SKATE, STEPS, Tour, stateOf } from "./tour.js";
+import { SKATE, STEPS, Tour, stateOf, veiled } from "./tour.js";
+import { Yours } from "./yours.js";
 
 const element = (id) => document.getElementById(id);
 const chosen = JSON.parse(element("chosen").textContent);
@@ -43,6 +44,7 @@ const clock = new Clock(
   (t) => {
     stage.draw(t);
     curves.at(t);
+    if (clock.playing && window.explored) window.explored.moved ??= moved ??= performance.now();
     element("key").textContent = told(clock.samples, t, state.forces);
   },
 );
@@ -65,19 +67,26 @@ const motionsLegend = new Legend(element("legend"), (label, on) => {
   outdated();
   motions(false, false);
 });
-const editor = new Text({ area: element("area"), marks: element("marks"), faults: element("faults") }, (typed) => {
-  const write = () => Object.assign(state, { scene: OWN, text: typed });
+const parts = ["area", "marks", "offers", "faults", "notes", "functions", "example"].map((id) => [id, element(id)]);
+const editor = new Text(Object.fromEntries(parts), (typed) => {
+  const write = () => Object.assign(state, { scene: OWN, text: typed, time: 0 });
   if (own()) write();
   else turn(write);
   keep();
   remember();
   undoing();
-  readScene(false).then(keep);
+  readScene(true).then(() => {
+    keep();
+    run();
+  });
 });
 
 const tour = new Tour(element("tour"), {
   go: enter,
-  leave: () => openTab("numbers"),
+  leave() {
+    openTab("numbers");
+    run();
+  },
   write: () => openTab("text"),
   set: (numbers, moving) => set(numbers, moving),
   facts: () => ({ samples: clock.samples, decided: deciding.answer, set: state.set }),
@@ -92,6 +101,9 @@ const tour = new Tour(element("tour"), {
     run();
   },
 });
+
+const yours = new Yours({ theirs: element("theirs"), under: element("under"), judge: element("judge"), judged: element("judged") },
+  async (theirs) => (await motionsEngine.ask("review", question("review", { theirs })))?.answer);
 
 function keep() {
   if (own() && (ownTexts.draft === null || state.text !== SKATE)) ownTexts.draft = state.text;
@@ -126,6 +138,7 @@ function empty(reason = null) {
 // Reads the scene; with `anew` it is another one.
 async function readScene(anew) {
   outdated();
+  yours.clear();
   if (anew) {
     motionsEngine.stop();
     empty();
@@ -146,11 +159,19 @@ async function readScene(anew) {
   editor.mark([]);
   scene = answer;
   for (const name of answer.unknown) delete state.set[name];
-  if (answer.unknown.length) notice(`Nothing in the text is called ${answer.unknown.join(", ")} any more.`);
+  if (answer.unknown.length) notice(`The text no longer defines ${answer.unknown.join(", ")}.`);
   entitled(scene);
+  check();
   controls.build(scene.controls, state.set);
   legend();
   await motions(false, anew);
+}
+
+// Notes on the text, for who looks at it.
+async function check() {
+  if (state.tab !== "text") return;
+  const reply = await wordsEngine.ask("check", question("check"));
+  if (reply?.answer.remarks) editor.mark([], "", reply.answer.remarks);
 }
 
 function legend(answers = []) {
@@ -181,7 +202,7 @@ async function motions(glance, anew) {
   }
 }
 
-let drawn = 0, first;
+let drawn = 0, first, moved;
 
 function draw(samples, anew) {
   clock.samples = samples;
@@ -209,7 +230,7 @@ function show(reply, anew) {
   if (anew || answer.motions.some(({ error }) => error !== null)) legend(answer.motions);
   tour.update();
   // for tests and for who looks behind the page
-  window.explored = { answer, scenes, milliseconds: reply.milliseconds, drawn: ++drawn, samples, stage, curves, grips, first: (first ??= performance.now()) };
+  window.explored = { answer, scenes, milliseconds: reply.milliseconds, drawn: ++drawn, samples, stage, curves, grips, first: (first ??= performance.now()), moved };
 }
 
 // What takes longer, in the other worker.
@@ -260,7 +281,7 @@ function choose(choice) {
 
 // Runs by itself, if that is wanted.
 function run() {
-  if (!still.matches && !element("play").disabled) clock.play();
+  if (!still.matches && !clock.playing && !element("play").disabled) clock.play();
 }
 
 // Goes to a step of the tour.
@@ -274,10 +295,8 @@ function enter(step) {
 const asks = () => state.tab === "tour" && state.guess < 0;
 
 function showTour() {
-  const { classList } = document.querySelector("main");
-  classList.toggle("touring", state.tab === "tour");
-  classList.toggle("asking", asks());
-  stage.veil(asks());
+  document.querySelector("main").classList.toggle("touring", state.tab === "tour");
+  stage.veil((labels) => (asks() ? veiled(state.step, labels) : []));
   if (state.tab === "tour") tour.show(state.step, state.guess);
   deciding.look(state.tab);
 }
@@ -297,6 +316,7 @@ function openTab(name) {
     if (scene) controls.build(scene.controls, state.set);
     if (scene) controls.shown(shown());
   }
+  if (name === "text") check();
   showTour();
   remember();
 }
@@ -328,7 +348,7 @@ function showMore(what, is) {
 
 function keepText() {
   const isKept = ownTexts.isKept(scene.title, state.text);
-  if (!ownTexts.keep(scene.title, isKept ? null : state.text)) say("This browser keeps nothing.", true);
+  if (!ownTexts.keep(scene.title, isKept ? null : state.text)) say("This browser does not store texts.", true);
   keep();
 }
 
@@ -364,7 +384,7 @@ async function arrive(isSame = false) {
   showTour();
   await readScene(!isSame);
   keep();
-  if (!isSame && !state.time && !state.grips && !asks()) run();
+  if (!isSame && !state.time && !state.grips) run();
 }
 
 new Take(element("takes"), {
@@ -389,7 +409,9 @@ const begin = () =>
 async function start() {
   const source = element("worker").textContent;
   const compiled = compile(element("program").textContent);
-  scenes = JSON.parse(await textOf(element("scenes").textContent));
+  const texts = JSON.parse(await textOf(element("scenes").textContent));
+  ({ scenes } = texts);
+  editor.know(texts.keys, texts.examples);
   element("scene").prepend(...groups(scenes), new Option("own text", OWN));
   const module = await compiled;
   motionsEngine = new Engine(module, source);

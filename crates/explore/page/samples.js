@@ -104,7 +104,7 @@ export class Samples {
     const counts = {};
     const known = coordinates.filter(({ unit }) => unit);
     const units = known.flatMap(({ name, unit }) => [[`coordinate:${name}`, unit], [`velocity:${name}'`, `${unit}/s`]]);
-    this.units = { gap: "m √kg", "observable:energy": "J", ...Object.fromEntries(units) };
+    this.units = { gap: answer.gaps[0]?.unit, "observable:energy": "J", ...Object.fromEntries(units) };
     Object.assign(this, { start: answer.start, end: answer.end, times: answer.times, bodies: answer.bodies, milliseconds });
     this.numbers = numbers;
     this.all = answer.motions;
@@ -116,12 +116,28 @@ export class Samples {
       const further = (counts[motion.formulation] = (counts[motion.formulation] ?? -1) + 1);
       return motion.refused ? [] : [new Motion(motion, numbers, names, answer.bodies, further, answer.contacts ?? 0)];
     });
+    this.plane = this.motions.length ? this.pathIn(known.filter(({ unit }) => unit === "m").map(({ name }) => name)) : null;
     this.still = answer.ground;
     this.gaps = answer.gaps.map((gap) => {
       const column = (i) => Array.from({ length: gap.rows }, (_, row) => numbers[gap.from + 3 * row + i]);
       const [first, second] = [gap.first, gap.second].map((i) => answer.motions[i].label);
       return { ...gap, first, second, t: column(0), gap: column(1), limit: column(2) };
     });
+  }
+
+  // The plane of the path, the longer axis first: of two coordinates in metres, or else of two axes of space, in which the marked
+  // points move; null if they do not move.
+  pathIn(metres) {
+    const isOwn = metres.length > 1;
+    const names = isOwn ? metres.slice(0, 2) : ["x", "y", "z"];
+    const at = (motion, row) => (isOwn ? names.map((name) => motion.value(row, motion.columns.coordinate[name])) : motion.track(row));
+    const [first] = this.motions;
+    const places = Array.from({ length: first.rows }, (_, row) => at(first, row));
+    const long = names.map((_, i) => Math.max(...places.map((p) => p[i])) - Math.min(...places.map((p) => p[i])));
+    const axes = [...names.keys()].sort((i, j) => long[j] - long[i]).slice(0, 2);
+    // what is upright in space is so on the page
+    if (axes[0] === 2) axes.reverse();
+    return long[axes[0]] > 0 ? { names: axes.map((i) => names[i]), at: (motion, row) => axes.map((i) => at(motion, row)[i]) } : null;
   }
 
   // The row of the ground at t.

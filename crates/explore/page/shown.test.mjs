@@ -17,12 +17,12 @@ const sizes = async (page, check) => {
 
 // Costates of the motions that are shown, of each removal; what is none of its constants is zero.
 const used = (page) => page.evaluate(() => {
-  const names = [...document.querySelectorAll("fieldset[data-motion] .row")].map((row) => row.dataset.name.split("@"));
+  const names = [...document.querySelectorAll("[data-motion] .row")].map((row) => row.dataset.name.split("@"));
   const motions = window.explored.answer.motions.map(({ label, constants }) => [label, constants]);
   const of = ([name, label]) => motions.filter(([other]) => other === label).map(([, constants]) => constants.find((constant) => constant.name === name)?.value ?? 0);
   return Object.fromEntries(names.flatMap(([name, label]) => of([name, label]).map((x) => [`${name}@${label}`, x])));
 });
-const rows = (page) => page.evaluate(() => Object.fromEntries([...document.querySelectorAll("fieldset[data-motion]:not([hidden]) .row")].map((row) =>
+const rows = (page) => page.evaluate(() => Object.fromEntries([...document.querySelectorAll("[data-motion]:not([hidden]) .row")].map((row) =>
   [row.dataset.name, Number(row.querySelector("input[type=number]").value)])));
 const set = (page, name, x) => page.evaluate((name, x) => {
   const number = document.querySelector(`[data-name="${CSS.escape(name)}"] input[type=number]`);
@@ -229,7 +229,7 @@ export async function table({ open, leave, link, must, pictures }) {
         must(from === "–" && by === "–", `${names}: ${from}, ${by} of motions that are the same`);
       }
     }
-    must(sentence.includes(verdicts[0] === "same" ? "are the same, because" : "part because"), `why: ${sentence}`);
+    must(sentence.includes(verdicts[0] === "same" ? "are the same because" : "diverge because"), `why: ${sentence}`);
     must((await page.$eval("#verdict .sentence", ({ textContent }) => textContent)) === sentence, "the sentence is not shown");
     must((await page.$eval("#said", ({ textContent }) => textContent)) === sentence, "the sentence is not below the picture");
     await page.screenshot({ path: join(pictures, `table-${state.scene}.png`) });

@@ -14,7 +14,7 @@ const BELOW = "/some/project/";
 const TYPES = { ".html": "text/html", ".js": "text/javascript", ".css": "text/css", ".svg": "image/svg+xml", ".json": "application/json" };
 // References made by cargo have a look of their own, the explorer checks of its own.
 const OTHERS = ["rust", "explore", "explore.html", "_static", "_downloads", "_sources", "_images"];
-const PICTURED = ["index", "README", "docs/guide", "docs/fitting", "docs/python", "python", "reports/README", "reports/stability", "reports/scenes/sledge", "search"];
+const PICTURED = ["index", "README", "docs/guide", "docs/fitting", "docs/python", "docs/install", "docs/tour", "python", "python/System", "reports/README", "reports/stability", "reports/scenes/sledge", "search"];
 const LOOKS = [["light", 1280, "light"], ["dark", 1280, "dark"], ["phone", 400, "light"]];
 const NARROW = ["narrow", 320, "light"];
 
@@ -47,6 +47,16 @@ page.on("console", (message) => ["error", "warn"].includes(message.type()) && co
 page.on("pageerror", (error) => complain(error.message));
 page.on("request", (request) => request.url().startsWith(root) || /^(data|blob):/.test(request.url()) || complain(`asks for ${request.url()}`));
 
+// What a page has to have, by selectors: to use it begins with installing it; a notebook has equations in rows, tables, pictures
+// and what was printed; the reference of Python has each class on a page.
+const HAVE = {
+  "index.html": ['.doors a[href="docs/install.html"]', '.sidebar-tree .caption + ul > li:first-child > a[href="docs/install.html"]'],
+  "docs/tour.html": ["article math mtr + mtr", "article table td", 'article img[src$=".png"]', 'article img[src$=".svg"]', 'a[href="tour.ipynb"]'],
+  "docs/films.html": ['article img[src$=".png"]', ".highlight-text"],
+  "python.html": ['a[href="python/System.html"]', 'a[href="python/functions.html"]', 'a[href="python/errors.html"]'],
+  "python/System.html": ["#deltaq\\.System", "#deltaq\\.System\\.solve"],
+};
+
 async function looked(path, [name, width, scheme]) {
   at = `${path}, ${name}`;
   await page.setViewport({ width, height: 860 });
@@ -54,6 +64,7 @@ async function looked(path, [name, width, scheme]) {
   await page.goto(root + path, { waitUntil: "load" });
   const wide = await page.evaluate(() => document.documentElement.scrollWidth);
   if (wide > width) complain(`${wide} px wide`);
+  for (const part of HAVE[path] ?? []) if (!(await page.$(part))) complain(`has no ${part}`);
   await page.evaluate(rules);
   const { violations, passes } = await page.evaluate(() => window.axe.run({ resultTypes: ["violations"] }));
   for (const { id, impact, nodes } of violations) {

@@ -2,14 +2,23 @@
 
 import { Apart } from "./apart.js";
 import * as arrows from "./arrows.js";
+import { add, empty, join, near, size } from "./frame.js";
 import { ink } from "./look.js";
 import { Vector } from "./vector.js";
 
 // Azimuth and elevation of the eye for what is not in a plane, as in the reports.
 const OBLIQUE = [0.4, 0.5];
-// A motion widens the frame at most this many times.
-const WIDENED = 2;
 const MARGIN = 18;
+// Pixels that a body has to reach; if it is smaller in the frame of the whole run, the camera goes with the bodies.
+const SMALL = 22;
+// Pixels of a picture that is too narrow for more than one body, beside which the others are ghosts.
+const NARROW = 500;
+// Floors beyond the one that is described, each way.
+const FLOORS = 4;
+// Opacity of ghosts.
+const GHOST = 0.4;
+// The choice of a camera that stays where it is.
+export const REST = "rest";
 // Size of the frame that follows a body, over the size of the body.
 const ROUND = 2.5;
 
@@ -25,7 +34,7 @@ export class Stage {
     this.eye = null;
     this.window = null;
     // the motion that the camera goes with, how many times as large differences are drawn, whether the frame stays
-    [this.follow, this.by, this.held] = ["", 1, false];
+    [this.follow, this.by, this.held, this.veiled] = ["", 1, false, () => []];
     new ResizeObserver(() => this.draw()).observe(canvas);
     this.listen();
   }
@@ -64,10 +73,15 @@ export class Stage {
     this.draw();
   }
 
-  // Veiled, it shows where the bodies are and no way of them.
-  veil(is) {
-    this.veiled = is;
+  // `veiled` says which of these motions are not shown.
+  veil(veiled) {
+    this.veiled = veiled;
     this.draw();
+  }
+
+  shown() {
+    const hidden = this.veiled(this.samples.motions.map(({ label }) => label));
+    return this.samples.motions.filter(({ label }) => !hidden.includes(label));
   }
 
   // Right, up and towards the eye.
@@ -88,34 +102,28 @@ export class Stage {
     return [...samples.poses()].every(([pose, body]) => level(pose, body));
   }
 
-  // What is to be seen: the ground and the first motion, and others unless they run far away.
+  // Widens a box by a body.
+  put(w, pose, body) {
+    const [right, up] = this.axes();
+    for (const p of body.lines.flat()) {
+      const at = pose.place(p);
+      add(w, dot(right, at), dot(up, at));
+    }
+    add(w, dot(right, pose.at), dot(up, pose.at), body.sphere ?? 0);
+    return w;
+  }
+
+  // What is to be seen: the bodies that move, those of other motions unless they run far away, and what stands still near them;
+  // not the floor.
   frame() {
     const [right, up] = this.axes();
-    const empty = () => [Infinity, Infinity, -Infinity, -Infinity];
-    const add = (w, x, y, r = 0) => {
-      w[0] = Math.min(w[0], x - r);
-      w[1] = Math.min(w[1], y - r);
-      w[2] = Math.max(w[2], x + r);
-      w[3] = Math.max(w[3], y + r);
-    };
-    const join = (a, b) => [0, 1, 2, 3].map((i) => (i < 2 ? Math.min(a[i], b[i]) : Math.max(a[i], b[i])));
-    const size = (w) => Math.hypot(w[2] - w[0], w[3] - w[1]);
-    const put = (w, pose, body) => {
-      for (const p of body.lines.flat()) {
-        const at = pose.place(p);
-        add(w, dot(right, at), dot(up, at));
-      }
-      add(w, dot(right, pose.at), dot(up, pose.at), body.sphere ?? 0);
-    };
-    const ground = empty();
-    for (const [pose, body] of this.samples.ground(0)) put(ground, pose, body);
-    const { apart } = this;
-    const windows = this.samples.motions.map((motion) => {
+    const { apart, samples: { motions } } = this;
+    const windows = motions.map((motion) => {
       const w = empty();
       const last = apart.last(motion);
       const stride = Math.max(1, Math.floor(motion.rows / 24));
       for (let row = 0; row <= last; row += stride) {
-        for (const [pose, body] of apart.poses(motion, row)) put(w, pose, body);
+        for (const [pose, body] of apart.poses(motion, row)) this.put(w, pose, body);
       }
       for (let row = 0; row <= last; row++) {
         const at = apart.track(motion, row);
@@ -124,15 +132,14 @@ export class Stage {
       return w;
     });
     if (!windows.length) return;
-    const first = join(windows[0], ground);
-    const near = windows.filter((w) => size(join(w, first)) <= WIDENED * size(first));
-    const all = near.reduce(join, first);
+    const still = [...this.samples.ground(0)].filter(([, body]) => body.kind !== "plane").map((one) => this.put(empty(), ...one));
+    const [around] = near(windows[0], still);
+    const [all, far] = near(around, windows);
     const least = 1e-6 + 0.05 * size(all);
     this.target = [all[0] - least, all[1] - least, all[2] + least, all[3] + least];
-    this.far = this.samples.motions.filter((_, i) => !near.includes(windows[i])).map((motion) => motion.label);
-    const far = this.far.join(", ");
-    const notes = far ? [`${far}: runs out of the picture, whose frame is the neighbourhood of the others`] : [];
-    if (this.by !== 1 && windows.length > 1) notes.unshift(`Differences from ${this.samples.motions[0].label} are drawn ${this.by} times as large.`);
+    this.far = motions.filter((_, i) => far.includes(windows[i])).map(({ label }) => label);
+    const notes = this.far.length ? [`${this.far.join(", ")}: runs out of the picture`] : [];
+    if (this.by !== 1 && windows.length > 1) notes.unshift(`Differences from ${motions[0].label} are drawn ${this.by} times as large.`);
     if (this.hint) notes.unshift(this.hint);
     this.note.textContent = notes.join(" ");
   }
@@ -145,7 +152,7 @@ export class Stage {
   // How far bodies reach round the place whose path is drawn.
   reach(motion) {
     const from = motion.track(0);
-    let reach = 0.02 * Math.hypot(this.window[2] - this.window[0], this.window[3] - this.window[1]);
+    let reach = 0.01 * size(this.window);
     for (const [pose, body] of motion.poses(0)) {
       const far = (p) => Math.hypot(...p.map((x, i) => x - from[i]));
       reach = Math.max(reach, far(pose.at) + (body.sphere ?? 0), ...body.lines.flat().map((p) => far(pose.place(p))));
@@ -153,24 +160,43 @@ export class Stage {
     return reach;
   }
 
+  // Whether there is room for one body only.
+  isNarrow() {
+    return this.canvas.clientWidth < NARROW;
+  }
+
+  // The box that is seen now: of the whole run; or of the bodies, or the one that the camera goes with, where they are.
+  box(fit) {
+    const [right, up] = this.axes();
+    const followed = this.followed();
+    const first = followed ?? this.samples.motions[0];
+    const reach = this.reach(first);
+    if (!followed && (this.follow === REST || fit * reach >= SMALL * devicePixelRatio)) return this.window;
+    const { t } = this;
+    const at = this.apart.trackAt(first, t);
+    const [x, y] = [right, up].map((axis) => dot(axis, at));
+    if (followed || this.isNarrow()) return [x - ROUND * reach, y - ROUND * reach, x + ROUND * reach, y + ROUND * reach];
+    const others = this.shown().filter(({ label }) => !this.far.includes(label));
+    const boxes = others.map((motion) => [...this.apart.posesAt(motion, t)].reduce((w, one) => this.put(w, ...one), empty()));
+    const [left, low, far, high] = boxes.reduce(join, [x, y, x, y]);
+    const room = 0.7 * reach;
+    return [left - room, low - room, far + room, high + room];
+  }
+
   // Pixels of a place.
   projection() {
     const { width, height } = this.canvas;
-    const w = this.window;
     const margin = MARGIN * devicePixelRatio;
-    let fit = Math.min((width - 2 * margin) / (w[2] - w[0]), (height - 2 * margin) / (w[3] - w[1]));
-    let [x, y] = [(w[0] + w[2]) / 2, (w[1] + w[3]) / 2];
+    const fitted = (w) => Math.min((width - 2 * margin) / (w[2] - w[0]), (height - 2 * margin) / (w[3] - w[1]));
+    const whole = fitted(this.window);
+    // what is in the hand is not followed
+    if (!this.held || !this.seen) this.seen = this.box(whole);
+    const box = this.seen;
     const [right, up, eye] = this.axes();
-    const motion = this.followed();
-    if (motion) {
-      fit = Math.max(fit, Math.min(width, height) / (2 * ROUND * this.reach(motion)));
-      // what is in the hand is not followed
-      if (!this.held) this.middle = this.apart.trackAt(motion, this.t);
-      [x, y] = [right, up].map((axis) => dot(axis, this.middle));
-    }
-    const scale = fit * this.zoom;
+    const [x, y] = [(box[0] + box[2]) / 2, (box[1] + box[3]) / 2];
+    const scale = Math.max(whole, fitted(box)) * this.zoom;
     const project = (p) => [width / 2 + (dot(right, p) - x) * scale, height / 2 - (dot(up, p) - y) * scale];
-    return { project, scale, depth: (p) => dot(eye, p) };
+    return { project, scale, depth: (p) => dot(eye, p), goes: size(box) < 0.99 * size(this.window) };
   }
 
   // Everything at time t.
@@ -196,19 +222,40 @@ export class Stage {
     const view = this.projection();
     const pen = { context, view, ratio };
     const [line, floor] = [ink("ground"), ink("floor")];
-    for (const [pose, body] of samples.ground(samples.rowAt(t))) draw(pen, pose, body, line, 1, floor);
-    for (const motion of this.veiled ? [] : samples.motions) this.trail(pen, motion, t);
-    for (const motion of samples.motions) {
+    for (const [pose, body] of samples.ground(samples.rowAt(t))) {
+      const poses = view.goes && body.kind === "plane" ? this.floors(pose, body) : [pose];
+      for (const one of poses) draw(pen, one, body, line, 1, floor);
+    }
+    const shown = this.shown();
+    for (const motion of shown) this.trail(pen, motion, t);
+    for (const motion of shown) {
       const { colour, outline } = motion.look;
+      context.globalAlpha = this.isGhost(motion) ? GHOST : 1;
       for (const [pose, body] of [...this.apart.posesAt(motion, t)].reverse()) draw(pen, pose, body, colour, outline, `${colour}2e`);
     }
+    context.globalAlpha = 1;
     const side = Math.min(width, height);
-    for (const motion of samples.contacts ? samples.motions : []) {
+    for (const motion of samples.contacts ? shown : []) {
       const mark = this.apart.trackAt(motion, t);
       arrows.forces(pen, motion, t, this.largest, side, mark);
     }
     this.over?.(pen);
     arrows.orientation(pen, { width, height }, { down: samples.down, flat: this.flat && !this.eye, unit: samples.length });
+  }
+
+  // In a narrow picture all but the first motion, or the one that the camera goes with, are ghosts.
+  isGhost(motion) {
+    return this.isNarrow() && motion !== (this.followed() ?? this.shown()[0]);
+  }
+
+  // A floor on which bodies run far is laid again and again, where they are.
+  floors(pose, { lines }) {
+    const [length, width] = [0, 1].map((axis) => 2 * Math.max(...lines.flat().map((p) => Math.abs(p[axis]))));
+    const away = this.apart.trackAt(this.followed() ?? this.samples.motions[0], this.t).map((x, i) => x - pose.at[i]);
+    const along = (axis) => pose.rotation.map((row) => row[axis]);
+    const [i, j] = [length, width].map((size, axis) => Math.round(dot(along(axis), away) / size));
+    const steps = Array.from({ length: 2 * FLOORS + 1 }, (_, k) => k - FLOORS);
+    return steps.flatMap((k) => steps.map((l) => Object.assign(Object.create(pose), { at: pose.place([(i + k) * length, (j + l) * width, 0]) })));
   }
 
   // What is seen, as SVG.
@@ -230,7 +277,7 @@ export class Stage {
       }
       if (strong) context.lineTo(...view.project(this.apart.trackAt(motion, t)));
       context.strokeStyle = colour;
-      context.globalAlpha = strong ? 1 : 0.3;
+      context.globalAlpha = strong && !this.isGhost(motion) ? 1 : 0.3;
       context.lineWidth = (strong ? width * 0.8 : 1) * ratio;
       context.lineCap = dash[0] === 2 ? "round" : "butt";
       context.setLineDash(strong ? dash.map((x) => x * ratio) : []);

@@ -2,7 +2,7 @@
 
 import { byName } from "./names.js";
 
-const EMPTY = { scene: "sledge", text: null, set: {}, off: [], on: [], time: 0, tab: "numbers", curve: "gap",
+const EMPTY = { scene: "sledge", text: null, set: {}, off: [], on: [], time: 0, tab: "numbers", curve: "path",
   step: 0, guess: -1, forces: false, follow: "", by: 1, grips: false };
 // Behind the state, what alone is to be seen: &only=stage, for slides.
 const ONLY = "&only=";
@@ -44,7 +44,7 @@ export function decode(address, otherwise = {}) {
     if (key in said && (EMPTY[key] === null || typeof said[key] === typeof EMPTY[key])) state[key] = said[key];
   }
   const numbers = Object.entries(state.set).filter(([, x]) => Number.isFinite(x));
-  if (numbers.length < Object.keys(state.set).length) fault = "a number in it is none";
+  if (numbers.length < Object.keys(state.set).length) fault = "one of its numbers is not a number";
   state.set = byName(numbers);
   return fault;
 }

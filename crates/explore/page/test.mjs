@@ -14,6 +14,8 @@ import puppeteer from "puppeteer-core";
 import * as access from "./access.test.mjs";
 import { broken } from "./broken.test.mjs";
 import * as drawn from "./drawn.test.mjs";
+import { editor, reviewed } from "./editor.test.mjs";
+import * as first from "./first.test.mjs";
 import * as further from "./further.test.mjs";
 import { frames, growth } from "./growth.test.mjs";
 import * as hands from "./hand.test.mjs";
@@ -30,7 +32,7 @@ const [executablePath, deltaq, file, pictures, what] = process.argv.slice(2);
 const BUSY = 3;
 // Rounds of slider moves within all checks, and seconds of frames when rounds are asked for.
 const [ROUNDS, SECONDS] = [6, 300];
-const LIMITS = { megabytes: 2.4, first: 500, sledge: 10, updates: 60, cone: 50, difference: 1e-12 };
+const LIMITS = { megabytes: 2.3, first: 500, sledge: 10, updates: 60, cone: 50, difference: 1e-12 };
 const OWN = `title = "Skate"
 [coordinates]
 x = { unit = "m", start = 0 }
@@ -255,13 +257,13 @@ async function looks() {
 // A browser that was never here.
 const fresh = () => browser.createBrowserContext();
 
-const tools = { open, leave, look, forget, fresh, link, must, after, choose, slide, type, said, OWN, url, pictures, deltaq };
+const tools = { made: pages.made.bind(pages), open, leave, look, forget, fresh, link, must, after, choose, slide, type, said, OWN, url, pictures, deltaq };
 // tests without settings that only Chromium has; all scenes run in Chromium only, and here eachBody for a
 // part of them
 const ELSEWHERE = ["eachBody", "costates", "cleared", "refusals", "overlaps", "wayBack", "badLinks", "table", "tabs", "forces", "down", "camera", "differences",
-  "runaway", "logarithms", "hand", "rolling", "halted"];
+  "runaway", "logarithms", "hand", "rolling", "halted", "curves", "newText", "bodies", "editor", "reviewed"];
 // one that breaks off does not hide what the others find
-const single = { everyScene, eachBody, ...checks, ...access, ...drawn, ...looking, ...hands, ...takes, ...further, broken, tour, tasks };
+const single = { everyScene, eachBody, ...checks, ...access, ...drawn, ...looking, ...hands, ...takes, ...further, ...first, editor, reviewed, broken, tour, tasks };
 const whole = (name, check) => () => check(tools).catch((error) => complaints.push(`${name}: ${error.stack}`));
 const named = (names) => names.map((name) => whole(name, single[name]));
 

@@ -1,5 +1,5 @@
-// The guided path: six steps, each a state of the page, with a question, a number to move, and what came out. What a
-// step says of the motions is put together from what was computed of them, so it is true wherever the slider stands.
+// The guided path: six steps, each a state of the page, with a question, a number to move, and what came out. A step's
+// sentences about the motions are made from what was computed of them, so they hold wherever the slider stands.
 
 import { byName, figure, readable } from "./names.js";
 
@@ -40,7 +40,7 @@ const pairOf = ({ decided }, one, other) =>
 const seconds = (x) => `${figure(x)} s`;
 const metres = (x) => `${figure(x)} m`;
 
-// How far the marked points of two motions are apart at most.
+// Largest distance between the marked points of two motions.
 function apart({ samples }, one, other) {
   const [a, b] = [one, other].map((label) => samples.motions.find((motion) => motion.label === label));
   const rows = Math.min(a.rows, b.rows) - (a.rows === b.rows ? 0 : 1);
@@ -53,101 +53,110 @@ const nearer = (facts, label) => (apart(facts, label, BLUE) < apart(facts, label
 
 function oneOrTwo(facts, one, two) {
   const pair = pairOf(facts, BLUE, ORANGE);
-  if (pair.verdict === "undecided") return `Undecided: ${pair.because}.`;
-  if (pair.verdict === "same") return `One motion: up to ${seconds(pair.until)} no difference shows above the errors. ${one}`;
-  const from = pair.visible === null ? "" : `At ${seconds(pair.visible)} the difference passes 0.001 m √kg. `;
-  return `Two motions. ${from}The two are up to ${metres(apart(facts, BLUE, ORANGE))} apart. ${two}`;
+  if (pair.verdict === "undecided") return `This is undecided: ${pair.because}.`;
+  if (pair.verdict === "same") return `There is one motion: up to ${seconds(pair.until)} no difference exceeds the errors. ${one}`;
+  const from = pair.visible === null ? "" : `They differ by 0.001 ${pair.unit} after ${seconds(pair.visible)}. `;
+  return `There are two motions. ${from}Their largest distance is ${metres(apart(facts, BLUE, ORANGE))}. ${two}`;
 }
 
 const sameOrNot = (facts) => ["same", "different"].indexOf(pairOf(facts, BLUE, ORANGE).verdict);
 
 const membership = ({ decided }) => decided.decisions.find(({ family, motion }) => family === ORANGE && motion === BLUE);
 
+// `seen` are the motions that run before a question is answered, by default the blue one alone.
 export const STEPS = [
   {
-    title: "A rod forbids places",
-    state: { scene: "velocity-pendulum", off: ["removed constraint (quasi-velocities)", "removed constraint (along-x)"] },
-    text: `A ball hangs on a rod. The rod forbids velocities along itself; nothing else is forbidden. Mechanics finds a motion
-      by comparing it with its neighbours, and there are two rules for which neighbours count. <b class="blue">Blue</b>, after
-      Chetaev: small shifts that the rod allows at that instant. <b class="orange">Orange</b>, called vakonomic: whole
-      neighbouring paths, on each of which the rod keeps its length.`,
+    title: "A blade restricts velocities",
+    state: { ...SLEDGE, set: { duration: 5 } },
+    text: `A sledge stands on one blade on a slope. It glides along the blade and turns, but it never slides sideways.
+      Equations of motion follow from comparing a motion with nearby curves, and there are two rules for which ones.
+      <b class="blue">Blue</b> is d'Alembert–Lagrange's rule (Chetaev): small shifts that the blade allows at each instant.
+      <b class="orange">Orange</b> is the vakonomic rule: whole curves on which the blade never slides sideways.`,
     question: "From the same start, do the two rules give one motion or two?",
     answers: ONE_OR_TWO,
     truth: sameOrNot,
-    reveal: (facts) => oneOrTwo(facts, "Velocities along the rod are forbidden, so places off a circle are, too. Then both rules have the same neighbours.",
-      "That is not expected of a rod."),
+    reveal: (facts) => oneOrTwo(facts, "From this start they agree.",
+      "Shifts that are allowed at each instant need not add up to a curve on which the blade never slides. So the two rules compare with different curves."),
   },
   {
-    title: "A blade forbids none",
-    state: { ...SLEDGE, set: { duration: 5 } },
-    text: `A sledge stands on one blade on a slope. It glides along the blade and it turns; it never slides sideways. Again
-      velocities are forbidden, but this time no place is: by gliding and turning it can get anywhere.`,
-    question: "The same two rules: one motion or two?",
+    title: "A rod restricts positions",
+    state: { scene: "velocity-pendulum", off: ["removed constraint (quasi-velocities)", "removed constraint (along-x)"] },
+    text: `A ball hangs on a rod. The rod, too, is written as a constraint on velocities: none along the rod. But it follows
+      that the ball stays on a circle. Such a constraint is holonomic. The blade's is nonholonomic: by gliding and
+      turning, the sledge can reach every position.`,
+    question: "Do the same two rules give one motion or two?",
     answers: ONE_OR_TWO,
     truth: sameOrNot,
-    reveal: (facts) => oneOrTwo(facts, "From this start they agree.",
-      "A shift that is allowed at every instant need not lead to a path on which the blade never slides: the two rules have different neighbours."),
+    reveal: (facts) => oneOrTwo(facts, "Allowed shifts of the ball stay on its circle. So both rules compare with the same curves.",
+      "This is not expected of a rod."),
   },
   {
     title: "Try to make them meet",
     state: { ...SLEDGE, set: { duration: 5, mu0_1: 0 } },
-    text: `The orange rule needs one more number at the start, μ₀. Nothing that can be seen of the sledge says which. So
-      there is not one orange motion but one for each μ₀.`,
+    text: `The orange rule needs one more number at the start, the multiplier μ₀. The position and velocity of the sledge
+      do not determine it. So there is one orange motion for each μ₀.`,
     question: "Is there a μ₀ with which orange follows blue?",
     answers: ["Yes, there is", "No, there is none"],
-    slider: { name: "mu0_1", sign: "μ₀", unit: "kg m/s", low: -20, high: 20, hint: "Move it: orange has to lie on blue." },
+    seen: [BLUE, ORANGE],
+    slider: { name: "mu0_1", sign: "μ₀", unit: "kg m/s", low: -20, high: 20, hint: "Move it, and try to lay orange on blue." },
     truth: (facts) => ["some", "none"].findIndex((word) => membership(facts).answer.startsWith(word)),
-    reading: (facts) => `The two are up to ${metres(apart(facts, BLUE, ORANGE))} apart.`,
+    reading: (facts) => `Their largest distance is ${metres(apart(facts, BLUE, ORANGE))}.`,
     reveal(facts) {
       const { answer, which, reason } = membership(facts);
-      if (answer === "none, proved") return `There is none. That is no search that failed: it is proved for all μ₀ at once. In the program's words: ${reason}.`;
-      if (answer === "none, measured") return `There is none, as far as was measured: ${reason}.`;
-      return answer === "undecided" ? `Undecided: ${reason}.` : `There is: ${which}. ${reason}.`;
+      if (answer === "none, proved") return `There is none, and this is not a failed search: deltaq proves it for all μ₀ at once. In its words: ${reason}.`;
+      if (answer === "none, measured") return `There is none, as far as deltaq measured: ${reason}.`;
+      return answer === "undecided" ? `This is undecided: ${reason}.` : `There is one, ${which}: ${reason}.`;
     },
   },
   {
     title: "From one rule to the other",
     state: { ...SLEDGE, set: { duration: 3, kappa: 0.01 } },
-    text: `Between the two rules lies a family, <b class="purple">purple</b>, with a number κ. With κ = 0 it is the orange
-      rule. Now κ is 0.01 per second, and purple lies nearly on orange.`,
+    text: `A family of motions leads from one rule to the other. <b class="purple">Purple</b> is the member with the number κ;
+      with κ = 0 it is orange. At κ = 0.01 per second, purple nearly coincides with orange.`,
     question: "Where does purple go when κ becomes large?",
     answers: ["It goes to blue", "It stays with orange"],
-    slider: { name: "kappa", sign: "κ", unit: "1/s", low: 0.01, high: 1000, log: true, start: 1000, hint: "Move it from left to right." },
+    seen: [BLUE, ORANGE, KAPPA],
+    slider: { name: "kappa", sign: "κ", unit: "1/s", low: 0.01, high: 1000, log: true, start: 1000, hint: "κ is 1000 now. Move it to the left and back." },
     purple: KAPPA,
     truth: (facts) => nearer(facts, KAPPA),
-    reading: (facts) => `Purple is up to ${metres(apart(facts, KAPPA, BLUE))} away from blue, ${metres(apart(facts, KAPPA, ORANGE))} from orange.`,
+    reading: (facts) => `Purple is at most ${metres(apart(facts, KAPPA, BLUE))} from blue and ${metres(apart(facts, KAPPA, ORANGE))} from orange.`,
     reveal: (facts) => (nearer(facts, KAPPA) === 0
-      ? "Here purple is nearer to blue. As κ grows its distance from blue goes to zero, as 1/κ: the two rules are the ends of one family."
-      : "Here purple is nearer to orange: κ is small."),
+      ? "Here purple is nearer to blue. As κ grows, its distance from blue tends to zero as 1/κ. The two rules are the ends of one family."
+      : "Here purple is nearer to orange, because κ is small."),
   },
   {
     title: "Friction chooses",
     state: { ...SLEDGE, set: { duration: 5, slip: 0.1 } },
-    text: `What does a real sledge do? No rule holds its blade, but friction: a force across it, N times the speed of
-      slipping. The <b class="purple">purple</b> sledge has that force and no constraint. Newton's law is all that it needs.`,
-    question: "With strong friction, whose motion is it?",
+    text: `Which one is physical? Friction holds the blade of a real sledge: a force across the blade, N times the speed of
+      slipping. The <b class="purple">purple</b> sledge has that force instead of the constraint. Newton's law gives its motion.`,
+    question: "Whose motion is it if friction is strong?",
     answers: ["That of blue", "That of orange"],
-    slider: { name: "slip", sign: "N", unit: "kg/s", low: 3, high: 10000, log: true, inverse: true, start: 1000, hint: "Move it: more friction to the right." },
+    seen: [BLUE, ORANGE],
+    slider: { name: "slip", sign: "N", unit: "kg/s", low: 3, high: 10000, log: true, inverse: true, start: 1000, hint: "N is 1000 now. Friction grows to the right." },
     purple: FRICTION,
     truth: (facts) => nearer(facts, FRICTION),
-    reading: (facts) => `Purple is up to ${metres(apart(facts, FRICTION, BLUE))} away from blue, ${metres(apart(facts, FRICTION, ORANGE))} from orange.`,
+    reading: (facts) => `Purple is at most ${metres(apart(facts, FRICTION, BLUE))} from blue and ${metres(apart(facts, FRICTION, ORANGE))} from orange.`,
     reveal: (facts) => (nearer(facts, FRICTION) === 0
-      ? "Purple is nearer to blue, and comes the nearer the stronger the friction is: friction chooses Chetaev. (Something else may choose otherwise: a constraint that is made by added mass leads to an orange motion.)"
-      : "With so little friction it slips, and is no sledge on a blade."),
+      ? "Purple is nearer to blue. Its distance decreases as friction grows, so friction chooses Chetaev. (A constraint that added mass enforces leads to an orange motion instead.)"
+      : "With so little friction the sledge slips, and the constraint does not hold."),
   },
   {
     title: "Your own system",
     state: { scene: "own", text: SKATE, set: { "phi'": 0.8 }, off: ["removed constraint (coordinates)", "removed constraint (quasi-velocities)"] },
-    text: `Every system here is a text like the one of this skate on level ice: coordinates, an energy, a constraint, a start.
-      Change it, or write another one. For a start: this skate turns while it glides, and the two rules part.`,
-    question: "Let it start without turning. Do the rules still part?",
+    text: `Every system here is a short text: coordinates, a Lagrangian, a constraint, a start. This one is a skate on level
+      ice. You can change it or write another one. This skate turns while it glides, and the two motions diverge.`,
+    question: "Let it start without turning. Do they still diverge?",
     answers: ["No: one motion", "Yes: two motions"],
-    slider: { name: "phi'", sign: "φ′", unit: "rad/s", low: -1.6, high: 1.6, start: 0, hint: "The rate of turning at the start." },
+    seen: [BLUE, ORANGE],
+    slider: { name: "phi'", sign: "φ′", unit: "rad/s", low: -1.6, high: 1.6, start: 0, hint: "This is the rate of turning at the start." },
     truth: sameOrNot,
-    reveal: (facts) => oneOrTwo(facts, "It runs straight on. Whether the rules differ depends on the start, too.", "Set the rate of turning to zero."),
+    reveal: (facts) => oneOrTwo(facts, "The skate glides straight on. Whether the motions differ also depends on the start.", "Set the rate of turning to zero."),
     last: `<button type="button" id="write">Open the text</button>`,
   },
 ];
+
+// The motions that are not to be seen before a step's question is answered.
+export const veiled = (step, labels) => labels.filter((label) => !(STEPS[step - 1].seen ?? [BLUE]).includes(label));
 
 // The state of the page at the beginning of a step.
 export function stateOf(step) {
@@ -235,7 +244,7 @@ export class Tour {
     }
     reveal.setAttribute("aria-busy", "false");
     const isRight = step.truth(facts) === this.guess;
-    const said = `${isRight ? "As you said." : "It is otherwise."} ${step.reveal(facts)}`;
+    const said = `${isRight ? "As you said." : "Not quite."} ${step.reveal(facts)}`;
     // what is said already is not said again
     if (reveal.textContent !== said) reveal.textContent = said;
   }

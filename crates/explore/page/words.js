@@ -79,11 +79,11 @@ function table(pairs) {
     const [sign, word] = VERDICTS[pair.verdict];
     return `<tr><th scope="row">${escape(pair.first)} – ${escape(pair.second)}</th>
       <td class="${pair.verdict}"><b aria-hidden="true">${sign}</b> ${word}${pair.proved ? "<br>proved" : ""}</td>
-      <td>${since(pair)}</td><td>${differences(pair)}</td><td>${figure(pair.largest)}</td></tr>`;
+      <td>${since(pair)}</td><td>${differences(pair)}</td><td>${figure(pair.largest)} ${escape(pair.unit)}</td></tr>`;
   };
   const undecided = pairs.filter(({ because }) => because).map(({ first, second, because }) => `<p>${escape(first)} – ${escape(second)}: undecided, ${escape(because)}.</p>`);
-  return `<div class="wide" tabindex="0" role="region" aria-label="pairs of motions"><table><thead><tr><th scope="col">pair</th><th scope="col">motions</th><th scope="col">0.001 apart from</th>
-    <th scope="col">differ by up to</th><th scope="col">gap, m √kg</th></tr></thead><tbody>${pairs.map(row).join("")}</tbody></table></div>${undecided.join("")}`;
+  return `<div class="wide" tabindex="0" role="region" aria-label="pairs of motions"><table><thead><tr><th scope="col">pair</th><th scope="col">motions</th><th scope="col">0.001 ${escape(pairs[0].unit)} apart from</th>
+    <th scope="col">differ by up to</th><th scope="col">largest distance</th></tr></thead><tbody>${pairs.map(row).join("")}</tbody></table></div>${undecided.join("")}`;
 }
 
 // The table of pairs and one sentence of why; the verdict, why and how sure in the words of the program; which family
@@ -94,7 +94,7 @@ export function verdict({ verdict, why, sure, whose, sentence, pairs, decisions,
     `<li><p>Is the motion of <b>${escape(motion)}</b> one of <b>${escape(family)}</b>?</p><p>For ${inline(which)}: ${escape(reason)}.</p></li>`;
   const decided = decisions.length ? `<h3>Decided</h3><ul class="cards">${decisions.map(card).join("")}</ul>` : "";
   const causes = motions.map((motion) => [motion.label, motion.refused ?? motion.cause]).filter(([, cause]) => cause);
-  const ends = causes.length ? `<h3>Motions that are none or end early</h3>${causes.map(([label, cause]) => `<p><b>${escape(label)}</b>: ${escape(cause)}</p>`).join("")}` : "";
+  const ends = causes.length ? `<h3>Motions that do not exist or end early</h3>${causes.map(([label, cause]) => `<p><b>${escape(label)}</b>: ${escape(cause)}</p>`).join("")}` : "";
   return `${sentence ? `<p class="sentence">${escape(sentence)}</p>` : ""}${pairs.length ? table(pairs) : ""}
     <h3>Verdict</h3><p>${escape(verdict)}</p><h3>Why</h3><p>${escape(why)}</p><h3>How sure</h3><p>${escape(sure)}</p>${whose ? `<h3>Which one</h3><p>${escape(whose)}</p>` : ""}${decided}${ends}
     ${notes ? `<h3>Notes on the scene</h3><p>${escape(notes)}</p>` : ""}`;
@@ -104,7 +104,7 @@ export function verdict({ verdict, why, sure, whose, sentence, pairs, decisions,
 export function integrals({ label, near, degree, lines, refused }) {
   if (refused) return `<p>${escape(refused)}</p>`;
   const row = ([about, words]) => `<tr><th scope="row">${escape(about)}</th><td>${escape(words).replaceAll(/[*^/]|\w\(/g, "$&<wbr>")}</td></tr>`;
-  const more = degree < 2 ? `<p><button type="button">Quadratic ones, too</button></p>` : "";
+  const more = degree < 2 ? `<p><button type="button">Also quadratic ones</button></p>` : "";
   return `<p>Of the motion of <b>${escape(label)}</b>${near ? `, ${escape(near)}` : ""}:</p>
     <div class="wide" tabindex="0" role="region" aria-label="integrals"><table class="said"><tbody>${lines.map(row).join("")}</tbody></table></div>${more}`;
 }
@@ -123,6 +123,6 @@ export function derivatives({ motions, refused }, coordinates) {
     ${coordinates.map(({ name, unit }) => `<th scope="col">${named(name, unit)}</th>`).join("")}</tr></thead><tbody>${rows.map(row).join("")}</tbody></table></div>`;
   const section = (motion, i) => `<details${i ? "" : " open"}><summary>${escape(motion.label)}${motion.refused ? "" : `, at ${figure(motion.end)} s`}</summary>
     ${motion.refused ? `<p>refused: ${escape(motion.refused)}</p>` : table(motion)}</details>`;
-  return `<p>By how much the coordinates at the end change with each number: the derivative, in the unit of the column per unit of the row.
-    An error is shown where it is more than a thousandth.</p>${motions.map(section).join("")}`;
+  return `<p>These are the derivatives of the final coordinates with respect to each number, in the unit of the column per unit of the row.
+    Errors are shown if they exceed a thousandth.</p>${motions.map(section).join("")}`;
 }

@@ -1,6 +1,6 @@
 //! From questions to answers.
 
-use scene::SceneError;
+use scene::{Scene, SceneError};
 use serde_json::{Value, json};
 
 use crate::kept::Kept;
@@ -35,6 +35,8 @@ fn answered(question: &str, kept: &mut Kept, numbers: &mut Vec<f64>) -> Result<V
         Ask::Scene => Ok(scene(&subject)),
         Ask::Motions => motions::sampled(&subject, &question, kept, numbers),
         Ask::Equations => words::equations(&subject),
+        Ask::Check => Ok(json!({ "remarks": remarks(&question)? })),
+        Ask::Review => Ok(further::review(&subject, &question)?),
         Ask::Text => Ok(json!({ "text": subject.scene.to_toml() })),
         Ask::Integrals => further::integrals(&subject, &question),
         Ask::Derivatives => Ok(further::derivatives(&subject, &question)),
@@ -59,6 +61,15 @@ fn scene(subject: &Subject) -> Value {
 
 /// All faults of a text, with their places.
 fn faults(error: &SceneError) -> Value {
-    let fault = |e: &SceneError| json!({ "line": e.line, "column": e.column, "length": e.length, "message": e.kind.to_string() });
     std::iter::once(error).chain(&error.also).map(fault).collect()
+}
+
+fn fault(e: &SceneError) -> Value {
+    json!({ "line": e.line, "column": e.column, "length": e.length, "message": e.kind.to_string() })
+}
+
+/// Notes on a text without faults, with their places.
+fn remarks(question: &Question) -> Result<Value, SceneError> {
+    let set: &[(String, f64)] = &[];
+    Ok(Scene::remarks(&question.name, &question.text, set)?.iter().map(fault).collect())
 }

@@ -1,7 +1,9 @@
-//! What is said of one motion beside it: its integrals, and its derivatives by the numbers that can be set.
+//! What is said of one motion beside it: its integrals, its derivatives by the numbers that can be set, and whether
+//! equations are its.
 
 use integrals::Integrals;
 use motion::{Choice, sensitivities, setting};
+use review::{Asked, Mend, Verdict, mends};
 use serde_json::{Value, json};
 
 use crate::controls;
@@ -18,6 +20,18 @@ pub(crate) fn integrals(subject: &Subject, question: &Question) -> Result<Value,
     let found = Integrals::find(scene, choice, question.degree, &[])?;
     let near = found.where_it_holds();
     Ok(json!({ "label": choice.label, "near": near, "degree": question.degree, "lines": found.lines() }))
+}
+
+/// Whether somebody's equations are d'Alembert–Lagrange's; if not, whose they are, and the terms that make them wrong.
+pub(crate) fn review(subject: &Subject, question: &Question) -> Result<Value, Refused> {
+    let asked = Asked::default();
+    let found = review::review(&subject.scene, "yours", &question.theirs, &asked)?;
+    let mends =
+        if found.verdict == Verdict::Wrong { mends(&subject.scene, &question.theirs, &asked) } else { Vec::new() };
+    let mend = |m: &Mend| json!({ "line": m.line, "column": m.column, "length": m.term.chars().count(), "message": format!("`{}` {}", m.term, m.fault) });
+    let mut answer = found.value(&subject.scene.name, "yours");
+    answer["mends"] = mends.iter().map(mend).collect();
+    Ok(answer)
 }
 
 /// The derivatives of the coordinates at the end of every motion by each number that it depends on.

@@ -6,7 +6,7 @@
 //!
 //! A [`Question`] is about the text of a scene, with numbers `set` in the place of those of the text:
 //! whatever `--set` takes, `P0_w` (the costate of the memory variable `w` at the start) and `kappa`, which a
-//! scene need not have. There are five:
+//! scene need not have. There are nine:
 //!
 //! - `scene`: what can be varied, and which motions there are;
 //! - `motions`: these, sampled at equal times, with the bodies that are drawn, and the gaps between them;
@@ -15,7 +15,9 @@
 //! - `decision`: the comparison in words, as `deltaq compare` says it, and pair by pair;
 //! - `integrals`: those of the first motion, as `deltaq integrals` says it;
 //! - `derivatives`: of where every motion ends, by the numbers that can be set;
-//! - `text`: the scene with the numbers that are set.
+//! - `text`: the scene with the numbers that are set;
+//! - `check`: notes on the text, as `deltaq check` says them;
+//! - `review`: whether equations are right, as `deltaq review` says it, and which term is wrong.
 //!
 //! ```
 //! let text = include_str!("../../scene/sledge.toml");

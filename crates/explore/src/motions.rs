@@ -97,16 +97,17 @@ fn gaps(
     let mut gaps = Vec::new();
     let [(first, one), others @ ..] = runs else { return Ok(gaps) };
     let mut metric = Metric::new(&scene.system)?;
+    let (yardstick, unit) = yardstick(scene, &mut metric);
     let n = scene.system.dimension();
     for (second, other) in others {
         let from = numbers.len();
-        let mut answer = json!({ "first": *first, "second": *second, "from": from });
+        let mut answer = json!({ "first": *first, "second": *second, "from": from, "unit": unit });
         if let (Run::Motion(one), Run::Motion(other)) = (&mut *one, other) {
             let gap = compare_motions(one, other, &mut metric)?;
             answer["verdict"] = gap.verdict.word().into();
-            answer["largest"] = gap.largest.into();
+            answer["largest"] = (gap.largest / yardstick).into();
             answer["certain"] = gap.certain_from.into();
-            numbers.extend(gap.points.iter().flat_map(|p| [p.t, p.gap, p.limit]));
+            numbers.extend(gap.points.iter().flat_map(|p| [p.t, p.gap / yardstick, p.limit / yardstick]));
         } else {
             let place = |i: usize, name: &str| answers[i][name].as_u64().unwrap_or_default() as usize;
             // the last row of a motion that ends early is between the times of the others
@@ -114,7 +115,7 @@ fn gaps(
                 let at = |i: usize| place(i, "from") + row * place(i, "width");
                 let (a, b) = (at(*first), at(*second));
                 let [q, v, other] = [a + 1, a + 1 + n, b + 1].map(|from| &numbers[from..from + n]);
-                let gap = [numbers[a], metric.distance(numbers[a], q, v, other), f64::INFINITY];
+                let gap = [numbers[a], metric.distance(numbers[a], q, v, other) / yardstick, f64::INFINITY];
                 numbers.extend(gap);
             }
         }
@@ -122,6 +123,22 @@ fn gaps(
         gaps.push(answer);
     }
     Ok(gaps)
+}
+
+/// `sqrt(Mᵢᵢ)` at the start, the length of a unit step along coordinate `i`, with the unit of `i`: of the coordinate
+/// in metres with the most inertia, or without metres of any. Gaps divided by it are in that unit.
+pub(crate) fn yardstick<'s>(scene: &'s Scene, metric: &mut Metric) -> (f64, &'s str) {
+    let (coordinates, start) = (&scene.system.coordinates, &scene.start);
+    let in_metres = coordinates.iter().any(|c| c.unit == "m");
+    let mut longest = (0.0, "");
+    for (i, coordinate) in coordinates.iter().enumerate().filter(|(_, c)| !in_metres || c.unit == "m") {
+        let step: Vec<f64> = (0..coordinates.len()).map(|j| f64::from(i == j)).collect();
+        let length = metric.length(start.t, &start.q, &start.v, &step);
+        if length > longest.0 {
+            longest = (length, coordinate.unit.as_str());
+        }
+    }
+    if longest.0 > 0.0 { longest } else { (1.0, "m √kg") }
 }
 
 /// What reads rows off motions.

@@ -23,6 +23,10 @@ pub enum Ask {
     Derivatives,
     /// The scene as a text with the numbers that are set in it; costates are not.
     Text,
+    /// What a reviewer would ask about the text, as `deltaq check` says it.
+    Check,
+    /// Whether equations of motion are right ([`Question::theirs`]).
+    Review,
 }
 
 /// A question about the text of a scene.
@@ -49,6 +53,9 @@ pub struct Question {
     /// Integrals are polynomials in the velocities up to this degree.
     #[serde(default)]
     pub degree: usize,
+    /// Equations to be reviewed.
+    #[serde(default)]
+    pub theirs: String,
     /// One run of every motion only, coarser and without an error estimate: to follow a hand on a slider.
     #[serde(default)]
     pub glance: bool,
@@ -81,6 +88,9 @@ pub(crate) enum Refused {
     /// Nothing can be said of integrals.
     #[error(transparent)]
     Integrals(#[from] integrals::NoAnswer),
+    /// Equations cannot be read.
+    #[error(transparent)]
+    Review(#[from] review::ReviewError),
     /// The question is none.
     #[error("the question cannot be read: {0}")]
     Question(#[from] serde_json::Error),

@@ -1,14 +1,18 @@
 //! Equations, and what is decided, in words.
 
 use comparison::words::{Headline, decisions, rows};
-use comparison::{Answer, Comparison, Extent, Pair, Verdict, integrability};
+use comparison::{Answer, Comparison, Extent, Gap, Pair, Verdict, integrability};
 use mechanics::Integrability;
-use motion::{CHETAEV, EquationStyle, VAKONOMIC, derive_at, equations_text, system_text};
+use motion::{CHETAEV, EquationStyle, Metric, SolveError, VAKONOMIC, derive_at, equations_text, system_text};
 use serde_json::{Value, json};
 
+use crate::motions::yardstick;
 use crate::question::{Question, Refused};
 use crate::run::settings;
 use crate::subject::Subject;
+
+/// A gap from which on motions are apart, in the unit of the yardstick.
+const SEEN: f64 = 1e-3;
 
 /// The system and the equations of every motion, in Markdown with LaTeX.
 pub(crate) fn equations(subject: &Subject) -> Result<Value, Refused> {
@@ -38,7 +42,8 @@ pub(crate) fn decision(subject: Subject, question: &Question) -> Result<Value, R
     }
     while comparison.decide_next().is_some() {}
     let Headline { verdict, why, sure, which } = Headline::of(&comparison);
-    let pairs: Vec<Value> = rows(&comparison).map(|p| pair(&comparison, p)).collect();
+    let yardstick = yardstick(&comparison.scene, &mut Metric::new(&comparison.scene.system).map_err(SolveError::from)?);
+    let pairs: Vec<Value> = rows(&comparison).map(|p| pair(&comparison, p, yardstick)).collect();
     let decided = comparison.decided.iter().zip(decisions(&comparison));
     let decided = decided.map(|(decided, [family, motion, which, reason])| {
         let answer = decided.outcome.as_ref().map_or("undecided", |found| word(&found.answer()));
@@ -61,10 +66,10 @@ fn word(answer: &Answer) -> &'static str {
     }
 }
 
-/// A row of the table: the verdict with its reason where it is undecided; the first time at which a
-/// difference is certain and the one at which the gap passes 1e-3, in s; the largest gap in the kinetic
-/// metric; the largest difference of every coordinate in its unit.
-fn pair(comparison: &Comparison, pair: &Pair) -> Value {
+/// A row of the table: the verdict with its reason if it is undecided; the first time at which a difference is
+/// certain and the one at which the gap passes [`SEEN`], in s; the largest gap in the unit of the yardstick; the
+/// largest difference of every coordinate in its unit.
+fn pair(comparison: &Comparison, pair: &Pair, (yardstick, unit): (f64, &str)) -> Value {
     let label = |run: usize| comparison.runs[run].choice.label.as_str();
     let gap = &pair.gap;
     let because = match &gap.verdict {
@@ -75,9 +80,18 @@ fn pair(comparison: &Comparison, pair: &Pair) -> Value {
     let coordinates = coordinates.map(|(c, by)| json!({ "name": c.name, "unit": c.unit, "by": by }));
     json!({
         "first": label(pair.first), "second": label(pair.second), "verdict": gap.verdict.word(), "because": because,
-        "proved": gap.proved, "certain": gap.certain_from, "visible": gap.passes[1], "largest": gap.largest,
-        "until": gap.end, "coordinates": coordinates.collect::<Vec<_>>(),
+        "proved": gap.proved, "certain": gap.certain_from, "visible": visible(gap, SEEN * yardstick), "largest": gap.largest / yardstick,
+        "unit": unit, "until": gap.end, "coordinates": coordinates.collect::<Vec<_>>(),
     })
+}
+
+/// The first time at which a gap that is certain passes `threshold`, between points on a line of logarithms.
+fn visible(gap: &Gap, threshold: f64) -> Option<f64> {
+    let after = gap.points.iter().position(|p| p.gap > threshold && p.gap > p.limit)?;
+    let [a, b] = [&gap.points[after.saturating_sub(1)], &gap.points[after]];
+    let part = (threshold / a.gap).ln() / (b.gap / a.gap).ln();
+    let [from, to] = [a.t - gap.start, b.t - gap.start];
+    Some(if a.gap > 0.0 && from > 0.0 { gap.start + from * (to / from).powf(part) } else { b.t })
 }
 
 /// Why Chetaev's and the vakonomic motion are the same or not, in one sentence without symbols of its own;
@@ -88,32 +102,32 @@ fn sentence(comparison: &Comparison) -> Option<String> {
     let constraint = match &comparison.integrability {
         Integrability::Unconstrained => {
             return Some(
-                "Nothing is constrained, so Chetaev's and the vakonomic equations are both Lagrange's.".into(),
+                "There is no constraint, so Chetaev's and the vakonomic equations are both Lagrange's.".into(),
             );
         }
-        Integrability::Integrable { .. } => "the constraint on velocities is one on places in disguise",
-        Integrability::PartlyIntegrable { .. } => "only a part of the constraints forbids places",
-        Integrability::Nonintegrable { .. } => "the constraint forbids velocities and no place",
+        Integrability::Integrable { .. } => "the constraint is holonomic",
+        Integrability::PartlyIntegrable { .. } => "the constraints are only partly holonomic",
+        Integrability::Nonintegrable { .. } => "the constraint is nonholonomic",
         Integrability::NonlinearInVelocity => "the constraint is not linear in the velocities",
-        Integrability::Undecided { .. } => "it is undecided whether the constraint forbids places",
+        Integrability::Undecided { .. } => "it is undecided whether the constraint is holonomic",
     };
-    let forbids_places = comparison.integrability.is_integrable();
+    let holonomic = comparison.integrability.is_integrable();
     Some(match verdict {
-        Verdict::Same if forbids_places => format!(
-            "Chetaev's and the vakonomic motion are the same, because {constraint}: both formulations then compare with \
-             the same neighbours."
+        Verdict::Same if holonomic => format!(
+            "Chetaev's and the vakonomic motion are the same because {constraint}. Both formulations then compare a \
+             motion with the same curves."
         ),
         Verdict::Same => format!(
-            "Chetaev's and the vakonomic motion show no difference from this start with these multipliers, although \
-             {constraint}."
+            "Chetaev's and the vakonomic motion do not differ measurably from this start with these multipliers, \
+             although {constraint}."
         ),
-        Verdict::Different if forbids_places => format!(
-            "Chetaev's and the vakonomic motion differ although {constraint}: that contradicts the theory, and one of the \
-             results is wrong."
+        Verdict::Different if holonomic => format!(
+            "Chetaev's and the vakonomic motion differ although {constraint}. That contradicts the theory, so one of \
+             the results is wrong."
         ),
         Verdict::Different => format!(
-            "Chetaev's and the vakonomic motion part because {constraint}: Chetaev compares with neighbours that the \
-             constraint allows at each instant, the vakonomic formulation with neighbouring paths that keep it."
+            "Chetaev's and the vakonomic motion diverge because {constraint}. Chetaev compares a motion with small \
+             shifts that the constraint allows at each instant, the vakonomic formulation with curves that satisfy it."
         ),
         Verdict::Undecided { because } => {
             format!("Whether Chetaev's and the vakonomic motion are the same is undecided: {because}.")

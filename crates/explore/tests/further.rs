@@ -94,3 +94,23 @@ fn where_derivatives_end_before_the_motion_it_is_said_why() {
     assert!(refused.contains("cos(phi) vanishes, by which the equations divide"), "{refused}");
     assert!(of("Chetaev")["rows"].is_array(), "{found}");
 }
+
+/// Equations are right, or the wrong term is told with its place.
+#[test]
+fn the_wrong_term_is_told() {
+    let review = |theirs: &str| ask(json!({ "ask": "review", "name": "sledge", "text": SLEDGE, "theirs": theirs })).0;
+    let right = "x'' = g*sin(alpha) - l*sin(phi)\ny'' = l*cos(phi)\nphi'' = 0*t";
+    assert_eq!(review(right)["verdict"], "right");
+    for (from, to, line, column, message) in [
+        ("= g", "= -g", 1, 8, "`g*sin(alpha)` has the wrong sign"),
+        ("= g", "= 2*g", 1, 7, "`2*g*sin(alpha)` is twice as large as it should be"),
+        ("= 0*t", "= 0.3*x' # drag", 3, 9, "`0.3*x'` does not belong there"),
+        ("l*cos(phi)", "l*cos(phi)/2", 2, 7, "`l*cos(phi)/2` is half as large as it should be"),
+    ] {
+        let answer = review(&right.replace(from, to));
+        let mends = answer["mends"].as_array().unwrap();
+        let told = json!({ "line": line, "column": column, "length": message.split('`').nth(1).unwrap().len(), "message": message });
+        assert!(answer["verdict"] == "wrong" && mends.contains(&told), "{to}: {answer}");
+    }
+    assert!(review("x'' = g*sin(")["refused"].as_str().unwrap().starts_with("yours:1:"), "{}", review("x'' = g*sin("));
+}

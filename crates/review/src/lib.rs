@@ -34,6 +34,7 @@ mod error;
 mod frame;
 mod latex;
 mod laws;
+mod mend;
 mod monomials;
 mod number;
 mod reading;
@@ -47,6 +48,7 @@ use scene::Scene;
 
 pub use error::ReviewError;
 pub use laws::Law;
+pub use mend::{Mend, mends};
 pub use monomials::Coefficient;
 pub use review::{Asked, Difference, Numbers, Review, Verdict, states};
 pub use substitution::SUBSTITUTION;

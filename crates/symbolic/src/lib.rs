@@ -104,6 +104,6 @@ pub use series::{
     Correct, Dual, LANES, Lanes, Product, SeriesInput, SeriesScalar, SeriesTape, SeriesWorkspace, Store, Task, Weights,
 };
 pub use steep::Steep;
-pub use suggest::nearest;
+pub use suggest::{callable, nearest};
 pub use tape::{Recorded, Tape, Workspace};
 pub use value::{Scope, Turn, Value};

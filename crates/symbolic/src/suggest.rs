@@ -24,8 +24,12 @@ const OTHERS: [(&str, RangeInclusive<usize>); 16] = [
     ("body_angular_velocity", 1..=1),
 ];
 
-/// The names that can be called.
-pub(crate) fn callable() -> impl Iterator<Item = &'static str> {
+/// The names that a formula can call.
+///
+/// ```
+/// assert!(symbolic::callable().any(|name| name == "atan2"));
+/// ```
+pub fn callable() -> impl Iterator<Item = &'static str> {
     Function::NAMES.into_iter().chain(OTHERS.iter().map(|(name, _)| *name))
 }
 
