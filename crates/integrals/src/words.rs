@@ -67,7 +67,7 @@ impl Integrals {
                     lines.push((kind(integral), format!("{} = const{part} ({drift})", integral.text)));
                 }
                 if found.unprinted > 0 {
-                    let words = format!("{} with coefficients that are no moderate fractions", found.unprinted);
+                    let words = format!("{} with coefficients that are not moderate fractions", found.unprinted);
                     lines.push(("", words));
                 }
             }

@@ -21,7 +21,7 @@
 //! number of the scene that is off, or a force that it lacks, may leave far less: then that is named.
 //!
 //! **Other laws.** Vakonomic: `E − Q = C μ − Aᵀ μ̇` for some `μ₀`; along a motion `μ` is affine in `μ₀`.
-//! The rate of the rows left out: `A a = 0` in the place of `ḟ = 0`. The constraint put into `L`: Lindelöf's
+//! The rate of the rows left out: `A a = 0` instead of `ḟ = 0`. The constraint put into `L`: Lindelöf's
 //! error.
 //!
 //! **Errors** are those of least squares with residuals that depend on their neighbours, and what differences

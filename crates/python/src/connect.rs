@@ -108,7 +108,8 @@ impl System {
     /// constraints leave free, and free constants. at: time of the end; by default that of `duration`.
     /// mu0, constants: a first guess. starts: from how many starts motions are searched. Else as in `solve`.
     ///
-    /// BoundaryError where there are more or fewer coordinates than unknowns; no motion found is no error.
+    /// BoundaryError where there are more or fewer coordinates than unknowns; no motion found is not an
+    /// error.
     ///
     /// >>> geodesics = deltaq.built_in("heisenberg").connect({"x": 0.2, "y": 0.5, "z": 0.3})
     /// >>> [shortest] = geodesics.motions

@@ -47,8 +47,8 @@ impl State {
 /// to be zero. parameters: name to number. definitions: name to expression, usable in all others. units:
 /// coordinate to text. forces: coordinate to expression, generalized forces Q. virtual: what rates of virtual
 /// displacements satisfy, h of them, for the formulation prescribed. observables: name to
-/// expression, what motions list besides; invariants: likewise, what should stay constant. view: name of a
-/// body to {"shape": ..., "size": [...], "at": ..., "rotation": ...}, as in [view.NAME]. start: every
+/// expression, what motions list besides; invariants: in the same way, what should stay constant. view: name
+/// of a body to {"shape": ..., "size": [...], "at": ..., "rotation": ...}, as in [view.NAME]. start: every
 /// coordinate to its start. velocities: some ("x'") to their start; constraints supply the others, and
 /// start_equations, as in ["dot(W, n) = 5"] or what is zero. guess: velocities near which these are sought.
 /// project: move given velocities onto the constraints.

@@ -228,7 +228,7 @@ fn end_of(name: &str, said: &str, success: bool) -> End {
     }
 }
 
-/// The last line: what was not run is no pass.
+/// The last line: what was not run is not a pass.
 fn counted(ended: &[End]) -> String {
     let count = |end: End| ended.iter().filter(|other| **other == end).count();
     let lacking: Vec<&str> =
@@ -240,7 +240,7 @@ fn counted(ended: &[End]) -> String {
     }
 }
 
-/// Runs a chore that is no check.
+/// Runs a chore that is not a check.
 pub(crate) fn chore(outcome: Result<Outcome>) -> ExitCode {
     match outcome {
         Ok(Outcome::Passed(told)) => {

@@ -16,7 +16,7 @@ use anyhow::Result;
 
 use tools::Outcome;
 
-/// A chore that is no check: its name, what it does, and what it does with further words.
+/// A chore that is not a check: its name, what it does, and what it does with further words.
 type Chore = (&'static str, &'static str, fn(&[&str]) -> Result<Outcome>);
 
 const CHORES: [Chore; 6] = [

@@ -5,5 +5,5 @@ mod headline;
 mod numbers;
 
 pub use decision::{by_half, decisions, how_far, reached, sentence};
-pub use headline::{Headline, rows, unseen};
+pub use headline::{Headline, answer, rows, unseen};
 pub use numbers::{at_most, enumerate, or_dash, precise, short};

@@ -38,7 +38,7 @@ def from_sympy(method: LagrangesMethod, **arguments: Any) -> System:
 
 
 def text(thing: object) -> str | None:
-    """A formula in deltaq's language; None where `thing` is no expression of SymPy.
+    """A formula in deltaq's language; None where `thing` is not a SymPy expression.
 
     TypeError with what the language does not have, ValueError with a symbol that cannot be a name.
     """
