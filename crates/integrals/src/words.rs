@@ -2,11 +2,15 @@
 
 use std::fmt::{self, Display, Formatter};
 
+use deltaq::words::at_most;
 use mechanics::{Domain, System};
 use serde_json::{Value, json};
 
 use crate::answer::CHANGED;
 use crate::{Cyclic, Density, Found, Integrals, Measure, Multiplier, Open, Printed, Reduction, Reversed};
+
+/// A smaller drift is round-off, and has no digits.
+const ROUND_OFF: f64 = 1e-14;
 
 /// What integrals of degree `below + 1` are called.
 pub(crate) fn degree(below: usize) -> &'static str {
@@ -61,7 +65,7 @@ impl Integrals {
                         Ok(drifts) if drifts[i] > CHANGED => {
                             (" on the branch of this start", format!("drift {:.0e}: the motion leaves it", drifts[i]))
                         }
-                        Ok(drifts) => ("", format!("drift {:.0e}", drifts[i])),
+                        Ok(drifts) => ("", format!("drift below {:.0e}", at_most(drifts[i].max(ROUND_OFF)))),
                         Err(why) => ("", format!("no motion to try it on: {why}")),
                     };
                     lines.push((kind(integral), format!("{} = const{part} ({drift})", integral.text)));
