@@ -14,8 +14,8 @@
 //! ```
 //!
 //! `λ` is free at each sample, `ε` (in `T`) and the drag `γ` (in `1/T`) minimize the residual in the metric
-//! `M⁻¹`; then the slip `1/N` follows from the observed `f`. Nothing is integrated, so that nothing grows,
-//! and no start value is asked for.
+//! `M⁻¹`; then the slip `1/N` follows from the observed `f`. Nothing is integrated: errors do not grow,
+//! and a start value is not needed.
 //!
 //! They are given where what is left is noise, or where much more would be left without them. Elsewhere a
 //! number of the scene that is off, or a force that it lacks, may leave far less: then that is named.

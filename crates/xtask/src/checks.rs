@@ -12,7 +12,7 @@ use std::time::Instant;
 use anyhow::{Context, Result};
 
 use crate::tools::{ALL, Outcome, build, cargo, outside, succeed, target};
-use crate::{dependencies, explore, lint, python, sources};
+use crate::{dependencies, explore, lint, python, sources, words};
 
 /// One thing that must hold.
 pub(crate) struct Check {
@@ -43,6 +43,12 @@ pub(crate) fn all() -> Vec<Check> {
             "no file names a place on one machine or a private registry",
             "write the path relative to the root of the project",
             sources::paths,
+        ),
+        check(
+            "words",
+            "no page has a long sentence, a habit that readers stumble over, or a number without a source",
+            "say it in two sentences and other words; link the number's page, or list its source in docs/numbers.txt",
+            words::check,
         ),
         check(
             "once",

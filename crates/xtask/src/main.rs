@@ -4,10 +4,12 @@ mod checks;
 mod dependencies;
 mod explore;
 mod lint;
+mod numbers;
 mod python;
 mod site;
 mod sources;
 mod tools;
+mod words;
 
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
