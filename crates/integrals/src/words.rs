@@ -2,8 +2,8 @@
 
 use std::fmt::{self, Display, Formatter};
 
-use deltaq::words::at_most;
 use mechanics::{Domain, System};
+use motion::numbers::at_most;
 use serde_json::{Value, json};
 
 use crate::answer::CHANGED;

@@ -1,8 +1,8 @@
 //! Why there is no linearization.
 
-use deltaq::SolveError;
-use deltaq::words::short;
 use equations::EvaluationFailure;
+use motion::SolveError;
+use motion::numbers::short;
 use scene::SceneErrorKind;
 
 /// A linearization that there is not.

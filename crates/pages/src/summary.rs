@@ -3,9 +3,10 @@
 use std::fmt::Write;
 
 use anyhow::Result;
-use deltaq::{CHETAEV, Comparison, Ending, Pair, VAKONOMIC, Verdict, error_estimate, setting};
+use comparison::{Comparison, Pair, Verdict};
+use motion::{CHETAEV, Ending, VAKONOMIC, error_estimate, setting};
 
-use deltaq::words::{Headline, answer, at_most, or_dash, rows, short};
+use comparison::words::{Headline, answer, at_most, or_dash, rows, short};
 use picture::{Axis, Curve, Picture, Style};
 
 /// Rows of the plot.
