@@ -64,7 +64,7 @@ fn read(line: &'static str) -> Reference {
             costates: named.map(|(name, x)| (name, number(x))).collect(),
             horizon: (!horizon.is_empty()).then(|| number(horizon)),
         },
-        other => panic!("`{other}` in references.csv is no motion"),
+        other => panic!("`{other}` in references.csv is not a motion"),
     };
     let [t, rounding] = [t, rounding].map(number);
     Reference { scene, motion, t, q: numbers(q), v: numbers(v), multipliers: numbers(multipliers), rounding }

@@ -49,7 +49,7 @@ def rows(path, columns, all_of_them):
                     except (TypeError, ValueError):
                         x = math.nan
                     if not math.isfinite(x):
-                        raise Unreadable(f"{path}: line {line}, column `{column}`: `{row[column]}` is no finite number")
+                        raise Unreadable(f"{path}: line {line}, column `{column}`: `{row[column]}` is not a finite number")
                     return x
                 state = {c: number(c) for c in columns if c in names}
                 key = (row["formulation"], number("start"))

@@ -62,10 +62,10 @@ def run(settings, motion, doc):
     settings.update({name: json.loads(value) for name, value in other.items()})
     steps = round(arguments.end / arguments.dt)
     if abs(steps * arguments.dt - arguments.end) > 1e-9 * arguments.end:
-        raise SystemExit(f"--end {arguments.end} s is no whole number of steps of {arguments.dt} s")
+        raise SystemExit(f"--end {arguments.end} s is not a whole number of steps of {arguments.dt} s")
     samples = max((s for s in range(SAMPLES[0], SAMPLES[1] + 1) if steps % s == 0), default=0)
     if not samples:
-        raise SystemExit(f"{steps} steps are no multiple of {SAMPLES[0]} to {SAMPLES[1]} samples: choose another --dt or --end")
+        raise SystemExit(f"{steps} steps are not a multiple of {SAMPLES[0]} to {SAMPLES[1]} samples: choose another --dt or --end")
     ball, rows = start(changes), []
     for state in motion(ball, arguments.dt, steps, steps // samples):
         rows.append(row(*state, np.array(rows[-1][3:6] if rows else ball.angles)))

@@ -111,7 +111,7 @@ class System:
         self.Q = [read(scene["forces"].get(x, "0")) for x in self.names]
         self.texts = [read(text) for text in texts]
         places = [self.L, *self.f, *self.Q, *self.texts]
-        readable(all(isinstance(place, int) for place in places), "a formula of the scene that is no number")
+        readable(all(isinstance(place, int) for place in places), "a formula of the scene that is not a number")
         moving = {*self.names, *self.rates, "t"}
         self.box = None
         if self.formulas.branches(moving):

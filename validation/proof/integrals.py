@@ -90,7 +90,7 @@ def factors(proof, key):
     """The exponents of det g, and of sines and cosines by coordinate."""
     fraction = lambda text: Fraction(text if re.fullmatch(r"-?\d{1,9}(/[1-9]\d{0,8})?", text) else readable(False, f"the exponent {text}"))
     angles = {x: [*map(fraction, pair)] for x, pair in proof[key]["angles"].items()}
-    demand(angles.keys() <= set(proof["scene"]["coordinates"]), "an angle that is no coordinate")
+    demand(angles.keys() <= set(proof["scene"]["coordinates"]), "an angle that is not a coordinate")
     return fraction(proof[key]["metric"]), angles
 
 def product(metric, angles):
@@ -146,7 +146,7 @@ def reduced(proof):
         c = [[[dot(x, chart.bracket(X, Y)) for x in below] for Y in N] for X in N]
         units = [[Series.of(int(i == z)) for i in names] for z in names if z not in free]
         contained = any(chart.along(unit, x).c[0] for unit in units for x in (V, *sum(g, []), *sum(sum(c, []), [])))
-        readable(not contained, "what is solved for are no velocities of symmetries")
+        readable(not contained, "what is solved for are not velocities of symmetries")
         yield system, at, chart, g, N, c
 
 def solved(phi, g, c):

@@ -678,7 +678,7 @@ def of_kind(proof, kinds):
     demand(proof["digest"] == "sha256:" + digest, "the digest of the scene")
     p, (M, z), exponents = proof["prime"], proof["unity"], proof["exponents"]
     order = exponents["order"]
-    demand(is_prime(p) and p > max(2**50, proof.get("order", 0) + 2), "p is no prime over 2^50")
+    demand(is_prime(p) and p > max(2**50, proof.get("order", 0) + 2), "p is not a prime over 2^50")
     readable(0 < M < 2**32, "M")
     small = [l for l in range(2, 2**16) if M % l == 0 and is_prime(l)]
     large = [M // d for d in range(1, 2**16) if M % d == 0 and is_prime(M // d)]

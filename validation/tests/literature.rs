@@ -8,13 +8,15 @@ fn every_claim_has_the_word_that_its_data_expect_and_the_headline_counts_the_tab
     let page = report.files().remove(0).text;
     let rows: Vec<&str> = page.lines().filter(|line| line.starts_with("| ") && line.ends_with("** |")).collect();
     let count = |word: &str| rows.iter().filter(|row| row.ends_with(&format!("| **{word}** |"))).count();
-    let [confirmed, qualified, contradicted, refuted, open] =
-        ["confirmed", "qualified", "contradicted", "refuted", "open"].map(count);
-    assert_eq!(confirmed + qualified + contradicted + refuted + open, rows.len());
+    let words = ["confirmed", "qualified", "contradicted", "refuted"].map(|word| (word, count(word)));
+    let [answered, open] = ["answered", "open"].map(count);
+    let claims: usize = words.iter().map(|(_, n)| n).sum();
+    assert_eq!(claims + answered + open, rows.len());
+    let found: Vec<String> = words.iter().filter(|(_, n)| *n > 0).map(|(word, n)| format!("{n} {word}")).collect();
     let expected = format!(
-        "Of {} published claims, as abstracts or memory have them, {confirmed} are confirmed on the scenes here, {qualified} hold under a \
-         condition, {contradicted} are contradicted in the reading given here, {refuted} are refuted, {open} are open.",
-        rows.len()
+        "{claims} claims whose abstract was read were computed on the systems here: {}. {answered} further questions from the \
+         literature are answered for the systems named, without a verdict on their sources. {open} statements were not computed.",
+        found.join(", ")
     );
     assert_eq!(report.headline(), expected);
 }
@@ -36,6 +38,12 @@ fn the_word_follows_from_what_was_found() {
     assert_eq!(claim("contradicted", &mixed), Ok(()));
     assert_eq!(claim("refuted", &format!("in_full = true\n{mixed}")), Ok(()));
     assert_eq!(claim("qualified", &format!("condition = ''\n{mixed}")), Ok(()));
+    // a question has no verdict, and the same data are held against what was found
+    let asked =
+        format!("[[claim]]\nsource = 'a'\nread = ''\nabout = 'b'\nquestion = 'Is it?'\nword = 'contradicted'\n{mixed}");
+    let asked = LiteratureReport::of(&asked, true).expect("a page");
+    let page = asked.files().remove(0).text;
+    assert!(page.contains("**answered**") && page.contains("Is it?") && !page.contains("contradicted"), "{page}");
     let told = claim("confirmed", &mixed).expect_err("a word that does not follow");
     assert!(told.contains("it is contradicted"), "{told}");
     let along = "along = { formulation = 'vakonomik', quantity = 'x', during = [0, 1], between = [0, 1] }\n";

@@ -44,7 +44,7 @@ fn every_command_is_called() {
 #[test]
 fn an_answer_that_cannot_be_written_is_an_error() {
     none_is_lost(&ANSWERS);
-    refused(&["random", "--count", "1", "--quiet", "--log", "/dev/full"], &["is no file"]);
+    refused(&["random", "--count", "1", "--quiet", "--log", "/dev/full"], &["is not a file"]);
 }
 
 #[test]

@@ -35,7 +35,7 @@ pub struct Effort {
     pub methods: Vec<Method>,
     /// Tolerances are powers of ten: all from 1e-3 on for 1, every third one for 3.
     pub every: usize,
-    /// Runs of one setting are repeated until they took this many seconds together, but for those that take
+    /// Runs of one setting are repeated until they took this many seconds together, except those that take
     /// over four times as long as a run of another method with no larger error.
     pub seconds: f64,
     /// And at least this often.
@@ -178,7 +178,7 @@ fn motion(choice: &Choice) -> String {
     }
 }
 
-/// References of `name`, a built-in scene or a scene file's path, but for those that are `kept`: not timed,
+/// References of `name`, a built-in scene or a scene file's path, except those that are `kept`: not timed,
 /// several may run at once.
 ///
 /// # Errors

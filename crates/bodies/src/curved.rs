@@ -71,7 +71,7 @@ impl Maker<'_> {
                 let distance = format!("{p}.z - ({k}*{p}.x^2 + {l}*{p}.y^2)/2");
                 (zero(), zero(), zero(), distance.clone(), distance)
             }
-            _ => return fault("balls roll in cones and cylinders, points slide in bowls, too"),
+            _ => return fault("balls roll in cones and cylinders, points slide in bowls as well"),
         };
         let n = self.define(&c.name, "n", n);
         let outwards = turned(&axes, &format!("{a}*{n}")).replace(&format!("*{a}*{n}"), &format!("*({a}*{n})"));

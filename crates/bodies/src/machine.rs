@@ -217,7 +217,7 @@ pub struct Formulas {
     pub definitions: Vec<Made>,
     /// Terms of `L`, to be added.
     pub energies: Vec<String>,
-    /// Constraints; those that vanish identically are no constraints.
+    /// Constraints; those that vanish identically are not constraints.
     pub rows: Vec<Row>,
     /// Slips at all contacts along, across and along the normal, or the height that it is the rate of.
     pub slips: Vec<Made>,

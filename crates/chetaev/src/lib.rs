@@ -1,4 +1,6 @@
-//! # The Chetaev formulation (d'Alembert–Lagrange with reaction multipliers)
+//! # The d'Alembert–Lagrange equations of nonholonomic systems (Chetaev's condition)
+//!
+//! Wheels, skates and rolling bodies follow these equations, because friction holds their constraints.
 //!
 //! Given are coordinates `q ∈ Rⁿ`, a Lagrangian `L(q, v, t)` with `v = q̇`, constraints `f(q, v, t) = 0 ∈ Rʰ`
 //! and generalized forces `Q(q, v, t)`. Write `A = ∂f/∂v` (h×n) and `M = ∂²L/∂v²` (n×n).
@@ -34,7 +36,7 @@
 //! Where `A` depends on the velocities it may lose rank along a motion, at the tip of a cone `f = 0`, and
 //! several motions go on from there: the run stops.
 //!
-//! **What the motion depends on.** On `(q₀, v₀)` with `f(q₀, v₀, t₀) = 0`, and nothing else.
+//! **What the motion depends on.** Only on `(q₀, v₀)` with `f(q₀, v₀, t₀) = 0`.
 //!
 //! **What stays constant.** The energy `v·L_v − L`, when nothing depends on time, `Q = 0`, and the motion
 //! itself is a virtual displacement, `A v = 0` wherever `f = 0` (constraints homogeneous in `v`; *not* affine

@@ -170,7 +170,7 @@ impl Comparison {
         Ok(())
     }
 
-    /// Puts the constants that a run has in the place of fitted ones that leave a larger gap: a search is no
+    /// Puts the constants that a run has instead of fitted ones that leave a larger gap: a search is no
     /// reason to go farther away.
     pub(crate) fn keep_closer(&mut self) {
         for fit in &mut self.fits {

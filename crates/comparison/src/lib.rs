@@ -1,4 +1,4 @@
-//! # Do the formulations of one system agree?
+//! # Decides whether the formulations of a nonholonomic system agree
 //!
 //! Two motions of one system, by two formulations, are the same or they differ. Where a formulation has free
 //! constants, as vakonomic mechanics has its initial multipliers, the question is whether *some* of them give

@@ -52,7 +52,7 @@ pub enum Answer {
     Some {
         /// Taylor coefficients agree up to this order; `None` where there are none.
         order: Option<usize>,
-        /// Whether the ranks of these, modulo two primes, have stopped growing. That is no proof.
+        /// Whether the ranks of these, modulo two primes, have stopped growing. That is not a proof.
         settled: bool,
     },
     /// Round-off hides it, or proof and numbers contradict each other ([`Membership::contradiction`]).
@@ -184,7 +184,7 @@ impl<'a> Pairing<'a> {
 
     /// Vakonomic motions are Chetaev's for every `μ₀` where the constraints are integrable (theorem 3):
     /// `f = g dh/dt` with an invertible `g`, and for `dh/dt` the equations contain `μ` as a rate only, `−λ`.
-    /// At rest they do so, too.
+    /// At rest they do so as well.
     fn theorem(&self, start: &ExactStart, end: f64) -> Option<&'static str> {
         if self.curve.formulation != CHETAEV.name || self.family.formulation() != VAKONOMIC.name {
             return None;
@@ -299,7 +299,7 @@ fn principal(scene: &Scene) -> Result<Option<Pairing<'_>>, SolveError> {
 /// P₀ = −∂(L + μ₀·f)/∂ẇ        (for f = ẇ − B: μ₀ = −P₀ − L_ẇ) .
 /// ```
 ///
-/// `None` where some parameter or memory variable is no coordinate: then the two families differ.
+/// `None` where some parameter or memory variable is not a coordinate: then the two families differ.
 ///
 /// # Errors
 /// [`SolveError::Compile`] where an expression has no value at the start.

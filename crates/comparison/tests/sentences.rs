@@ -165,7 +165,10 @@ fn what_the_curvature_predicts_and_what_was_measured_are_told_apart() {
     pair.growth.as_mut().expect("a growth").length = 2.0;
     pair.predicted.as_mut().expect("a prediction").length = 3.0;
     let why = Headline::of(&sledge).why;
-    assert!(why.contains("predicts that Chetaev and vakonomic part as 3.0000 t^3; measured: 2.0000 t^3.00."), "{why}");
+    assert!(
+        why.contains("Predicted growth of the gap between Chetaev and vakonomic: 3.0000 t^3; fitted: 2.0000 t^3.00."),
+        "{why}"
+    );
     // substitution is said of removals without costates, and only of those
     let said = "t^3.00. removed constraint (coordinates) is substitution of the constraint into L here";
     assert!(why.contains(said) && why.matches("substitution").count() == 1, "{why}");

@@ -181,7 +181,7 @@ impl Question<'_> {
         let shape = &self.family().shape;
         let (n, h, last) = (shape.coordinates, shape.constraints, refuted.order);
         if ![0, h].contains(&open.len()) {
-            return Err("the start that was drawn has numbers that are no fractions".into());
+            return Err("the start that was drawn has numbers that are not fractions".into());
         }
         if shape.rates.iter().any(|rate| matches!(rate, CostateRate::Explicit(_))) || curve.unknowns[0].len() != n + h {
             return Err("certificates are written for Chetaev's motion as a vakonomic one only".into());

@@ -19,7 +19,7 @@ const LARGEST: usize = 20_000;
 /// the derivative of the section along them, or an unknown beside `z`. Velocities are put in from `f = 0`;
 /// with all unknowns eliminated, which stand linearly, what is left of every equation has to be the number
 /// zero. Pivots are not zero identically: what is shown where they differ from zero holds on all of `f = 0`
-/// by continuity. What is no identity for all parameters may be one for those of the system, as written.
+/// by continuity. What is not an identity for all parameters may be one for those of the system, as written.
 pub(crate) fn is_identity(system: &System, curve: &Equations, family: &Family, section: Option<&[Expr]>) -> bool {
     let zero = |(g, rest): (Graph, Vec<Expr>)| g.are_exact(&rest) && rest.iter().all(|&e| vanishes(&g, e));
     [false, true].into_iter().any(|as_written| remainders(system, curve, family, section, as_written).is_some_and(zero))

@@ -100,8 +100,8 @@ impl Question<'_> {
     }
 
     /// The least mismatch `(∫ |y|²_M dt)^{1/2}` over all constants by the Taylor series at `state`, over that
-    /// part of `time` in which these converge fast: over all of it the least is no less. `None` where there
-    /// are no series, and for removals with variables of their own.
+    /// part of `time` in which these converge fast: over all of it the least is not less. `None` where there
+    /// are not series, and for removals with variables of their own.
     pub fn least_by_series(&self, system: &System, state: &State, time: f64) -> Option<f64> {
         let (_, series): (_, MismatchSeries<Bounded>) = self.series(&rounded(system, state), TAYLOR).ok()?;
         if self.family().lift.is_some() {
@@ -166,7 +166,7 @@ impl Question<'_> {
     }
 
     /// The first order that does not vanish, in two fields; `None` where exact numbers do not apply. What is
-    /// not zero in one field is not zero; so the first of any field is no lower than that of the numbers.
+    /// not zero in one field is not zero; so the first of any field is not lower than that of the numbers.
     fn agreed_order(&self, exact: &ExactStart, constants: &[f64]) -> Option<Option<usize>> {
         let mut found = Vec::new();
         for field in &FIELDS {

@@ -77,7 +77,7 @@ impl Leaf {
     }
 
     /// `q` moved onto `g = 0`, near `start` where `q` is; `None` where there is no root. A constraint is
-    /// `rootless` that once had none: it is no product then.
+    /// `rootless` that once had none: it is not a product then.
     ///
     /// A single coordinate stays; what is linear in a coordinate gives that. A quadric whose coordinates
     /// stand nowhere else is met a second time by the line from `start` in the direction of `q`, in numbers

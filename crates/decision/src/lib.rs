@@ -1,7 +1,8 @@
-//! # Is this motion a motion of the other formulation?
+//! # Decides whether a trajectory solves the equations of another formulation
 //!
 //! A vakonomic motion depends on `(q₀, v₀)` and free constants `μ₀`, a removed-constraint motion on `P(t₀)`.
-//! Is a curve `q(t)`, Chetaev's say, such a motion? A linear question: decided, not searched; a no is proved.
+//! Whether a curve `q(t)` is such a motion is a linear problem in these constants: it is decided, and a no
+//! proved.
 //!
 //! **The condition.** Along a curve with `f = 0` everything is known but the multipliers. Write `A = ∂f/∂v`
 //! (h×n), `Ȧ` for its rate along the curve, with the curve's own acceleration, `C = f_qᵀ − Ȧᵀ` (n×h), and

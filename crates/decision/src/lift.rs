@@ -10,7 +10,7 @@ use crate::flow::inputs;
 use crate::order_by_order::{NoSeries, SeriesSolve, order, sound};
 use crate::program::Program;
 
-/// `u`, `w` that are no coordinates, integrated beside the curve; `u̇`, `ü` by `q̇(u̇, u, w, t) = v` and on.
+/// `u`, `w` that are not coordinates, integrated beside the curve; `u̇`, `ü` by `q̇(u̇, u, w, t) = v` and on.
 #[derive(Clone)]
 pub(crate) struct Lift {
     /// Integrated `u` then `w`; then `u̇`, then `ü`.

@@ -14,7 +14,7 @@ use crate::start::ExactStart;
 pub struct PlainScene {
     /// Names, in the order of `q`.
     pub coordinates: Vec<String>,
-    /// Parameters that stand in what follows, and are no functions of others.
+    /// Parameters that stand in what follows, and are not functions of others.
     pub parameters: Vec<(String, String)>,
     /// `L(q, v, t)`.
     pub lagrangian: String,
@@ -26,7 +26,7 @@ pub struct PlainScene {
     pub time: String,
     /// `q₀`.
     pub positions: Vec<(String, String)>,
-    /// `v₀`, but for what the constraints supply.
+    /// `v₀`, except what the constraints supply.
     pub velocities: Vec<(String, String)>,
 }
 
@@ -54,7 +54,7 @@ impl PlainScene {
         let place = parameters + 1;
         let drawn = if at_random { parameters..place + n } else { 0..0 };
         if drawn.into_iter().any(|i| values[i].exact().is_none()) {
-            return Err("the start that was drawn has numbers that are no fractions".into());
+            return Err("the start that was drawn has numbers that are not fractions".into());
         }
         let text = |i: usize| match values[i].exact() {
             Some(x) if !is_written(i) || mixes_pi(&g.plain(start.written[i])) => x.to_string(),

@@ -24,7 +24,7 @@ impl Program {
     /// A tape for `outputs` from `inputs`, parameters first.
     ///
     /// # Errors
-    /// [`CompileError`] for a symbol that is no input.
+    /// [`CompileError`] for a symbol that is not input.
     pub fn new(graph: &Graph, inputs: &[Symbol], outputs: &[Expr]) -> Result<Self, CompileError> {
         Ok(Program { tape: Arc::new(graph.compile(inputs, outputs, &HashMap::new())?) })
     }

@@ -15,8 +15,8 @@ use crate::random_start::at_random;
 use crate::series::{CurveSeries, MismatchSeries, SeriesStart};
 use crate::start::ExactStart;
 
-/// Seeds of the random starts, one per field: a rank that two of them agree on is the generic one, but for an
-/// accident.
+/// Seeds of the random starts, one per field: a rank that two of them agree on is the generic one, except for
+/// an accident.
 const SEEDS: [u64; FIELDS.len()] = [0x5eed_0001, 0x5eed_0002, 0x5eed_0003, 0x5eed_0004];
 /// Orders for which a certificate has room for its series.
 const MOST: usize = ORDERS - 3;

@@ -22,7 +22,7 @@ const TRIALS: u64 = 4;
 /// constraint.
 ///
 /// `c_j = Σ a_{jb} B_b(q, v)` with fractions `a_{jb}` and as `B_b` the momenta `∂L/∂v`, 1 and the velocities.
-/// Solved for `a` at random points of one finite field, they hold at four of another. That is no proof.
+/// Solved for `a` at random points of one finite field, they hold at four of another. That is not a proof.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Section {
     /// Names of the constants.

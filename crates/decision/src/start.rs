@@ -20,7 +20,7 @@ pub enum NoExactStart {
     #[error("{0}")]
     Flaw(#[from] Flaw),
     /// The velocities that the constraints supply are not rational functions of the given ones.
-    #[error("the velocities that the constraints supply are no rational functions of the given ones")]
+    #[error("the velocities that the constraints supply are not rational functions of the given ones")]
     Nonlinear,
     /// Start equations supply velocities at the start.
     #[error("start equations supply velocities at the start; write these as formulas under [start.velocities]")]
@@ -221,7 +221,7 @@ impl ExactStart {
         Ok(SeriesStart { parameters, time, positions, velocities })
     }
 
-    /// Positions and velocities as they are written, but for those that are others.
+    /// Positions and velocities as they are written, except those that are others.
     pub(crate) fn written_state<C: Coefficient>(
         &self,
         parameters: &[Jet<C>],

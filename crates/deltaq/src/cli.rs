@@ -42,11 +42,15 @@ pub const METHODS: &[Method] = &diffsol_methods::EVERY;
 pub const METHODS: &[Method] = &Method::ALL;
 
 /// What exit codes mean, below the help of the program.
-const EXIT_CODES: &str = "Exit codes: 0 for an answer to be trusted, 1 where it cannot be written or `review` finds equations wrong, 2 for bad input, 3 for an answer \
-that is not to be trusted or that there is not, 4 where results contradict each other, 5 where a computation breaks off. \
+const EXIT_CODES: &str = "Exit codes: 0 for an answer that can be trusted; 1 if it cannot be written or `review` finds equations wrong; 2 for bad input; \
+3 for an answer that cannot be trusted, or none; 4 if results contradict each other; 5 if a computation breaks off. \
 4 and 5 are faults of deltaq: please report them.";
 
-/// What may a virtual displacement be? One system with velocity constraints, several formulations of motion.
+/// Derives, integrates and compares the equations of motion of nonholonomic systems: d'Alembert–Lagrange
+/// (Chetaev), vakonomic, removed-constraint.
+///
+/// Wheels, skates and rolling bodies follow d'Alembert–Lagrange (`-f chetaev`). Vakonomic equations belong to
+/// constrained variational problems, such as optimal control.
 #[derive(Parser, Debug)]
 #[command(name = "deltaq", version = env!("DELTAQ_VERSION"), propagate_version = true, max_term_width = 100)]
 #[command(after_help = EXIT_CODES)]
@@ -70,7 +74,7 @@ pub enum Command {
     List(ListArguments),
     /// Write a commented scene to begin with.
     New(NewArguments),
-    /// Look for all that is wrong with scene files, without deriving anything.
+    /// Find every fault in scene files, without deriving anything.
     Check(CheckArguments),
     /// Show the equations of a scene, what was left out of them, and whether its constraints are integrable.
     Show(ShowArguments),
@@ -80,7 +84,7 @@ pub enum Command {
     Connect(ConnectArguments),
     /// Integrate many starts or parameters of a scene at once, by Taylor series, in one formulation.
     Ensemble(EnsembleArguments),
-    /// Linearize a steady motion: eigenvalues with errors, and where stability to first order changes.
+    /// Linearize a steady motion: eigenvalues with errors, and where linear stability changes.
     Linearize(LinearizeArguments),
     /// Compare all formulations of one or more scenes.
     Compare(CompareArguments),
@@ -88,15 +92,15 @@ pub enum Command {
     Explore(ExploreArguments),
     /// Prove that no multipliers make a scene's vakonomic motion Chetaev's: a certificate others can check.
     Prove(ProveArguments),
-    /// Decide which invariant measure and first integrals there are: printed, counted, or proved to be none.
+    /// Decide which invariant measures and first integrals exist: printed, counted, or proved not to exist.
     Integrals(IntegralsArguments),
-    /// Say which law a program integrates, from motions that it made: slip, epsilon and drag with errors.
+    /// Identify the constraint law of a program from its motions: slip, epsilon and drag with errors.
     Judge(JudgeArguments),
-    /// Say whether somebody's equations of motion are right, and if not, what is wrong with them.
+    /// Check whether given equations of motion are right, and if not, what is wrong with them.
     Review(ReviewArguments),
-    /// Fit unknown numbers to films: estimates with intervals, and which formulation the films support.
+    /// Fit unknown numbers to recordings (films): intervals, and which formulation the data support.
     Fit(FitArguments),
-    /// Choose the film to be made that tells two formulations apart best, or shows a number best.
+    /// Plan the recording that separates two formulations best, or determines a number best.
     Design(DesignArguments),
     /// Measure error against run time, by every method at every tolerance.
     Bench(BenchArguments),
@@ -129,9 +133,9 @@ pub struct SolveArguments {
     /// radau5); Taylor series, of the order that the tolerance asks for; explicit Runge–Kutta of order 8
     /// (dop853); stiff: implicit Runge–Kutta of order 5 (radau5); leapfrog, a discrete variational principle
     /// in equal steps, which keeps constraints, reversibility and (vakonomic, removed) the symplectic form.
-    /// A program built with `--features diffsol` has those of the library diffsol, too: explicit Runge–Kutta
-    /// of order 5 (tsit45); stiff: backward differentiation formulas (bdf), implicit Runge–Kutta of order 2
-    /// (tr-bdf2) and 4 (esdirk34).
+    /// A program built with `--features diffsol` has those of the library diffsol as well: explicit
+    /// Runge–Kutta of order 5 (tsit45); stiff: backward differentiation formulas (bdf), implicit Runge–Kutta
+    /// of order 2 (tr-bdf2) and 4 (esdirk34).
     #[arg(long, value_parser = by_name(Stepping::all(METHODS), Stepping::name, None), default_value = "auto")]
     pub method: Stepping,
     /// Longest step of `--method leapfrog`, at most the duration, which is cut into two at least. A second
@@ -142,11 +146,11 @@ pub struct SolveArguments {
     #[arg(long, value_parser = ["2", "4", "6", "8"])]
     pub order: Option<String>,
     /// Add the derivatives of all columns by these numbers, with their error estimates: parameters, start
-    /// values (the constraints supply the velocities that they supply in the scene), `mu0_1`, … and `P0_w`, …
+    /// values (dependent velocities follow from the constraints), `mu0_1`, … and `P0_w`, …
     #[arg(long, value_name = "NAME,…", value_delimiter = ',')]
     pub sensitivities: Vec<String>,
-    /// Watch the integrals that `deltaq integrals` writes down for this formulation, but those that contain
-    /// multipliers: a column each, and their drift among the invariants.
+    /// Add a column for each integral that `deltaq integrals` finds for this formulation, except those with
+    /// multipliers, and report their drift among the invariants.
     #[arg(long)]
     pub integrals: bool,
 }
@@ -164,7 +168,7 @@ pub struct CompareArguments {
     /// Print the whole page, in Markdown, and not only the answer.
     #[arg(long, conflicts_with_all = ["out", "format"])]
     pub markdown: bool,
-    /// Formulations to compare, all if left out.
+    /// Formulations to compare; if left out, all for which the scene has what they need.
     #[arg(long, short, value_name = "NAME,…", value_delimiter = ',', value_parser = formulations())]
     pub formulation: Vec<&'static Formulation>,
     /// Also fit free constants where it is decided whether some constants give the motion.
@@ -198,7 +202,7 @@ impl CompareArguments {
     }
 }
 
-/// What takes a search.
+/// What needs a search.
 #[derive(ValueEnum, Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Searched {
     /// Fits of free constants.
@@ -231,7 +235,7 @@ pub struct ProveArguments {
     /// deltaq did not write is not replaced.
     #[arg(long, value_name = "FILE")]
     pub out: PathBuf,
-    /// Prove it for a start drawn at random, and so for almost every start, in the place of the scene's own.
+    /// Prove it for a start drawn at random, and so for almost every start, instead of the scene's own.
     #[arg(long)]
     pub almost_every: bool,
     /// Output format of the answer; a certificate is JSON.

@@ -45,7 +45,7 @@ impl Columns {
         object["multipliers"] = named_columns(&self.multipliers, rows, |r| &r.multipliers);
     }
 
-    /// The error estimates up to each time, as an object likewise.
+    /// The error estimates up to each time, as an object in the same way.
     pub fn errors(&self, rows: &[ErrorEstimate]) -> Value {
         json!({
             "coordinates": named_columns(&self.coordinates, rows, |r| &r.coordinates),

@@ -118,7 +118,7 @@ fn fit_text(text: &mut String, fit: &Fit) {
     for test in objections {
         let _ = writeln!(
             text,
-            "  residuals object: {} is {:.4}, {:.4} is expected; probability {:.0e}",
+            "  residual test failed: {} = {}, expected {} (p = {:.0e})",
             test.name, test.found, test.expected, test.probability
         );
     }

@@ -21,7 +21,7 @@ pub fn run(arguments: &JudgeArguments) -> Result<Answer> {
         bail!("--steps: {} steps are given for {} tables", given.len(), files.len());
     }
     if let Some(step) = given.iter().find(|step| !(step.is_finite() && **step > 0.0)) {
-        bail!("--steps: {step} is no positive number");
+        bail!("--steps: {step} is not a positive number");
     }
     if !(arguments.tolerance > 0.0 && arguments.tolerance <= 1.0) {
         bail!("--tolerance: {} is not between 0 and 1", arguments.tolerance);
@@ -84,7 +84,7 @@ fn table(file: &str, j: &Judgement) -> String {
     for (name, what, number) in numbers(j) {
         let _ = match number {
             Some(Number { value, error }) => writeln!(text, "  {name:<14} {value:>13.6e} ± {error:.1e}  ({what})"),
-            None => writeln!(text, "  {name:<14} is no number that this motion shows  ({what})"),
+            None => writeln!(text, "  {name:<14} is not a number that this motion shows  ({what})"),
         };
     }
     for misfit in &j.misfits {

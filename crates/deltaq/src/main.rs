@@ -1,8 +1,10 @@
-//! The `deltaq` command. Exit code 1 where the answer cannot be written, 2 for bad input; `solve` gives 0
-//! only for a trajectory to trust, 3 where the integration had to stop or its error estimate is too large;
-//! `ensemble` likewise, for any member; `prove` gives 3 without a certificate, `judge` where no law fits,
-//! `fit` where no formulation does; `review` 1 for wrong equations, and 3 where nothing can be told; 4 where
-//! results contradict each other, and 5 where a computation breaks off: both are faults of the program.
+//! The `deltaq` command.
+//!
+//! Exit codes: 0 for an answer that can be trusted; 1 if it cannot be written, or `review` finds equations
+//! wrong; 2 for bad input. 3 for a trajectory that stops early or whose error estimate is too large (`solve`,
+//! any member of `ensemble`), without a certificate (`prove`), without a law or formulation that fits
+//! (`judge`, `fit`), or if nothing can be told (`review`). 4 if results contradict each other, 5 if a
+//! computation breaks off: both are faults of the program.
 
 mod bench_command;
 mod cli;

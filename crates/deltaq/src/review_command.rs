@@ -72,12 +72,12 @@ fn words(scene: &str, file: &str, found: &Review, title: &str) -> String {
         let from = if found.at_start { "From the start of the scene on" } else { "At this state" };
         line(format!("{from}, {}:", numbers.join(", ")));
         for d in &found.differences {
-            line(format!("  {:<10} {:>14.6e} in the place of {:>14.6e}", d.name, d.theirs, d.right));
+            line(format!("  {:<10} {:>14.6e} instead of {:>14.6e}", d.name, d.theirs, d.right));
         }
     }
     for c in &found.coefficients {
         let (name, monomial) = (&c.name, &c.monomial);
-        line(format!("  in {name}, before {monomial}: {:.6e} in the place of {:.6e}", c.theirs, c.right));
+        line(format!("  in {name}, before {monomial}: {:.6e} instead of {:.6e}", c.theirs, c.right));
     }
     if !found.unknowns.is_empty() {
         line(format!("Taken for multipliers and other unknowns: {}.", found.unknowns.join(", ")));

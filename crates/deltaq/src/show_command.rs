@@ -127,7 +127,7 @@ pub(crate) fn run(arguments: &ShowArguments) -> Result<String> {
         }
         let by_hand = scene.removals.iter().find(|own| choice.removal.as_ref().is_some_and(|r| r.name == own.name));
         if by_hand.is_some_and(|removal| removal.verify(&scene.system) == Ok(false)) {
-            derived += "- by hand: it satisfies the constraints at random points, and that is no proof for all\n";
+            derived += "- by hand: it satisfies the constraints at random points, and that is not a proof for all\n";
         }
         let _ = write!(text, "\n## {}\n\n{derived}", choice.label);
     }

@@ -131,7 +131,7 @@ fn derivatives_have_in_their_columns_what_the_json_has_under_their_names() {
         assert!((x("dmu_1/dmu0_1") - 1.0).abs() < 1e-13 && x("dmu_2/dmu0_1").abs() < 1e-13);
         assert!((x("dy'/da") - 1.3 * 0.4_f64.sin()).abs() < 1e-12, "{}", x("dy'/da"));
         let refused = answer(&["solve", disc, "-f", "chetaev", "--sensitivities", "mass"], 2).1;
-        assert!(refused.contains("`mass` is no parameter"), "{refused}");
+        assert!(refused.contains("`mass` is not a parameter"), "{refused}");
     });
 }
 

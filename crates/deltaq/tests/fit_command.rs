@@ -58,13 +58,13 @@ fn what_makes_no_sense_is_refused() {
     refused("t,z\n0.1,0\n", &["--sigma", "1mm"], "no expression belongs to the column `z`");
     refused(good, &["--sigma", "0"], "the standard deviation of `x` is 0");
     refused(good, &[], "the column `x` has no standard deviation");
-    refused(good, &["--sigma", "1inch"], "`1inch` is no number with a unit");
+    refused(good, &["--sigma", "1inch"], "`1inch` is not a number with a unit");
     refused(good, &["--sigma", "1mm", "--known", "g=3"], "`g=3` is not NAME@FILM=VALUE");
     refused(good, &["--sigma", "1mm", "--known", "g@2=3"], "is none of the 1 films");
     refused(good, &["--sigma", "1mm", "--formulations", "chetayev"], "did you mean `chetaev`?");
     refused(good, &["--sigma", "1mm", "--tolerance", "2"], "the tolerance is 2.0");
     refused(good, &["--sigma", "1mm", "--formulations", "prescribed"], "the scene has none of these formulations");
-    refused(good, &["--sigma", "1mm", "--law", "kappa"], "`kappa` is no unknown: it is no number of the law");
+    refused(good, &["--sigma", "1mm", "--law", "kappa"], "`kappa` is not an unknown: it is not a number of the law");
     // a film shorter than its unknowns is fitted by no formulation
     fs::write(path, "t,x\n0.1,0\n0.2,0\n").unwrap();
     let found = run(&["fit", "sledge", path, "--free", "x,y", "--sigma", "1mm"]);

@@ -51,6 +51,6 @@ fn certificates_are_written_for_what_is_proved_or_written_down() {
 #[test]
 fn what_does_not_go_together_is_refused() {
     refused(&["integrals", "suslov", "--sweep", "K=0:1:2", "--set", "K=1"], &["`K` varies"]);
-    refused(&["integrals", "suslov", "--sweep", "Q=0:1:2"], &["`Q` is no parameter"]);
+    refused(&["integrals", "suslov", "--sweep", "Q=0:1:2"], &["`Q` is not a parameter"]);
     refused(&["integrals", "suslov", "--sweep", "K=0:1:2", "-f", "vakonomic"], &["cannot be used with"]);
 }

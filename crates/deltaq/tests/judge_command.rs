@@ -33,7 +33,7 @@ fn what_cannot_be_read_is_refused_with_its_place() {
     let folder = tempfile::tempdir().unwrap();
     for (text, said) in [
         ("t,x,y\n0,1,2\n", "there is no column `phi`"),
-        ("t,x,y,phi\n0,1,2,3\n0.1,1,2,nan\n", "motion.csv:3:9: column `phi`: `nan` is no finite number"),
+        ("t,x,y,phi\n0,1,2,3\n0.1,1,2,nan\n", "motion.csv:3:9: column `phi`: `nan` is not a finite number"),
         ("t,x,y,phi\n0,1,2,3\n0,1,2,3\n", "motion.csv:3:1: t = 0 is not later than t = 0 of the row before"),
         ("t,x,y,phi\n0,1,2,3\n1,1,2\n", "motion.csv:3:5: 3 cells, and the header has 4"),
         ("t,x,y,phi,x'\n0,1,2,3,4\n", "motion.csv:1:5: there are rates of 1 of 3 coordinates: column `y'` is missing"),

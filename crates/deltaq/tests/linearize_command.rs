@@ -45,12 +45,12 @@ fn a_page_comes_with_its_picture() {
 #[test]
 fn what_is_not_steady_is_frozen_found_or_refused() {
     let disc = ["linearize", "falling-disc"];
-    refused(&disc, &["is no steady motion of chetaev-reduced"]);
+    refused(&disc, &["is not a steady motion of chetaev-reduced"]);
     assert!(answer(&[&disc[..], &["--find"]].concat(), 0).0.contains("A steady motion"));
     assert!(answer(&[&disc[..], &["--at", "0.5"]].concat(), 0).0.contains("**Frozen at an instant"));
     for (more, said) in [
         (&["--find", "--free", "psi"][..], "no rate depends on `psi`"),
-        (&["--find", "--free", "lean"], "`lean` is no coordinate among the states"),
+        (&["--find", "--free", "lean"], "`lean` is not a coordinate among the states"),
         (&["--sweep", "g=1:2"], "is not NAME=FROM:TO:COUNT"),
         (&["--sweep", "g=1:2:2", "--set", "g=3"], "`g` varies, and --set fixes it"),
         (&["--at", "-1"], "before the start"),

@@ -54,8 +54,8 @@ fn faults_have_their_place() {
     let fault = |file: &str| fault(file, &[]);
     assert_eq!(fault("g, g\n1,2\n"), "m.csv:1:4: the column `g` is there already, at m.csv:1:1");
     assert_eq!(fault("g,,k\n"), "m.csv:1:3: a name is missing between the commas");
-    assert_eq!(fault("g,k\n1,2\n\n3,  ä\n"), "m.csv:4:5: column `k`: `ä` is no finite number");
-    assert_eq!(fault("g,k\n1,inf\n"), "m.csv:2:3: column `k`: `inf` is no finite number");
+    assert_eq!(fault("g,k\n1,2\n\n3,  ä\n"), "m.csv:4:5: column `k`: `ä` is not a finite number");
+    assert_eq!(fault("g,k\n1,inf\n"), "m.csv:2:3: column `k`: `inf` is not a finite number");
     assert_eq!(fault("g,k\n1\n"), "m.csv:2:1: 1 cells, and the header has 2");
     assert_eq!(fault("g,k\n1,2,3\n"), "m.csv:2:5: 3 cells, and the header has 2");
     assert_eq!(fault("g,k\n"), "m.csv:1:1: no members below the names");

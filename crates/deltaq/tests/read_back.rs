@@ -65,7 +65,7 @@ fn members_are_read_as_they_were_written() {
     fs::write(&file, &first).expect("written");
     refused(
         &[&ensemble[..], &["--members", &file]].concat(),
-        &["members.csv:2:", "column `status`: `completed` is no finite number"],
+        &["members.csv:2:", "column `status`: `completed` is not a finite number"],
     );
 }
 

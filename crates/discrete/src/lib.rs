@@ -35,7 +35,7 @@
 //! - Reversibility. Exchange the nodes of an interval and the sign of `h`: the midpoint, the difference
 //!   quotient, `S` up to its sign, so all equations stay as they are, `Φ_{−h} Φ_h = 1`. So the error is a
 //!   power series in `h²`, and on integrable reversible motions the energy error stays bounded. On others it
-//!   may wander: a nonholonomic flow is not symplectic, and no step makes it so.
+//!   may wander: a nonholonomic flow is not symplectic, so steps cannot be either.
 //! - Vakonomic and removed: `Φ_h` is the implicit midpoint rule in `(x, p)`, hence symplectic; `p` of a
 //!   cyclic coordinate is constant to round-off.
 //!

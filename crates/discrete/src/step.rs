@@ -119,7 +119,7 @@ pub struct Step {
     pub reacts: bool,
     /// `t, h, x, p, v, ẋ, ν` → the first line of [`Principle`].
     balance: Iteration,
-    /// The same → `p_{k+1} − p_k` but for the reaction at `k + 1`, then `c`.
+    /// The same → `p_{k+1} − p_k` except for the reaction at `k + 1`, then `c`.
     impulse: Evaluator<f64>,
     /// `t, h, x, p, v, ν` → `𝓛_ẋ − p` (with a reaction: `− (h/2) R ν`) and `c` at the node.
     legendre: Iteration,

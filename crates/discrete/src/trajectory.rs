@@ -103,7 +103,7 @@ impl Trajectory {
     /// The motion at `t`: at a node what stands there, else one step of the method from the node before, so
     /// of the same order. Just behind a node the step starts one node earlier: reactions over a very short
     /// step are round-off. Behind the start it goes back from the next node, whose error it has a part of:
-    /// motions in steps of different lengths differ there, too. Outside, from the nearest node.
+    /// motions in steps of different lengths differ there as well. Outside, from the nearest node.
     ///
     /// # Errors
     /// Those of a step.

@@ -66,7 +66,7 @@ const CONTRACTION: f64 = 0.5;
 const FAR: f64 = 1e-8;
 
 impl CompiledBlock {
-    /// Evaluates, factorizes, and leaves `−(∂R/∂z)⁻¹ R` in the place of `R`.
+    /// Evaluates, factorizes, and leaves `−(∂R/∂z)⁻¹ R` instead of `R`.
     pub(crate) fn step(&mut self, inputs: &[f64]) -> Result<(), EvaluationFailure> {
         self.program.evaluate(inputs);
         let (matrix, residual) = self.program.values_mut().split_at_mut(self.size * self.size);

@@ -279,7 +279,7 @@ impl Compiled {
     }
 
     /// Values of the guards, whose zeros are singularities; where there is room for one more, after them the
-    /// sum of the squares of the chart's coefficients, which those of redundant rows are, too.
+    /// sum of the squares of the chart's coefficients, which those of redundant rows are as well.
     pub fn guard_values(&mut self, t: f64, y: &[f64], values: &mut [f64]) {
         self.load(t, y);
         let found = self.guards.evaluate(&self.inputs[..self.sizes.known()]);

@@ -87,7 +87,7 @@ impl Compiled {
     }
 
     /// The same of multipliers, from a start at time `begin` on: what was added up to states since
-    /// then counts, too.
+    /// then counts as well.
     ///
     /// # Errors
     /// As [`Compiled::rates`].

@@ -26,7 +26,7 @@ impl Equations {
         self.graph.highest_power(&self.all(), &self.values())
     }
 
-    /// Angles of points in the equations, likewise: [`symbolic::Graph::angles`].
+    /// Angles of points in the equations, in the same way: [`symbolic::Graph::angles`].
     pub fn angles(&self) -> Vec<Expr> {
         let mut angles = self.graph.angles(&self.all());
         if !angles.is_empty() {
@@ -36,7 +36,7 @@ impl Equations {
         angles
     }
 
-    /// Divisors in the equations that change along a motion and may vanish, likewise:
+    /// Divisors in the equations that change along a motion and may vanish, in the same way:
     /// [`symbolic::Graph::divisors`].
     pub fn divisors(&self) -> Vec<Expr> {
         let mut divisors = self.graph.divisors(&self.all(), &self.values());

@@ -4,7 +4,7 @@
 //! it can run as WebAssembly in a browser, without files, threads and a clock. Nothing is derived, integrated
 //! or decided here; that is `deltaq`'s.
 //!
-//! A [`Question`] is about the text of a scene, with numbers `set` in the place of those of the text:
+//! A [`Question`] is about the text of a scene, with numbers `set` instead of those of the text:
 //! whatever `--set` takes, `P0_w` (the costate of the memory variable `w` at the start) and `kappa`, which a
 //! scene need not have. There are nine:
 //!

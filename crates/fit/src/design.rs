@@ -213,7 +213,7 @@ impl Design {
             !truth.problem.unknowns().iter().any(of)
         };
         if let Some(range) = over.iter().find(missing) {
-            let reason = "it is no number of this formulation".to_string();
+            let reason = "it is not a number of this formulation".to_string();
             return Err(FitError::Choose { text: range.name.clone(), reason });
         }
         let mut unknown = 0;

@@ -45,7 +45,7 @@ pub enum FitError {
     #[error("the films have {found} numbers, and at most {limit} are fitted: leave out rows or columns")]
     TooLong { found: usize, limit: usize },
     /// A quantity cannot be read.
-    #[error("`{text}` is no number with a unit; units are {units}")]
+    #[error("`{text}` is not a number with a unit; units are {units}")]
     Quantity { text: String, units: String },
     /// A unit and the label of the scene are of different kinds.
     #[error(
@@ -54,10 +54,10 @@ pub enum FitError {
     )]
     Unit { column: String, unit: String, label: String },
     /// An unknown cannot be read.
-    #[error("`{text}` is no unknown: {reason}")]
+    #[error("`{text}` is not an unknown: {reason}")]
     Unknown { text: String, reason: String },
     /// When a film looks cannot be read.
-    #[error("`{text}` is no film to be made: {reason}")]
+    #[error("`{text}` is not a film to be made: {reason}")]
     Sampling { text: String, reason: String },
     /// A number that is to be chosen cannot be read, or does not belong there.
     #[error("`{text}` cannot be chosen: {reason}")]

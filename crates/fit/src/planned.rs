@@ -66,7 +66,7 @@ impl Film {
     /// these columns, or those of `[film]`, or the coordinates.
     ///
     /// # Errors
-    /// [`FitError`] for columns that are no expressions, or have no standard deviation.
+    /// [`FitError`] for columns that are not expressions, or have no standard deviation.
     pub fn planned(
         scene: &Scene,
         columns: &[String],

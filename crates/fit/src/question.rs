@@ -59,7 +59,7 @@ impl Question<'_> {
         law.dedup_by(|b, a| a.name == b.name);
         if let Some(unknown) = law.iter().find(|u| !is_of_a_law(&u.name)) {
             let names = LAW.needs.parameters().join(", ");
-            let reason = format!("it is no number of the law of first order; these are {names}");
+            let reason = format!("it is not a number of the law of first order; these are {names}");
             return Err(FitError::Unknown { text: unknown.name.clone(), reason });
         }
         let mut scene = scene.clone();

@@ -109,7 +109,7 @@ pub fn search(problem: &Problem, spread: &dyn Fn(&str) -> bool, starts: usize, k
     Ok(Found { best, minima: minima.iter().map(|m| m.chi_squared).collect(), starts: tried })
 }
 
-/// The minima near others, the least first; those that cannot be found are left out, but for the last stage.
+/// The minima near others, the least first; those not found are left out, except for the last stage.
 fn refined(
     problem: &Problem,
     rough: Vec<Minimum>,
@@ -162,7 +162,7 @@ fn is_poor(problem: &Problem, chi_squared: f64) -> bool {
     chi_squared > POOR * problem.count() as f64
 }
 
-/// Whether this χ² is no further above the number of residuals than noise can be.
+/// Whether this χ² is not further above the number of residuals than noise can be.
 fn is_noise(problem: &Problem, chi_squared: f64) -> bool {
     let count = problem.count() as f64;
     chi_squared < count + FITS * (2.0 * count).sqrt()
@@ -233,7 +233,7 @@ fn scales(problem: &mut Problem) -> (Vec<f64>, Option<String>) {
     }
 }
 
-/// Start `number` of the search; in every other one parameters are others, too: formulations agree where a
+/// Start `number` of the search; in every other one parameters are others as well: formulations agree where a
 /// parameter is none of theirs.
 fn moved(problem: &Problem, scale: &[f64], spread: &dyn Fn(&str) -> bool, number: usize) -> Minimum {
     let width = |i: usize| match spread(&problem.unknowns()[i].name) {

@@ -102,7 +102,7 @@ impl FromStr for Unknown {
         };
         let number = |film: &str| {
             let number = film.trim().parse::<usize>().ok().and_then(|film| film.checked_sub(1));
-            number.ok_or_else(|| refused(format!("`{film}` is no number of a film, which count from 1")))
+            number.ok_or_else(|| refused(format!("`{film}` is not a number of a film, which count from 1")))
         };
         let film = film.map(number).transpose()?;
         let name = name.trim();

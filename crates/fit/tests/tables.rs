@@ -45,9 +45,9 @@ fn what_is_no_film_is_refused_with_its_place() {
         ("", 1.0, "film:1:1: there is no column `t`"),
         ("t\n0\n", 1.0, "film:1:1: there is no column but `t`"),
         ("t,z\n0,1\n", 1.0, "film:1:3: no expression belongs to the column `z`"),
-        ("t,x [inch]\n0,1\n", 1.0, "film:1:3: `inch` is no number with a unit"),
+        ("t,x [inch]\n0,1\n", 1.0, "film:1:3: `inch` is not a number with a unit"),
         ("t,x\n0,1\n1\n", 1.0, "film:3:1: 1 cells, and the header has 2"),
-        ("t,x\n0,one\n", 1.0, "film:2:3: column `x`: `one` is no finite number"),
+        ("t,x\n0,one\n", 1.0, "film:2:3: column `x`: `one` is not a finite number"),
         ("t,x\n,1\n", 1.0, "film:2:1: column `t`: the cell is empty, and a number is needed"),
         ("t,x\n1,1\n\n0.5,2\n", 1.0, "film:4:1: t = 0.5 is not later than t = 1"),
         ("t,x\n-1,1\n", 1.0, "film:2:1: t = -1 is before the start of the scene, t = 0"),
@@ -71,10 +71,10 @@ fn unknowns_are_read_or_refused() {
     assert_eq!(read("epsilon>=0").unwrap().bound, Some(0.0));
     for (text, said) in [
         ("", "it has no name"),
-        ("x@0", "`0` is no number of a film"),
-        ("x@one", "`one` is no number of a film"),
+        ("x@0", "`0` is not a number of a film"),
+        ("x@one", "`one` is not a number of a film"),
         ("g~9±0", "the standard deviation of `g` is 0"),
-        ("g~nine", "`nine` is no number with a unit"),
+        ("g~nine", "`nine` is not a number with a unit"),
     ] {
         let error = read(text).unwrap_err().to_string();
         assert!(error.contains(said), "{error}");

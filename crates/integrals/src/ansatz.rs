@@ -3,7 +3,7 @@
 //! Is some `Σ c_i B_i(q, v)` constant on `{f = 0}`? The rates `Ḃ_i` at random points over a finite field,
 //! times drawn as well, are the rows of a matrix whose kernel the integrals are: a combination with a rate
 //! that is not zero at one point is none, and what is in the kernel of more rows than there are functions
-//! is one, but for an accident. What is printed has coefficients that are fractions, and is tried at random
+//! is one, except by accident. What is printed has coefficients that are fractions, and is tried at random
 //! points of another field.
 
 use decision::exact::{Echelon, Exact, FIELDS, Jet, Modular, in_field, nullspace};
@@ -25,7 +25,7 @@ pub struct Printed {
     pub expression: Expr,
     /// It, in the names of the scene.
     pub text: String,
-    /// Its terms, likewise.
+    /// Its terms, in the same way.
     pub terms: Vec<String>,
     /// Degree in the velocities.
     pub degree: usize,
@@ -66,7 +66,7 @@ pub struct Ansatz {
 /// coordinates `names`, or those that `L` and `f` contain where there are none.
 ///
 /// # Errors
-/// [`Open`]: equations that cannot be followed over a finite field, or names that are no coordinates.
+/// [`Open`]: equations that cannot be followed over a finite field, or names that are not coordinates.
 pub fn ansatz(
     system: &System,
     equations: &Equations,
@@ -153,7 +153,7 @@ impl<'a> Sample<'a> {
         Ok(sample)
     }
 
-    /// Takes these functions in the place of the others.
+    /// Takes these functions instead of the others.
     fn ask(&mut self, system: &System, functions: &[Expr]) -> Result<(), Open> {
         let mut inputs: Vec<Symbol> = system.parameters.iter().map(|p| p.symbol).collect();
         inputs.push(system.time);

@@ -39,7 +39,7 @@ pub struct Integrals {
 /// Why nothing is answered.
 #[derive(Debug, thiserror::Error)]
 pub enum NoAnswer {
-    /// A name that is no coordinate, or equations that cannot be followed over a finite field.
+    /// A name that is not a coordinate, or equations that cannot be followed over a finite field.
     #[error(transparent)]
     Open(Open),
     /// The start cannot be read in exact numbers.

@@ -76,7 +76,7 @@ fn with(monomial: &[usize], more: &[usize]) -> Vec<usize> {
 impl Killing {
     /// In privileged coordinates of the leaf from the frame of `flag`:
     /// `q(z) = Σ z^α/α! (Y_n^{α_n} … Y_1^{α_1} q)(q₀)`, that is `exp(z_1 Y_1) ∘ … ∘ exp(z_n Y_n)(q₀)` up to
-    /// the weight of the heaviest; on the leaf beyond it, too.
+    /// the weight of the heaviest; on the leaf beyond it as well.
     pub(crate) fn new(
         system: &Reversible,
         flag: &Flag,

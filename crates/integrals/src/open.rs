@@ -13,7 +13,7 @@ pub enum Open {
     /// A number has no image in the finite field.
     #[error("{0}")]
     Flaw(#[from] Flaw),
-    /// Forces act that are no gradient of a potential as far as is known.
+    /// Forces act that are not a gradient of a potential as far as is known.
     #[error("generalized forces act; only a potential in L is taken")]
     Forces,
     /// The scene has reactions of its own.
@@ -57,8 +57,8 @@ pub enum Open {
     /// Brackets of the constraints' kernel do not span all directions.
     #[error("the constraints are integrable in part: brackets span {rank} of {dimension} directions")]
     Integrable { rank: usize, dimension: usize },
-    /// A name that is no coordinate.
-    #[error("`{name}` is no coordinate: there are {all}")]
+    /// A name that is not a coordinate.
+    #[error("`{name}` is not a coordinate: there are {all}")]
     Name { name: String, all: String },
     /// Two fields disagree, or random numbers are dependent.
     #[error("random points of two fields do not agree")]

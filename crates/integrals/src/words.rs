@@ -3,10 +3,14 @@
 use std::fmt::{self, Display, Formatter};
 
 use mechanics::{Domain, System};
+use motion::numbers::at_most;
 use serde_json::{Value, json};
 
 use crate::answer::CHANGED;
 use crate::{Cyclic, Density, Found, Integrals, Measure, Multiplier, Open, Printed, Reduction, Reversed};
+
+/// A smaller drift is round-off, and has no digits.
+const ROUND_OFF: f64 = 1e-14;
 
 /// What integrals of degree `below + 1` are called.
 pub(crate) fn degree(below: usize) -> &'static str {
@@ -61,13 +65,13 @@ impl Integrals {
                         Ok(drifts) if drifts[i] > CHANGED => {
                             (" on the branch of this start", format!("drift {:.0e}: the motion leaves it", drifts[i]))
                         }
-                        Ok(drifts) => ("", format!("drift {:.0e}", drifts[i])),
+                        Ok(drifts) => ("", format!("drift below {:.0e}", at_most(drifts[i].max(ROUND_OFF)))),
                         Err(why) => ("", format!("no motion to try it on: {why}")),
                     };
                     lines.push((kind(integral), format!("{} = const{part} ({drift})", integral.text)));
                 }
                 if found.unprinted > 0 {
-                    let words = format!("{} with coefficients that are no moderate fractions", found.unprinted);
+                    let words = format!("{} with coefficients that are not moderate fractions", found.unprinted);
                     lines.push(("", words));
                 }
             }

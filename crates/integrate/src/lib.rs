@@ -53,8 +53,8 @@
 //! # What never happens
 //! A NaN or an infinity is never part of a solution: a step with stages, state or rates that are not finite
 //! is tried again at half its length, at most 60 times; then the run stops with [`StopCause::NotFinite`].
-//! Likewise for [`EvaluationError`]s, with [`StopCause::Evaluation`] and the message of the problem, and for
-//! a Taylor step across a point where the rates are not smooth, with [`StopCause::NotSmooth`].
+//! The same holds for [`EvaluationError`]s, with [`StopCause::Evaluation`] and the message of the problem,
+//! and for a Taylor step across a point where the rates are not smooth, with [`StopCause::NotSmooth`].
 //!
 //! # Sources
 //! E. Hairer, S. P. Nørsett, G. Wanner, *Solving Ordinary Differential Equations I*, 2nd ed., Springer 1993

@@ -217,7 +217,7 @@ impl<'s, 'p> Taylor<'s, 'p> {
     }
 
     /// Compares the slope of the polynomial at the end with the rates there. A difference that the last
-    /// digits of the start make in the rates is allowed, too: a pendulum 1e-12 rad from its top.
+    /// digits of the start make in the rates is allowed as well: a pendulum 1e-12 rad from its top.
     fn check_slope(&mut self) -> Result<(), Failure> {
         let ends = Ends {
             reached: self.reached.as_chunks::<1>().0,

@@ -41,10 +41,10 @@ pub enum JudgeError {
     /// Constraints are dependent.
     #[error("at t = {t}: the constraints are dependent")]
     Dependent { t: f64 },
-    /// A force, a constraint or their squares are no finite numbers.
+    /// A force, a constraint or their squares are not finite numbers.
     #[error("at t = {t}: a force or a constraint of the scene, or its square, is not finite")]
     NotFinite { t: f64 },
-    /// A number of the judgement is no finite number.
+    /// A number of the judgement is not a finite number.
     #[error("the motion is so large that {what} is not finite: judge it in other units")]
     TooLarge { what: String },
     /// The scene cannot be evaluated.

@@ -48,7 +48,7 @@ pub struct Judgement {
     /// the least is more than `tolerance` of the scale.
     pub fitting: Vec<Law>,
     /// What of the scene is another in the motion, where that leaves less by far than Chetaev's law with its
-    /// numbers: all that leave as little, the least first. They are said in the place of these.
+    /// numbers: all that leave as little, the least first. They are said instead of these.
     pub misfits: Vec<Misfit>,
     /// `ε`, in `T`; as slip and drag only where it is a number of the law: what is left is noise, or much
     /// more would be left without it, or it is zero within its error.
@@ -66,7 +66,7 @@ pub struct Judgement {
 }
 
 impl Judgement {
-    /// What of it is no finite number.
+    /// What of it is not a finite number.
     fn not_finite(&self) -> Option<String> {
         let laws = self.laws.iter().map(|left| (left.law.name().into(), left.residual));
         let constraints = (1..).zip(&self.constraints).map(|(i, &(m, r, p))| (format!("f_{i}"), m.hypot(r).hypot(p)));

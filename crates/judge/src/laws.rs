@@ -25,7 +25,7 @@ pub struct FirstOrder {
     pub constraint: f64,
 }
 
-/// Part of `v` that is no combination of the columns of `basis`, and the coefficients of the other part.
+/// Part of `v` that is not a combination of the columns of `basis`, and the coefficients of the other part.
 /// Where something is not finite, no combination is found.
 fn split(basis: &DMatrix<f64>, v: &DVector<f64>) -> (DVector<f64>, DVector<f64>) {
     if !basis.iter().chain(v).all(|x| x.is_finite()) {

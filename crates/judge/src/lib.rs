@@ -14,14 +14,14 @@
 //! ```
 //!
 //! `λ` is free at each sample, `ε` (in `T`) and the drag `γ` (in `1/T`) minimize the residual in the metric
-//! `M⁻¹`; then the slip `1/N` follows from the observed `f`. Nothing is integrated, so that nothing grows,
-//! and no start value is asked for.
+//! `M⁻¹`; then the slip `1/N` follows from the observed `f`. Nothing is integrated: errors do not grow,
+//! and a start value is not needed.
 //!
 //! They are given where what is left is noise, or where much more would be left without them. Elsewhere a
 //! number of the scene that is off, or a force that it lacks, may leave far less: then that is named.
 //!
 //! **Other laws.** Vakonomic: `E − Q = C μ − Aᵀ μ̇` for some `μ₀`; along a motion `μ` is affine in `μ₀`.
-//! The rate of the rows left out: `A a = 0` in the place of `ḟ = 0`. The constraint put into `L`: Lindelöf's
+//! The rate of the rows left out: `A a = 0` instead of `ḟ = 0`. The constraint put into `L`: Lindelöf's
 //! error.
 //!
 //! **Errors** are those of least squares with residuals that depend on their neighbours, and what differences

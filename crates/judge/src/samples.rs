@@ -21,7 +21,7 @@ impl Samples {
     /// columns are not looked at. `file` stands for the table in errors.
     ///
     /// # Errors
-    /// [`JudgeError`] where a column is missing or a cell is no number, with its place.
+    /// [`JudgeError`] where a column is missing or a cell is not a number, with its place.
     pub fn read(system: &System, file: &str, text: &str) -> Result<Samples, JudgeError> {
         let table = Table::read(file, text)?;
         let time = table.column("t")?;

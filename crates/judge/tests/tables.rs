@@ -28,8 +28,8 @@ fn what_is_no_table_is_refused_with_its_place() {
         ("t,x\n0,1\n", "m:1:1: there is no column `y`"),
         ("t,x,y,x'\n0,1,2,3\n", "m:1:5: there are rates of 1 of 2 coordinates: column `y'` is missing"),
         ("t,x,y\n0,1,2\n1,1\n", "m:3:3: 2 cells, and the header has 3"),
-        ("t,x,y\n0,1,2\n1,one,2\n", "m:3:3: column `x`: `one` is no finite number"),
-        ("t,x,y\n0,1,inf\n", "m:2:5: column `y`: `inf` is no finite number"),
+        ("t,x,y\n0,1,2\n1,one,2\n", "m:3:3: column `x`: `one` is not a finite number"),
+        ("t,x,y\n0,1,inf\n", "m:2:5: column `y`: `inf` is not a finite number"),
         ("t,x,y\n0,1,2\n0,1,2\n", "m:3:1: t = 0 is not later than t = 0 of the row before"),
     ] {
         assert_eq!(refused(table), said);

@@ -2,6 +2,7 @@
 
 use equations::EvaluationFailure;
 use motion::SolveError;
+use motion::numbers::short;
 use scene::SceneErrorKind;
 
 /// A linearization that there is not.
@@ -20,8 +21,9 @@ pub enum LinearError {
     NotFinite { t: f64 },
     /// Some rate does not vanish.
     #[error(
-        "the start is no steady motion of {formulation}: {state}' = {rate:.6e}, where at most {limit:.1e} counts as none; \
-         only what no rate depends on may move: {carried}"
+        "the start is not a steady motion of {formulation}: {state}' = {} (tolerance {}); \
+         only these may move, because no rate depends on them: {carried}",
+        short(*.rate), short(*.limit)
     )]
     NotSteady {
         formulation: String,
@@ -33,7 +35,7 @@ pub enum LinearError {
     },
     /// Rates contain the time.
     #[error(
-        "the equations of {formulation} contain the time, so that no motion is steady; at a time they can be linearized"
+        "the equations of {formulation} contain the time, so that no motion is steady; linearize them at a time (--at)"
     )]
     TimeDependent { formulation: String },
     /// The motion ends before.
@@ -43,7 +45,7 @@ pub enum LinearError {
     #[error("t = {t} is before the start, t = {start}")]
     BeforeStart { t: f64, start: f64 },
     /// No coordinate of that name among the states.
-    #[error("`{name}` is no coordinate among the states of {formulation}, which are {known}")]
+    #[error("`{name}` is not a coordinate among the states of {formulation}, which are {known}")]
     UnknownFree { name: String, formulation: String, known: String },
     /// A coordinate that no rate depends on.
     #[error("no rate depends on `{name}`: it has no eigenvalue but zero")]
@@ -52,11 +54,12 @@ pub enum LinearError {
     #[error("the eigenvalues of a matrix of {size} rows were not found: the QR algorithm does not converge")]
     NoEigenvalues { size: usize },
     /// The eigenvalues and their errors take longer than a question may.
-    #[error("the eigenvalues are left: {0}")]
+    #[error("the eigenvalues stay open: {0}")]
     Stopped(#[from] symbolic::Stopped),
     /// No steady motion was found near the start.
     #[error(
-        "no steady motion found near the start: after {iterations} iterations {state}' = {rate:.6e}, where at most {limit:.1e} counts as none"
+        "no steady motion found near the start: after {iterations} iterations {state}' = {} (tolerance {})",
+        short(*.rate), short(*.limit)
     )]
     NotFound { iterations: usize, state: String, rate: f64, limit: f64 },
     /// States that may leave the constraints.

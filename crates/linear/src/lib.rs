@@ -7,7 +7,7 @@
 //! ```
 //!
 //! **States.** Constraints linear in the velocities are taken in quasi-velocities, `y = (q, w)`, or `(q, p)`
-//! in the vakonomic formulation: every state is on the constraint, and no multiplier is among them. Others
+//! in the vakonomic formulation: every state is on the constraint, without multipliers. Others
 //! keep the states of their formulation; `f` is an integral then, which is zero on the motion.
 //!
 //! **Carried coordinates.** Coordinates on which no rate depends but those of other such coordinates are

@@ -215,7 +215,7 @@ pub(crate) fn coupled(matrix: &DMatrix<f64>, noise: &DMatrix<f64>) -> DMatrix<bo
     matrix.zip_map(noise, |entry, noise| entry.abs() > 8.0 * noise)
 }
 
-/// Which places a place depends on, by way of others, too.
+/// Which places a place depends on, by way of others as well.
 pub(crate) fn reached(coupled: &DMatrix<bool>) -> DMatrix<bool> {
     let n = coupled.nrows();
     let mut reached = coupled.clone();

@@ -57,7 +57,7 @@ const CLOSE: f64 = 1e-14;
 /// So near, over the size of a value, errors decide again what eigenvalues on the axis do.
 const NEAR: [f64; 5] = [1e-12, 1e-11, 1e-9, 1e-7, 1e-5];
 
-/// The equations of `choice` to first order about the start of `scene`, with each of `values` in the place of
+/// The equations of `choice` to first order about the start of `scene`, with each of `values` instead of
 /// the parameter, start value or multiplier `name`; the `free` coordinates as in [`Linearization::part`]. The
 /// start has to be a steady motion at each value, or, with `find`, is where one is looked for.
 ///
@@ -105,14 +105,14 @@ pub fn sweep(
     Ok(sweep)
 }
 
-/// What a state has in the place of a coordinate or a velocity.
+/// What a state has instead of a coordinate or a velocity.
 fn in_state(scene: &Scene, name: &str, state: &State) -> Option<f64> {
     let (coordinate, values) = name.strip_suffix('\'').map_or((name, &state.q), |coordinate| (coordinate, &state.v));
     let place = scene.system.coordinates.iter().position(|c| c.name == coordinate)?;
     values.get(place).copied()
 }
 
-/// The equations of a scene with other numbers in the place of one, derived and compiled once.
+/// The equations of a scene with other numbers instead of one, derived and compiled once.
 struct Family {
     ensemble: Ensemble,
     starts: Starts,

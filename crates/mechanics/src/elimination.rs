@@ -7,7 +7,7 @@
 //! ```
 //!
 //! The caller writes quotient and difference: at once, factored, by way of names, or as terms that are added
-//! up later. It also orders the pivots, but for the choice by size ([`choose_pivot`]).
+//! up later. It also orders the pivots, except for the choice by size ([`choose_pivot`]).
 
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 

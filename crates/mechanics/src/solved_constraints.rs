@@ -18,7 +18,7 @@ const LONG: usize = 1_000;
 const CLEARED: usize = 10_000;
 
 /// A difference under this part of its terms, at the start, is tested for being zero: what is so exactly is
-/// taken out, what is only round-off there stays as 0 there, and so is no pivot.
+/// taken out, what is only round-off there stays as 0 there, and so is not a pivot.
 const CANCELLED: f64 = 1e-9;
 
 /// What is multiplied out may add up this much more than what it stands for: near `q = 24` the powers of `q`
@@ -158,8 +158,8 @@ impl SolvedConstraints {
     }
 }
 
-/// What is no pivot yet, with its part in its row, all coordinates as fast as each other, and the length of
-/// its expression.
+/// What is not a pivot yet, with its part in its row, all coordinates as fast as each other, and the length
+/// of its expression.
 fn candidates(matrix: &SparseMatrix<Entry>, taken: &BTreeMap<usize, usize>, speeds: &[f64]) -> Vec<Candidate> {
     let mut candidates = Vec::new();
     for (i, row) in matrix.rows().iter().enumerate().filter(|(i, _)| !taken.values().any(|p| p == i)) {

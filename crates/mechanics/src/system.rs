@@ -29,8 +29,8 @@ pub struct Parameter {
     pub symbol: Symbol,
     /// Value, finite.
     pub value: f64,
-    /// What it was written as, if that is no decimal: a formula of numbers, or NaN for one that is not known
-    /// exactly. It counts as long as its value is this one.
+    /// What it was written as, if that is not a decimal: a formula of numbers, or NaN for one that is not
+    /// known exactly. It counts as long as its value is this one.
     pub formula: Option<Expr>,
 }
 

@@ -130,7 +130,7 @@ fn quasi_velocity_of_the_knife_edge_is_the_arc_length() {
     let (state, _) = project_velocity(&system, &state).unwrap();
     let removal = Removal::by_quasi_velocities(&system, &state).unwrap();
     let g = &system.graph;
-    let blade = removal.parameters.iter().find(|u| u.coordinate.is_none()).expect("one parameter is no coordinate");
+    let blade = removal.parameters.iter().find(|u| u.coordinate.is_none()).expect("one parameter is not a coordinate");
     let velocities = removal.velocities(&system);
     let along = [system.expression("cos(phi)").unwrap(), system.expression("sin(phi)").unwrap()]
         .map(|e| g.mul(e, g.variable(blade.rate)));

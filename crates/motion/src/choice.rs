@@ -119,7 +119,7 @@ fn gives_constant_costates(equations: &Equations, values: &[f64]) -> bool {
 }
 
 /// [`derive()`], from constraints made independent at `start` where they nearly are not
-/// ([`Recombination`]), but for quasi-velocities without a pivot that may vanish.
+/// ([`Recombination`]), except for quasi-velocities without a pivot that may vanish.
 ///
 /// # Errors
 /// As [`derive()`]; [`SolveError::Start`] where the constraints are dependent.

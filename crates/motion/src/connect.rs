@@ -136,7 +136,7 @@ const ONE: [f64; 2] = [1e-4, 1e-6];
 
 /// The motions of `choice` from the start of `scene` that end where `aim` says, as far as its starts lead to
 /// them. Constants of the choice are a first guess; costates that its rule makes zero, and that never move,
-/// are no unknowns, unless they are given.
+/// are not unknowns, unless they are given.
 ///
 /// ```
 /// # let text = include_str!("../../catalogue/scenes/heisenberg.toml");
@@ -377,7 +377,7 @@ fn complete(
     })
 }
 
-/// Names of the free constants of a motion that are no parameters.
+/// Names of the free constants of a motion that are not parameters.
 fn own_constant_names(problem: &crate::Varying) -> Vec<String> {
     constant_names(&problem.prepared().equations)[..problem.constants().len()].to_vec()
 }

@@ -4,7 +4,7 @@ use integrate::Method;
 
 use crate::TIGHTER;
 
-/// That the difference of the two runs is no error estimate from some time on.
+/// That the difference of the two runs is not an error estimate from some time on.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Doubt {
     /// From this time on.
@@ -33,7 +33,7 @@ impl Doubt {
     /// method; equal steps have none.
     ///
     /// Two runs with the same steps have the same error, which their difference hides; a run whose steps
-    /// follow its round-off is no better than the looser one. Doubt begins where this first shows.
+    /// follow its round-off is not better than the looser one. Doubt begins where this first shows.
     pub fn of([kept, looser]: [&[f64]; 2], end: f64, complete: bool, method: Option<Method>) -> Option<Doubt> {
         let start = kept[0];
         let end = if complete { end } else { start + BEFORE_THE_END * (end - start) };

@@ -49,7 +49,7 @@ pub enum SolveError {
     /// A wrong number of free constants.
     #[error(
         "{formulation} has {expected} free constants ({names}); {found} were given (the costate of a memory variable that L does not \
-         need is zero, and no free constant)"
+         need is zero; it is not a free constant)"
     )]
     ConstantCount { formulation: String, expected: usize, names: String, found: usize },
     /// A free constant is NaN or infinite.

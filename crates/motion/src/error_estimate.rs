@@ -34,7 +34,7 @@ pub struct ErrorEstimate {
     /// The coordinate with the largest difference over its own size, which is the largest value that it has
     /// or has moved by, and that quotient; `None` where all differences are round-off.
     pub worst: Option<(String, f64)>,
-    /// The multiplier with the largest difference over its own size, likewise.
+    /// The multiplier with the largest difference over its own size, in the same way.
     pub worst_multiplier: Option<(String, f64)>,
 }
 

@@ -1,11 +1,11 @@
-//! # The motion of a system, in several formulations
+//! # Trajectories of nonholonomic systems, in several formulations
 //!
-//! Given `L(q, v, t)`, `q ∈ Rⁿ`, and constraints `f(q, v, t) = 0 ∈ Rʰ`, what are the equations of motion?
-//! Chetaev's, the vakonomic and the removed-constraint formulation answer differently where `f` cannot be
-//! integrated; `kappa` is a family between the first two, `first-order` its end at Chetaev, with slip, and
-//! `prescribed` has reactions of the user's own. Their derivations are the front pages of the crates. This
-//! crate puts them into one table and integrates them with one time loop. Whether two motions agree is asked
-//! in the crate `comparison`.
+//! Given are `L(q, v, t)`, `q ∈ Rⁿ`, and constraints `f(q, v, t) = 0 ∈ Rʰ`. The d'Alembert–Lagrange
+//! (Chetaev), vakonomic and removed-constraint equations have different solutions if `f` is nonholonomic.
+//! `kappa` is a family between the first two, `first-order` its expansion at Chetaev with slip, and
+//! `prescribed` is for servo constraints. The front page of each formulation's crate is its derivation. This
+//! crate puts them into one table and integrates them with one time loop. The crate `comparison` decides
+//! whether two motions agree.
 //!
 //! - [`FORMULATIONS`]: the table: [`CHETAEV`], [`VAKONOMIC`], …; [`formulation`] reads a name.
 //! - [`derive()`], [`solve`]: one motion, with its global error estimate `e(t)`, the difference of two runs.

@@ -3,7 +3,7 @@
 //! A rate to which `s` is added up is known to `ε s`, with `ε` the distance of numbers beside 1. What this
 //! makes of a state within a time, `r' = ε s − λ r` with `λ = max(0, −∂ẏ/∂y)` of the state itself, is no
 //! bound of its error, which may grow or average out. Where it is more than the two runs differ by, a run has
-//! to tell what becomes of it ([`RoundOff::Counts`]); where it is no small part of the state, either, no
+//! to tell what becomes of it ([`RoundOff::Counts`]); where it is not a small part of the state, either, no
 //! estimate is to be trusted.
 
 use equations::{Compiled, Equations};

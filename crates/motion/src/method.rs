@@ -9,7 +9,7 @@ use symbolic::Expr;
 pub struct Chosen {
     /// The method.
     pub method: Method,
-    /// Why, in words; that it was asked for, too.
+    /// Why, in words; that it was asked for as well.
     pub why: String,
 }
 

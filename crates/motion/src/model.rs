@@ -23,7 +23,7 @@ use crate::{ByName, Choice, Settings, SolveError};
 /// let found = model.derivatives(&[0.5]);
 /// assert!((found.outputs[1].coordinates[2] - 1.3).abs() < 1e-9 && found.ended.is_none());
 /// assert!((found.derivatives[1][0].coordinates[2] - 2.0).abs() < 1e-9);
-/// // what is no start is said, and no error
+/// // what is not a start is said, and no error
 /// assert!(model.outputs(&[f64::NAN]).ended.is_some());
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```

@@ -52,7 +52,7 @@ pub struct Motion {
     pub constants: Vec<f64>,
     /// How it ended.
     pub ending: Ending,
-    /// Where the tolerance did not decide the steps: the runs' difference is no error estimate then.
+    /// Where the tolerance did not decide the steps: the runs' difference is not an error estimate then.
     pub doubt: Option<Doubt>,
     /// What the user expects to be constant and this motion changes.
     pub breaches: Vec<Breach>,
@@ -92,7 +92,7 @@ impl Motion {
         self.ending == Ending::Completed
     }
 
-    /// Whether at `t` the difference of the two runs is no error estimate.
+    /// Whether at `t` the difference of the two runs is not an error estimate.
     pub fn is_doubted(&self, t: f64) -> bool {
         self.doubt.as_ref().is_some_and(|doubt| (t - doubt.from) * (self.kept.ends()[1] - self.start()) >= 0.0)
     }

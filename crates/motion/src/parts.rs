@@ -28,7 +28,7 @@ pub fn terms_of_coordinates_along(motion: &mut Motion) -> Vec<(f64, Vec<f64>)> {
     motion.terms_of_coordinates_along()
 }
 
-/// The kept run of `other` in the place of the looser run of a motion, where it comes as far.
+/// The kept run of `other` instead of the looser run of a motion, where it comes as far.
 pub fn replace_looser(motion: &mut Motion, other: &Motion) {
     motion.replace_looser(other.kept.clone());
 }

@@ -24,7 +24,7 @@ impl Motion {
     /// Round-off of the rates, which both runs share, as a part of their difference: where it is more
     /// than that, the looser run is made again with as much of it in its rates as there may be; where
     /// that run does not come as far, as it may not keep the constraint, the looser run stays. A doubt
-    /// where round-off is no small part of a state.
+    /// where round-off is not a small part of a state.
     ///
     /// # Errors
     /// [`SolveError`] where the equations cannot be compiled again.
@@ -106,7 +106,7 @@ impl Motion {
     }
 
     /// The sum of terms behind each coordinate since the start, at a few times: a difference below the
-    /// round-off of that sum is no difference of motions. The list ends where sums cannot be evaluated.
+    /// round-off of that sum is not a difference of motions. The list ends where sums cannot be evaluated.
     pub fn terms_of_coordinates_along(&mut self) -> Vec<(f64, Vec<f64>)> {
         let looked = self.terms_along(FEW);
         let mut sums = vec![0.0; self.equations.states.len()];

@@ -7,7 +7,7 @@
 //!
 //! Nothing jumps at a time that moves: breakpoints are at times that are numbers, a motion ends where its
 //! equations are singular, `u/sqrt(u^2)` at 0 among them, and where they have a kink rates are continuous,
-//! so that derivatives are, too.
+//! so that derivatives are also exact.
 //!
 //! A number at which the equations have a kink all the time, as p = 0 for `sqrt(p^2) x`, is refused
 //! ([`crate::kinks`]); so is one at which the start has one.

@@ -76,7 +76,7 @@ impl<'a> Numbers<'a> {
         self.varying.set(&self.scene.start, &self.parameters, &ConstantsRule::Given(own.to_vec()), false)
     }
 
-    /// Number of the free constants that are no parameters.
+    /// Number of the free constants that are not parameters.
     pub(crate) fn own(&self) -> usize {
         self.own.len()
     }
@@ -100,7 +100,7 @@ impl<'a> Numbers<'a> {
         Ok(self.scaled(start, parameter.map(|i| self.own.len() + i), value))
     }
 
-    /// The direction of a free constant that is no parameter.
+    /// The direction of a free constant that is not a parameter.
     pub(crate) fn along_constant(&mut self, constant: usize) -> Result<Direction, SolveError> {
         let value = self.own[constant];
         let name = constant_names(&self.varying.prepared().equations)[constant].clone();

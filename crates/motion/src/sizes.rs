@@ -35,7 +35,7 @@ pub fn sizes(compiled: &mut Compiled, metric: &mut Metric, t: f64, y: &[f64], le
     whole_sizes(compiled, metric, t, y, length).into_iter().map(size).collect()
 }
 
-/// The same of states that may be large, too.
+/// The same of states that may be large as well.
 pub fn unbounded_sizes(compiled: &mut Compiled, metric: &mut Metric, t: f64, y: &[f64], length: f64) -> Vec<f64> {
     whole_sizes(compiled, metric, t, y, length).into_iter().map(|(whole, _)| or_one(whole)).collect()
 }

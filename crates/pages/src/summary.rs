@@ -1,4 +1,4 @@
-//! A comparison for a terminal: four lines, two small tables, the gaps over time.
+//! A comparison for a terminal: the answer and three lines, two small tables, the gaps over time.
 
 use std::fmt::Write;
 
@@ -6,15 +6,15 @@ use anyhow::Result;
 use comparison::{Comparison, Pair, Verdict};
 use motion::{CHETAEV, Ending, VAKONOMIC, error_estimate, setting};
 
-use comparison::words::{Headline, rows};
-use comparison::words::{or_dash, short};
+use comparison::words::{Headline, answer, at_most, or_dash, rows, short};
 use picture::{Axis, Curve, Picture, Style};
 
 /// Rows of the plot.
 const HEIGHT: usize = 12;
 
-/// Most curves of the plot.
+/// Most curves of the plot, and the fewest characters of one that can be seen.
 const CURVES: usize = 5;
+const SEEN: usize = 4;
 
 /// What has been compared so far, in lines of at most `width` where they are not sentences.
 ///
@@ -23,10 +23,16 @@ const CURVES: usize = 5;
 pub fn summary(comparison: &mut Comparison, width: usize) -> Result<String> {
     let Headline { verdict, why, sure, which } = Headline::of(comparison);
     let name = &comparison.scene.name;
-    let lines = [(name.as_str(), verdict), ("why", why), ("how sure", sure), ("which", which.into())];
+    let [first, second] = match answer(comparison) {
+        Some(answer) => [(name.as_str(), answer), ("motions", verdict)],
+        None => [(name.as_str(), verdict), ("which", which.into())],
+    };
+    let lines = [first, second, ("why", why), ("how sure", sure)];
     let lines = lines.iter().filter(|(_, text)| !text.is_empty()).map(|(of, text)| format!("{of}: {text}\n"));
     let text: String = lines.collect();
-    Ok(text + &motions(comparison)? + &pairs(comparison) + &plot(comparison, width)?)
+    let motions = motions(comparison)?;
+    let (plot, plotted) = plot(comparison, width)?;
+    Ok(text + &motions + &pairs(comparison, &plotted) + &plot)
 }
 
 /// One line per motion: where it ends, how wrong it is; alone, with where it is then.
@@ -63,9 +69,9 @@ fn short_label(comparison: &Comparison, run: usize) -> String {
 
 /// One line per pair with Chetaev's or the vakonomic motion, with the letter of its curve; of the others
 /// those that differ are named, those that agree are counted.
-fn pairs(comparison: &Comparison) -> String {
+fn pairs(comparison: &Comparison, plotted: &[&Pair]) -> String {
     let mut table = vec![["", "pair", "verdict", "1e-6 after", "1e-3 after", "largest gap"].map(String::from).to_vec()];
-    let (label, plotted) = (|i: usize| short_label(comparison, i), plotted(comparison));
+    let label = |i: usize| short_label(comparison, i);
     let principal = |p: &&Pair| [CHETAEV, VAKONOMIC].contains(&comparison.runs[p.first].choice.formulation);
     let (shown, others): (Vec<&Pair>, Vec<&Pair>) = rows(comparison).partition(principal);
     for pair in &shown {
@@ -75,7 +81,11 @@ fn pairs(comparison: &Comparison) -> String {
         let [first, second, _] = pair.gap.passes.map(|t| or_dash(t.map(|t| pair.gap.after(t))));
         let seen = pair.gap.verdict != Verdict::Different || pair.gap.certain_from.is_some();
         let verdict = if seen { pair.gap.verdict.word() } else { "different (proved)" };
-        let largest = if seen { short(pair.gap.largest) } else { format!("< {}", short(pair.gap.bound())) };
+        let largest = match pair.gap.verdict {
+            Verdict::Same => format!("< {:.0e}", at_most(pair.gap.bound())),
+            _ if seen => short(pair.gap.largest),
+            _ => format!("< {}", short(pair.gap.bound())),
+        };
         table.push([letter, names, verdict.into(), first, second, largest].to_vec());
     }
     let mut rest = String::new();
@@ -93,31 +103,40 @@ fn pairs(comparison: &Comparison) -> String {
     table + &rest
 }
 
-/// Pairs that differ: those with the first motion, which is Chetaev's if it was asked for.
-fn plotted(comparison: &Comparison) -> Vec<&Pair> {
-    let differ = rows(comparison).filter(|p| p.gap.shows());
+/// The gaps over time, where they are certain, of the pairs that differ and have the first motion, which is
+/// Chetaev's if it was asked for; with the pairs whose curves are drawn, all of which can be seen.
+fn plot(comparison: &Comparison, width: usize) -> Result<(String, Vec<&Pair>)> {
     let first = rows(comparison).map(|p| p.first).min();
-    differ.filter(|p| Some(p.first) == first).take(CURVES).collect()
+    let of_first = rows(comparison).filter(|p| p.gap.shows() && Some(p.first) == first);
+    let mut plotted: Vec<&Pair> = of_first.take(CURVES).collect();
+    while !plotted.is_empty() {
+        let text = drawn(comparison, &plotted, width)?;
+        let canvas: String =
+            text.lines().skip(2).take(HEIGHT).filter_map(|line| line.split(['│', '┤']).nth(1)).collect();
+        let is_hidden = |i: &usize| canvas.matches((b'a' + *i as u8) as char).count() < SEEN;
+        // the last of those behind others first
+        match (0..plotted.len()).rev().find(is_hidden) {
+            Some(hidden) => drop(plotted.remove(hidden)),
+            None => return Ok((text, plotted)),
+        }
+    }
+    Ok((String::new(), plotted))
 }
 
-/// Their gaps over time, where they are certain.
-fn plot(comparison: &Comparison, width: usize) -> Result<String> {
+/// Curves of these pairs, and what a gap has to pass.
+fn drawn(comparison: &Comparison, plotted: &[&Pair], width: usize) -> Result<String> {
     let start = comparison.scene.start.t;
     let label = |i: usize| short_label(comparison, i);
-    let plotted = plotted(comparison);
-    let mut curves: Vec<Curve> = plotted
-        .iter()
-        .map(|p| Curve {
-            label: format!("{} – {}", label(p.first), label(p.second)),
-            style: Style::Vakonomic,
-            points: p.gap.points.iter().filter(|p| p.gap > p.limit).map(|p| (p.t - start, p.gap)).collect(),
-        })
-        .collect();
-    let Some(first) = plotted.first() else { return Ok(String::new()) };
-    let limit = first.gap.points.iter().map(|p| (p.t - start, p.limit)).collect();
-    curves.push(Curve { label: "what a gap has to pass".into(), style: Style::Threshold, points: limit });
-    let (x, y) = (Axis::linear("t − t₀ (s)"), Axis::log("gap in the kinetic metric (m √kg)"));
-    let x = Axis { range: Some((0.0, comparison.scene.duration)), ..x };
+    let curve = |p: &&Pair| Curve {
+        label: format!("{} – {}", label(p.first), label(p.second)),
+        style: Style::Vakonomic,
+        points: p.gap.points.iter().filter(|p| p.gap > p.limit).map(|p| (p.t - start, p.gap)).collect(),
+    };
+    let mut curves: Vec<Curve> = plotted.iter().map(curve).collect();
+    let limits = plotted.first().map_or(&[][..], |first| &first.gap.points);
+    let points = limits.iter().map(|p| (p.t - start, p.limit)).collect();
+    curves.push(Curve { label: "what a gap has to pass".into(), style: Style::Threshold, points });
+    let (x, y) = (Axis::log("t − t₀ (s)"), Axis::log("gap in the kinetic metric (m √kg)"));
     Ok("\n".to_owned() + &Picture::new("gaps", x, y, curves).to_text(width, HEIGHT)?)
 }
 

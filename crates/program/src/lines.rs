@@ -27,7 +27,7 @@ impl Lines {
         let told = path.display().to_string();
         let file = OpenOptions::new().read(true).write(true).create(true).truncate(false).open(path);
         let file = file.with_context(|| format!("cannot write {told}"))?;
-        ensure!(file.metadata().is_ok_and(|there| there.is_file()), "{told} is no file, from which a run can go on");
+        ensure!(file.metadata().is_ok_and(|there| there.is_file()), "{told} is not a file, from which a run can go on");
         ensure!(file.try_lock().is_ok(), "{told} is being written by another run");
         let mut lines = Lines { reader: BufReader::new(file), told, head: head.to_owned(), at: 0, kept: 0 };
         let mut there = Vec::new();
@@ -43,7 +43,7 @@ impl Lines {
     /// The next whole line behind the head, with its end; none at the end of the file, or at a line cut off.
     ///
     /// # Errors
-    /// A file that cannot be read, or is no text.
+    /// A file that cannot be read, or is not text.
     pub fn next_line(&mut self) -> Result<Option<String>> {
         let mut line = Vec::new();
         // where the head is not whole there is nothing behind it

@@ -61,7 +61,8 @@ pub enum Sink {
     Terminal,
     /// A file beside its place, and its place.
     Whole(NamedTempFile, PathBuf),
-    /// The same of a file that a later call goes on with; or what is no regular file and stays where it is.
+    /// The same of a file that a later call goes on with; or what is not a regular file and stays where it
+    /// is.
     Part(File, PathBuf, PathBuf),
 }
 
@@ -173,7 +174,8 @@ fn cannot_write(path: &Path) -> String {
     format!("cannot write {}", path.display())
 }
 
-/// What is no regular file, to be written to as it is; or the folder of a file, which is there from now on.
+/// What is not a regular file, to be written to as it is; or the folder of a file, which is there from now
+/// on.
 fn place(path: &Path) -> Result<Result<Sink, &Path>> {
     ensure!(path.file_name().is_some(), "--out {} names no file", path.display());
     if fs::metadata(path).is_ok_and(|there| !there.is_file()) {

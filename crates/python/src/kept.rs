@@ -5,7 +5,7 @@ use pyo3::conversion::FromPyObjectOwned;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-/// `__reduce__` of a class by its fields, and the way back; what is no field follows with its value.
+/// `__reduce__` of a class by its fields, and the way back; what is not a field follows with its value.
 macro_rules! kept {
     ($class:ident: $($field:ident)* $(, $own:ident = $value:expr)*) => {
         #[pyo3::pymethods]

@@ -21,7 +21,7 @@ use crate::{arguments, errors};
 /// as many residuals as columns times k. They have no unit where `sigma` has that of its column.
 ///
 /// A call never raises for numbers: at times that the motion does not reach residuals are `penalty`, with
-/// derivatives zero, and `ended` says why. Numbers that are no start give that at all times.
+/// derivatives zero, and `ended` says why. Numbers that are not a start give that at all times.
 #[pyclass(frozen, module = "deltaq")]
 pub(crate) struct Residuals {
     model: Shared<Model>,

@@ -87,7 +87,7 @@ pub(crate) fn write(arguments: &Arguments<'_>) -> PyResult<String> {
     for (name, table) in [("units", &units), ("start", &start)] {
         if let Some((key, _)) = table.iter().find(|(key, _)| !coordinates.contains(key)) {
             let known = coordinates.join(", ");
-            return Err(PyValueError::new_err(format!("`{key}` in {name} is no coordinate; known: {known}")));
+            return Err(PyValueError::new_err(format!("`{key}` in {name} is not a coordinate; known: {known}")));
         }
     }
     for name in coordinates {

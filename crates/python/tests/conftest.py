@@ -1,4 +1,4 @@
-"""Systems that the tests share, with what is known of them. A panic is no refusal that a test may expect: it is not caught."""
+"""Systems that the tests share, with what is known of them. A panic is not a refusal that a test may expect: it is not caught."""
 
 import os
 

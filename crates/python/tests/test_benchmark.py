@@ -93,7 +93,7 @@ def test_another_law_is_named_and_a_digit_is_seen(tmp_path, capsys):
 @pytest.mark.parametrize("change, said", [
     ({"formulation": "gauss"}, "line 2: there is no gauss motion of start 1 at t = 0"),
     ({"t": "0.123"}, "there is no chetaev motion of start 1 at t = 0.123"),
-    ({"y": "nan"}, "line 2, column `y`: `nan` is no finite number"),
+    ({"y": "nan"}, "line 2, column `y`: `nan` is not a finite number"),
 ])
 def test_what_cannot_be_compared_is_refused_with_its_place(change, said, tmp_path, capsys):
     write(tmp_path, "sledge", [table("sledge")[0] | change])

@@ -103,7 +103,7 @@ def test_the_sleigh_over_its_blade_has_a_measure(images, tmp_path):
         assert verdict(tmp_path, measure(images, sleigh(), metric))[0] == FORGED
     for metric in ("x", "1/0", "0.5", "1e9", ""):
         assert verdict(tmp_path, measure(images, over, metric))[0] == UNREADABLE
-    assert verdict(tmp_path, measure(images, over, psi=["0", "0"])) == (FORGED, "forged: an angle that is no coordinate\n")
+    assert verdict(tmp_path, measure(images, over, psi=["0", "0"])) == (FORGED, "forged: an angle that is not a coordinate\n")
 
 
 def multiplier(images, scene, metric, free=FREE, **angles):
@@ -128,7 +128,7 @@ def test_the_sleigh_over_its_blade_has_a_multiplier(images, tmp_path):
     for metric in ("-1/2", "0", "1"):
         assert verdict(tmp_path, multiplier(images, sleigh(), metric))[0] == FORGED
     # with a potential of x and y it is no motion over one of these
-    reason = "cannot read: what is solved for are no velocities of symmetries\n"
+    reason = "cannot read: what is solved for are not velocities of symmetries\n"
     assert verdict(tmp_path, no_multiplier(images, sleigh(potential="x*y"))) == (UNREADABLE, reason)
     assert verdict(tmp_path, multiplier(images, over, "0", x=["0", "0"], y=["0", "0"])) == (FORGED, "forged: an angle that the motion is not over\n")
 

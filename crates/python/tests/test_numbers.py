@@ -75,5 +75,5 @@ def test_derivatives_of_a_motion(sledge, system):
     again = pickle.loads(pickle.dumps(motion))
     np.testing.assert_array_equal(again.sensitivities["g"].coordinates, by_g.coordinates)
     assert system.solve("chetaev", TIMES).sensitivities == {}
-    with pytest.raises(deltaq.UnknownNameError, match="`mass` is no parameter"):
+    with pytest.raises(deltaq.UnknownNameError, match="`mass` is not a parameter"):
         system.solve(sensitivities=["mass"])

@@ -72,7 +72,7 @@ def test_the_rolling_disc_by_lagrange_and_kane():
     _, rolling = body(frame)
     rolling.potential_energy = -m * g * r * sp.cos(q2)
     found = deltaq.review(disc, LagrangesMethod(Lagrangian(space, rolling), [q1, q2, q3]), where=where)
-    assert found["explanations"][0] == ["constraint put into L", "gravity upwards (T + V in the place of T − V)"]
+    assert found["explanations"][0] == ["constraint put into L", "gravity upwards (T + V instead of T − V)"]
 
     frame = lean.orientnew("R", "Axis", [q3, lean.y])
     rates = [q1.diff(t) - u3 / sp.cos(q2), q2.diff(t) - u1, q3.diff(t) - u2 + u3 * sp.tan(q2)]

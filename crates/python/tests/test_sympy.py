@@ -303,7 +303,7 @@ def test_wrong_arguments():
         deltaq.System([x], x.diff() ** 2, x.diff(), start={x: 0})
     with pytest.raises(TypeError, match="missing 1 required keyword argument: 'start'"):
         deltaq.System([x], x.diff() ** 2)
-    with pytest.raises(ValueError, match="`y` in start is no coordinate"):
+    with pytest.raises(ValueError, match="`y` in start is not a coordinate"):
         deltaq.System([x], x.diff() ** 2, start={x: 0, y: 1})
 
 

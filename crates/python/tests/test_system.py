@@ -103,7 +103,7 @@ def test_a_start_may_be_an_equation(sledge):
 
 
 def test_wrong_arguments(sledge, system):
-    with pytest.raises(ValueError, match="`z` in start is no coordinate"):
+    with pytest.raises(ValueError, match="`z` in start is not a coordinate"):
         sledge.system(start={"x": 0, "y": 0, "phi": 0, "z": 1})
     with pytest.raises(TypeError, match="a number, a string"):
         sledge.system(start={"x": object(), "y": 0, "phi": 0})

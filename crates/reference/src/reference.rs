@@ -101,7 +101,8 @@ const TRIES: usize = 3;
 ///
 /// Times, parameters, constants and `q₀` are the given `f64`, exactly (0.4 is not 2/5), as for a run in
 /// `f64`. The velocity at the start is nearest to `v₀` with `f = 0` in the kinetic metric, to the last wide
-/// digit: what a run in `f64` projects to but for rounding. Rounding its own start is part of a run's error.
+/// digit: what a run in `f64` projects to except for rounding. Rounding its own start is part of a run's
+/// error.
 ///
 /// ```
 /// use mechanics::State;

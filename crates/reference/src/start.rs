@@ -2,8 +2,8 @@
 //!
 //! `(t₀, q₀, v₀)` are `f64` and taken as exact, but then `f(q₀, v₀, t₀)` is zero to round-off only. The
 //! reference starts at the velocity with `f = 0` nearest to `v₀` in the metric of `M`, to which every run in
-//! `f64` projects but for rounding. How a run in `f64` rounds its start is part of its error. Everything else
-//! (`y₀`, a removal's parameters) follows from that velocity in the wide type.
+//! `f64` projects except for rounding. How a run in `f64` rounds its start is part of its error. Everything
+//! else (`y₀`, a removal's parameters) follows from that velocity in the wide type.
 
 use equations::Equations;
 use mechanics::linear::{Factors, Singular};

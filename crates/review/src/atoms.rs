@@ -34,7 +34,7 @@ pub(crate) struct Atom {
 }
 
 impl Called {
-    /// The words for the factor `1 + κ` in the place of 1; nothing where it is no such mistake.
+    /// The words for the factor `1 + κ` instead of 1; nothing where it is no such mistake.
     pub(crate) fn words(&self, kappa: f64) -> Option<String> {
         match self {
             Called::Term(term, place) | Called::Part(term, place) => {
@@ -79,7 +79,7 @@ pub(crate) fn pieces(system: &System) -> Vec<(Called, Expr)> {
     let rest: Vec<Expr> = terms.iter().copied().filter(|&t| !moves(t)).collect();
     if !rest.is_empty() {
         let potential = g.sum(&rest);
-        pieces.push((Called::Turned("gravity upwards (T + V in the place of T − V)".into()), potential));
+        pieces.push((Called::Turned("gravity upwards (T + V instead of T − V)".into()), potential));
         if rest.len() > 1 {
             pieces.push((Called::Part("V".into(), "in L".into()), potential));
         }
@@ -187,7 +187,7 @@ pub(crate) fn atoms(reading: &Reading) -> Vec<Atom> {
         }
         found.push((Called::Term(format!("Q_{}", name(i)), String::new()), rows(&[(i, force)])));
         for j in (0..n).filter(|&j| j != i) {
-            let words = format!("force `{}` on {} in the place of {}", g.plain(system.forces[i]), name(j), name(i));
+            let words = format!("force `{}` on {} instead of {}", g.plain(system.forces[i]), name(j), name(i));
             found.push((Called::Whole(words), rows(&[(i, system.forces[i]), (j, force)])));
         }
     }

@@ -66,7 +66,7 @@ pub(crate) fn lines(coordinates: &[String], file: &str, text: &str) -> Result<Ve
     Ok(lines)
 }
 
-/// The text with blanks in the place of comments and directives.
+/// The text with blanks instead of comments and directives.
 fn without_comments(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
     let mut rest = text;
@@ -247,7 +247,7 @@ impl Converter<'_> {
 
     fn solve(&mut self, arguments: &[&str], line: usize) -> Result<(), ReviewError> {
         let (Ok(n), matrix) = (arguments[0].parse::<usize>(), arguments[1]) else {
-            return Err(self.fault(line, format!("`{}` is no number of equations", arguments[0])));
+            return Err(self.fault(line, format!("`{}` is not a number of equations", arguments[0])));
         };
         let right = arguments[2].trim_start_matches('&');
         let (right, first) = right.split_once('[').unwrap_or((right, "0"));

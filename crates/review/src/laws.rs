@@ -6,7 +6,7 @@
 pub enum Law {
     /// Chetaev's.
     Chetaev,
-    /// Chetaev's reaction, and `A a = 0` in the place of `ḟ = 0`.
+    /// Chetaev's reaction, and `A a = 0` instead of `ḟ = 0`.
     MissingRate,
     /// The vakonomic law, for some `μ₀`.
     Vakonomic,

@@ -1,4 +1,4 @@
-//! # What is wrong with these equations of motion?
+//! # Checks equations of motion, and names their mistakes
 //!
 //! Given: a scene, `L(q, v, t)`, `f(q, v, t) = 0`, `Q`, and somebody's equations, with any multipliers, in
 //! any order, scaled and combined, perhaps in other coordinates.
@@ -6,9 +6,9 @@
 //! **Right** are equations with the accelerations of the scene, `q̈(q, v, t, p)` on `f = 0`. Multipliers are
 //! eliminated on both sides, constraints differentiated. Where everything is rational in variables, sines,
 //! cosines and exponentials, this is compared at random points of a field of `p ≈ 2^60` residues, parameters
-//! `p` being random, too: a difference is proved, equality at all of them would else be an accident. Roots,
-//! logarithms, constraints that are not linear in `v`, and states on a leaf of a position constraint have no
-//! such points: there, floats with bands of round-off decide ([`Numbers::Floats`]).
+//! `p` being random as well: a difference is proved, equality at all of them would else be an accident.
+//! Roots, logarithms, constraints that are not linear in `v`, and states on a leaf of a position constraint
+//! have no such points: there, floats with bands of round-off decide ([`Numbers::Floats`]).
 //!
 //! **Wrong.** Let `R = (E − Q − Aᵀλ, ḟ)` be the rows of the right derivation at *their* accelerations, `Z R`
 //! what is left of rows when `λ` is eliminated. A mistake in one term adds `κ` times a known column `u`:
@@ -24,7 +24,7 @@
 //! constraints with one mistake in them. What is found reproduces their equations at every point. Several
 //! mistakes may give the same ones: such readings are told, up to six of a kind.
 //!
-//! **What is not told.** Three mistakes; mistakes in `L` itself, which the scene has, too.
+//! **What is not told.** Three mistakes; mistakes in `L` itself, which the scene has as well.
 
 mod atoms;
 mod base;

@@ -23,7 +23,7 @@ pub struct Coefficient {
 /// Accelerations of both sides, their first, in one row of `2n`.
 type Both = Vec<Bounded>;
 
-/// The coefficients that differ; none where accelerations are no polynomials of degree 2 in the velocities
+/// The coefficients that differ; none where accelerations are not polynomials of degree 2 in the velocities
 /// that the constraints leave free.
 pub(crate) fn differing(frame: &Frame, base: &Base, position: &[At<Bounded>]) -> Vec<Coefficient> {
     at(frame, base, position).unwrap_or_default()

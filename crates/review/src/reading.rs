@@ -29,7 +29,7 @@ pub(crate) struct Stated {
 
 /// Both sides in one graph and in the same variables, theirs.
 pub(crate) struct Reading {
-    /// That of the scene, in a graph that knows their names, too.
+    /// That of the scene, in a graph that knows their names as well.
     pub(crate) system: System,
     /// Their coordinates, and those of the scene that they share or leave out, with rates and second rates.
     pub(crate) coordinates: Vec<[Symbol; 3]>,

@@ -5,7 +5,7 @@ use serde_json::{Map, Value, json};
 use crate::{Coefficient, Numbers, Review, Verdict};
 
 impl Review {
-    /// As JSON: the fields of `docs/schemas/review.json`, but for the schema.
+    /// As JSON: the fields of `docs/schemas/review.json`, except for the schema.
     pub fn value(&self, scene: &str, file: &str) -> Value {
         let verdict = match self.verdict {
             Verdict::Right => "right",

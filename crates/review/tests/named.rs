@@ -31,7 +31,7 @@ fn the_documented_disc_has_the_constraint_in_l_and_gravity_upwards() {
     let found = review(&scene, "disc", theirs, &asked(&wheres)).unwrap();
     assert!(clock.elapsed() < Duration::from_secs(1), "{:?}", clock.elapsed());
     assert_eq!((found.verdict, found.numbers), (Verdict::Wrong, Some(Numbers::Field)));
-    let words = ["constraint put into L", "gravity upwards (T + V in the place of T − V)"];
+    let words = ["constraint put into L", "gravity upwards (T + V instead of T − V)"];
     assert_eq!(found.explanations[0], words, "{found:?}");
     // with gravity downwards only the first is left
     let downwards = theirs.replace("+ m*g*r*sin(q2)", "- m*g*r*sin(q2)");

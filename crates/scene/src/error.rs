@@ -60,7 +60,7 @@ pub enum SceneErrorKind {
     #[error("unknown key `{key}` in {section}{}; known here: {}", meant(.suggestion), .known.join(", "))]
     UnknownKey { key: String, section: String, suggestion: Option<String>, known: Vec<String> },
     /// A name that stands for nothing here.
-    #[error("`{name}` is no {expected}{}", meant(.suggestion))]
+    #[error("`{name}` is not a {expected}{}", meant(.suggestion))]
     UnknownName { name: String, expected: &'static str, suggestion: Option<String> },
     /// A key that is needed.
     #[error("`{key}` is missing in {section}; expected {expected}")]

@@ -31,7 +31,7 @@ pub(super) fn explain(context: &Context, unexplained: Vec<SceneError>) -> Result
 }
 
 /// Constraints that follow, after those that are written: what vanishes identically, and what another says,
-/// is no constraint.
+/// is not a constraint.
 pub(super) fn rows(context: &mut Context, constraints: &mut Vec<Expr>, on_positions: &mut Vec<(usize, Expr)>) {
     let mut known: Vec<(Expr, String)> =
         constraints.iter().enumerate().map(|(i, &f)| (f, format!("constraint {}", i + 1))).collect();

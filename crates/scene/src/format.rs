@@ -12,9 +12,9 @@ pub enum Content {
     Text,
     /// A number, or an expression in parameters.
     Number,
-    /// An expression for a number; a number, too.
+    /// An expression for a number; a number as well.
     Expression,
-    /// An expression for a number, a vector or a matrix; a number, too.
+    /// An expression for a number, a vector or a matrix; a number as well.
     Quantity,
     /// A list of two or three numbers or expressions, or an expression for a vector.
     Vector,
@@ -229,7 +229,7 @@ pub const REMOVAL: &[Key] = &[
     may("rates", Named(&Expression), "the rate of a coordinate that becomes memory"),
     may("direct", Named(&Expression), "a coordinate in u, w and t"),
     may("memory", Named(&Expression), "rates of further memory variables"),
-    may("start", Named(&Expression), "start values of parameters and memory variables that are no coordinates"),
+    may("start", Named(&Expression), "start values of parameters and memory variables that are not coordinates"),
     may("constants", Constants, "P at the start"),
 ];
 

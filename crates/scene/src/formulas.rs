@@ -67,7 +67,7 @@ pub(super) struct Found {
     pub(super) forces: Vec<(String, String)>,
     /// Slips at all contacts.
     pub(super) slips: Vec<Expr>,
-    /// What all constraints say, those that are written, too.
+    /// What all constraints say, those that are written as well.
     pub(super) says: Vec<String>,
     /// Constraints that say the same as others.
     pub(super) left_out: Vec<String>,

@@ -170,7 +170,7 @@ fn loaded<N: Clone + Into<Number>, T>(
     match (scene, SceneError::together(faults)) {
         (Ok(scene), None) => Ok(scene),
         (_, Some(error)) => Err(error),
-        (Err(()), None) => unreachable!("what is no scene has a fault"),
+        (Err(()), None) => unreachable!("what is not a scene has a fault"),
     }
 }
 

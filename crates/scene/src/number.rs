@@ -5,7 +5,7 @@ use std::str::FromStr;
 
 use symbolic::{Graph, ParseErrorKind};
 
-/// A number in the place of one of a scene: a decimal, or a formula without names as in `pi/3`.
+/// A number instead of one of a scene: a decimal, or a formula without names as in `pi/3`.
 ///
 /// What is proved of a scene is proved of its numbers as they are written; of a formula an `f64` is another.
 ///
@@ -52,7 +52,7 @@ impl From<f64> for Number {
 impl FromStr for Number {
     type Err = ParseErrorKind;
 
-    /// What is no formula but a number in words (`nan`, `inf`) is that, for whoever refuses it.
+    /// What is not a formula but a number in words (`nan`, `inf`) is that, for whoever refuses it.
     fn from_str(text: &str) -> Result<Self, ParseErrorKind> {
         let text = text.trim();
         let g = Graph::new();

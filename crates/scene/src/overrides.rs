@@ -1,4 +1,4 @@
-//! Numbers from the command line in the place of those of the file.
+//! Numbers from the command line instead of those of the file.
 
 use std::cell::RefCell;
 use std::collections::{BTreeMap, BTreeSet};

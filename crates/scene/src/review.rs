@@ -13,7 +13,7 @@ use crate::{Remark, SceneError, SceneErrorKind};
 /// Below this, relative to what it is measured by, nothing is remarked.
 const SMALL: f64 = 1e-7;
 
-/// Sections whose formulas make a name one that is used; words of the other keys are no formulas.
+/// Sections whose formulas make a name one that is used; words of the other keys are not formulas.
 const WORDS: [&str; 11] =
     ["title", "source", "notes", "unit", "shape", "of", "on", "law", "parameters", "definitions", "joint"];
 

@@ -200,7 +200,7 @@ fn read_system(context: &mut Context) -> Result<(), SceneError> {
     followed::works(context)
 }
 
-/// What the user wants to see: a vector by its components. Positions that are to stay where they are, too.
+/// What the user wants to see: a vector by its components. Positions that are to stay where they are as well.
 fn watched(context: &mut Context, section: &str, constancy: Constancy) -> Result<(), SceneError> {
     if constancy == Constancy::Expected {
         for (number, _, g) in &context.on_positions {

@@ -50,7 +50,7 @@ pub enum TableFault {
     Unreadable(String),
     #[error("the table has more than {limit} {of}, the most that is read")]
     TooLarge { limit: usize, of: &'static str },
-    #[error("this is no text in UTF-8")]
+    #[error("this is not text in UTF-8")]
     NoText,
     #[error("cells are separated by {0}, and have to be by commas")]
     Separator(&'static str),
@@ -64,7 +64,7 @@ pub enum TableFault {
     Ragged { found: usize, expected: usize },
     #[error("there is no column `{0}`")]
     ColumnMissing(String),
-    #[error("column `{column}`: `{text}` is no finite number")]
+    #[error("column `{column}`: `{text}` is not a finite number")]
     NotANumber { column: String, text: String },
     #[error("column `{0}`: the cell is empty, and a number is needed")]
     Gap(String),
@@ -126,7 +126,7 @@ impl<'t> Table<'t> {
     /// Reads a table; `file` stands for it in errors.
     ///
     /// # Errors
-    /// [`TableError`] for what is no table, or too large a one.
+    /// [`TableError`] for what is not a table, or too large a one.
     pub fn read(file: &'t str, text: &'t str) -> Result<Table<'t>, TableError> {
         let too_large = |limit, of| TableFault::TooLarge { limit, of };
         let refused = |at, fault| Err(TableError { place: place(file, text, at), fault });

@@ -24,7 +24,7 @@ fn cells_are_those_of_rfc_4180() {
 fn gaps_are_no_numbers() {
     let table = Table::read("m.csv", "a\nNaN\n\"\"\n1e999\nna\n-2e3\n").unwrap();
     let found: Vec<_> = (1..6).map(|row| table.number_or_gap(row, 0).map_err(|error| error.to_string())).collect();
-    let wrong = Err("m.csv:4:1: column `a`: `1e999` is no finite number".to_string());
+    let wrong = Err("m.csv:4:1: column `a`: `1e999` is not a finite number".to_string());
     assert_eq!(found, [Ok(None), Ok(None), wrong, Ok(None), Ok(Some(-2e3))]);
     assert_eq!(table.number(2, 0).unwrap_err().fault, TableFault::Gap("a".into()));
 }

@@ -21,7 +21,7 @@ pub(crate) struct Cancelled(usize);
 /// Does `work` on this thread until `is_unwanted` says so: `None` then. It is asked at every 256th
 /// expression that is made, or found to be there, and wherever [`go_on`] is called. The graphs that the work
 /// has built on are whole, with more expressions than before. Such work may be part of other such work, which
-/// may end it, too.
+/// may end it as well.
 ///
 /// ```
 /// let graph = symbolic::Graph::new();

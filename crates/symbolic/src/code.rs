@@ -38,7 +38,7 @@ pub struct Code {
 
 impl Graph {
     /// `outputs` by way of `definitions`, as in [`Graph::compile_with`], with a name for what is shared or
-    /// long: `s1`, `s2`, …, but for those that an input has. Inputs stand under the names given.
+    /// long: `s1`, `s2`, …, except those that an input has. Inputs stand under the names given.
     ///
     /// ```
     /// use symbolic::{Graph, Language};

@@ -99,7 +99,7 @@ impl Fraction {
         (self.twos == 0 && self.fives == 0).then_some((self.numerator, self.denominator))
     }
 
-    /// `digits[.digits][e±digits]`; `None` for what is no such text, or has more digits than fit.
+    /// `digits[.digits][e±digits]`; `None` for other text, or has more digits than fit.
     pub fn decimal(text: &str) -> Option<Self> {
         let (mantissa, exponent) = match text.split_once(['e', 'E']) {
             Some((mantissa, exponent)) => (mantissa, exponent.parse::<i32>().ok()?),
@@ -177,7 +177,8 @@ impl Fraction {
         Self::with_powers(power(bare.numerator)?, power(bare.denominator)?, times(bare.twos)?, times(bare.fives)?)
     }
 
-    /// The nearest float of a decimal, and of any fraction but for the last digit; 0 and ∞ beyond the range.
+    /// The nearest float of a decimal, and of any fraction except for the last digit; 0 and ∞ beyond the
+    /// range.
     pub fn to_f64(self) -> f64 {
         let exact = |n: i128| n.unsigned_abs() <= 1 << 53;
         if let Some((n, d)) = self.plain().filter(|&(n, d)| exact(n) && exact(d)) {

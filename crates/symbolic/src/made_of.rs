@@ -100,13 +100,13 @@ impl Graph {
         [self.kinks(es), self.radicands(es), inverse].concat()
     }
 
-    /// Every distinct base of a power that is no integer, in `es`.
+    /// Every distinct base of a power that is not an integer, in `es`.
     pub fn under_roots(&self, es: &[Expr]) -> BTreeSet<Expr> {
         let reachable = self.arena.borrow().reachable(es, |_| true);
         reachable.into_iter().flat_map(|e| self.bases(e, |r| r.as_integer().is_none())).collect()
     }
 
-    /// Every distinct power in `es` whose exponent is no integer, as (base, power).
+    /// Every distinct power in `es` whose exponent is not an integer, as (base, power).
     ///
     /// ```
     /// let g = symbolic::Graph::new();

@@ -60,8 +60,8 @@ impl Arena {
         }
     }
 
-    /// tan = sin/cos, and sines and cosines of sums by the addition theorems; likewise hyperbolic ones. Those
-    /// of multiples of π/12 are made of √2 and √3, and roots of numbers of those of primes.
+    /// tan = sin/cos, and sines and cosines of sums by the addition theorems; in the same way hyperbolic
+    /// ones. Those of multiples of π/12 are made of √2 and √3, and roots of numbers of those of primes.
     pub(crate) fn with_split_angles(&mut self, e: Expr) -> Expr {
         let split = |arena: &mut Arena, e: Expr| match arena.node(e) {
             &Node::Call(function, argument) => arena.split_call(function, argument).unwrap_or(e),

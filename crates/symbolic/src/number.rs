@@ -203,7 +203,7 @@ impl Number {
         }
     }
 
-    /// What arithmetic has rounded: never taken for an exact number again, but for zero.
+    /// What arithmetic has rounded: never taken for an exact number again, except for zero.
     pub(crate) fn rounded(x: f64) -> Self {
         match x {
             0.0 => Self::ZERO,

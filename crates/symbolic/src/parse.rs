@@ -156,7 +156,7 @@ impl<'a> Parser<'a> {
         value.scalar().ok_or_else(|| Fault { kind: kind(), start, end })
     }
 
-    /// Something in the place of what cannot be read, for what comes after it.
+    /// Something instead of what cannot be read, for what comes after it.
     pub(crate) fn unreadable(&mut self, fault: Fault) -> Value {
         self.faults.push(fault);
         Value::Scalar(self.graph.variable(self.graph.symbol("?")))

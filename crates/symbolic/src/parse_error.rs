@@ -112,7 +112,7 @@ pub enum ParseErrorKind {
 }
 
 impl ParseErrorKind {
-    /// Whether the text is no formula, whatever its names mean.
+    /// Whether the text is not a formula, whatever its names mean.
     pub(crate) fn is_of_grammar(&self) -> bool {
         use ParseErrorKind::*;
         matches!(

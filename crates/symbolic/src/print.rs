@@ -15,7 +15,7 @@ pub(crate) enum Piece {
     Text(String),
     /// The expression, in parentheses if it binds more loosely than the level.
     Node(Expr, u8),
-    /// The negative of a sum, likewise.
+    /// The negative of a sum, in the same way.
     Negated(Expr, u8),
 }
 

@@ -2,8 +2,8 @@
 //!
 //! Symbols, roots and functions are taken for independent, only `sin² + cos² = 1` and `cosh² − sinh² = 1` are
 //! known, and `tan`, `tanh` as their quotients. So what is zero here is zero for all values of the symbols,
-//! wherever a `tanh` or a bump switches on, but for a chance of the degree over 2⁶¹, twice. No float tells
-//! it.
+//! wherever a `tanh` or a bump switches on, except with a chance of the degree over 2⁶¹, twice. No float
+//! tells it.
 
 use rustc_hash::FxHashMap;
 

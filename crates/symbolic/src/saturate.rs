@@ -199,7 +199,8 @@ impl Arena {
         (finite && !involved.is_empty()).then_some(Group { scale, unit, factors: involved, powers })
     }
 
-    /// The powers of the unit's functions in `number · e`; none where these stand inside other factors, too.
+    /// The powers of the unit's functions in `number · e`; none where these stand inside other factors as
+    /// well.
     fn scaled_term(&self, scale: Scale, unit: Unit, e: Expr, number: Number) -> ScaledTerm {
         let whole = || ScaledTerm { number, rest: vec![(e, Rational::ONE)], degrees: Degrees::default() };
         let factors = match self.node(e) {

@@ -128,7 +128,7 @@ impl Graph {
     }
 
     /// The highest power in `es` of what has no bounds, from 20 on; 0 where there is none. `(4x(1 − x))⁴⁰` is
-    /// nothing but for a part `1/√40` of where `x` passes it, and to order 39 nothing at both ends.
+    /// nothing except for a part `1/√40` of where `x` passes it, and to order 39 nothing at both ends.
     pub fn highest_power(&self, es: &[Expr], known: &HashMap<Symbol, Range>) -> f64 {
         let arena = self.arena.borrow();
         let products = arena.reachable(es, |_| true).into_iter();

@@ -1,4 +1,4 @@
-//! # The vakonomic formulation (stationary action under the linearized constraint)
+//! # The vakonomic equations (variational nonholonomic, or constrained variational)
 //!
 //! Given are coordinates `q ∈ Rⁿ`, a Lagrangian `L(q, v, t)` with `v = q̇` and constraints
 //! `f(q, v, t) = 0 ∈ Rʰ`. Write `A = ∂f/∂v` (h×n).

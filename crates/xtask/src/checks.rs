@@ -12,7 +12,7 @@ use std::time::Instant;
 use anyhow::{Context, Result};
 
 use crate::tools::{ALL, Outcome, build, cargo, outside, succeed, target};
-use crate::{dependencies, explore, identity, lint, python, sources};
+use crate::{dependencies, explore, identity, lint, python, sources, words};
 
 /// One thing that must hold.
 pub(crate) struct Check {
@@ -55,6 +55,12 @@ pub(crate) fn all() -> Vec<Check> {
             "authors and address are those of Cargo.toml everywhere, and nothing pretends to have an address",
             "cargo xtask address; or name the folder of the project in the place of an index",
             identity::check,
+        ),
+        check(
+            "words",
+            "no page has a long sentence, a habit that readers stumble over, or a number without a source",
+            "say it in two sentences and other words; link the number's page, or list its source in docs/numbers.txt",
+            words::check,
         ),
         check(
             "once",
@@ -240,7 +246,7 @@ fn end_of(name: &str, said: &str, success: bool) -> End {
     }
 }
 
-/// The last line: what was not run is no pass.
+/// The last line: what was not run is not a pass.
 fn counted(ended: &[End]) -> String {
     let count = |end: End| ended.iter().filter(|other| **other == end).count();
     let lacking: Vec<&str> =
@@ -252,7 +258,7 @@ fn counted(ended: &[End]) -> String {
     }
 }
 
-/// Runs a chore that is no check.
+/// Runs a chore that is not a check.
 pub(crate) fn chore(outcome: Result<Outcome>) -> ExitCode {
     match outcome {
         Ok(Outcome::Passed(told)) => {

@@ -93,7 +93,7 @@ pub(crate) fn look_at(site: &Path) -> Result<Outcome> {
     }))
 }
 
-/// How the names end of what only tries a page and is no part of it.
+/// How the names end of what only tries a page and is not part of it.
 const TEST: &str = "test.mjs";
 
 /// A digest of the sources (FNV-1a, 64 bits), with their names in order.
@@ -123,7 +123,7 @@ fn files(folder: &Path) -> Result<Vec<PathBuf>> {
 /// Outside the folder of build results nothing is installed unless this variable asks for it.
 const INSTALL: &str = "DELTAQ_INSTALL";
 
-/// A browser, if everything else is there, too; or what is lacking.
+/// A browser, if everything else is there as well; or what is lacking.
 fn tools() -> Result<Result<PathBuf, String>> {
     if answer(outside("node").arg("--version")).is_none() || answer(npm().arg("--version")).is_none() {
         return Ok(Err("there is no node with npm".into()));

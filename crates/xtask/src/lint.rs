@@ -2,7 +2,7 @@
 //!
 //! `cargo clippy` and `cargo doc` check every dependency once more, nine tenths of their work. Here cargo
 //! builds the workspace with this program as rustc for our own crates (`RUSTC_WORKSPACE_WRAPPER`): each call
-//! goes to clippy-driver and asks for metadata, not code; rustdoc reads what is no test.
+//! goes to clippy-driver and asks for metadata, not code; rustdoc reads what is not a test.
 
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
@@ -28,7 +28,7 @@ pub(crate) fn check() -> Result<Outcome> {
     succeed(&mut build)
 }
 
-/// The call in the place of rustc, if this is one.
+/// The call instead of rustc, if this is one.
 pub(crate) fn in_place_of_rustc() -> Option<ExitCode> {
     let tools = PathBuf::from(std::env::var_os(TOOLS)?);
     let call: Vec<OsString> = std::env::args_os().skip(1).collect();
@@ -64,7 +64,7 @@ fn follows(words: &[String], option: &str, value: &str) -> bool {
     words.windows(2).any(|pair| pair[0] == option && pair[1] == value)
 }
 
-/// The call with metadata in the place of code, which is then all that there is of our own crates.
+/// The call with metadata instead of code, which is then all that there is of our own crates.
 fn without_code(words: &[String]) -> Vec<String> {
     let of_word = |word: &String| match word.strip_prefix("--emit=") {
         Some(_) => "--emit=dep-info,metadata".to_owned(),

@@ -5,10 +5,12 @@ mod dependencies;
 mod explore;
 mod identity;
 mod lint;
+mod numbers;
 mod python;
 mod site;
 mod sources;
 mod tools;
+mod words;
 
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -17,7 +19,7 @@ use anyhow::Result;
 
 use tools::Outcome;
 
-/// A chore that is no check: its name, what it does, and what it does with further words.
+/// A chore that is not a check: its name, what it does, and what it does with further words.
 type Chore = (&'static str, &'static str, fn(&[&str]) -> Result<Outcome>);
 
 const CHORES: [Chore; 7] = [

@@ -52,7 +52,7 @@ fn typed(python: &Path, site: &Path) -> Result<[(&'static str, Child); 2]> {
         Ok((words, command.env("MYPY_CACHE_DIR", target()?.join("mypy")).spawn().context(words)?))
     };
     let allowed = std::path::absolute(Path::new(CRATE).join(STUBTEST))?;
-    let allowed = allowed.to_str().context("the path of the project is no text")?;
+    let allowed = allowed.to_str().context("the path of the project is not text")?;
     Ok([
         start("types are wrong", &["mypy", "--no-error-summary", "--package", "deltaq"], "--config-file")?,
         start(
@@ -169,7 +169,7 @@ struct Module {
     size: u64,
 }
 
-/// Lays out what `pip install` asks maturin for, but for the library, which the build has made.
+/// Lays out what `pip install` asks maturin for, except for the library, which the build has made.
 fn module(python: &Path) -> Result<Module> {
     build()?;
     let target = target()?;

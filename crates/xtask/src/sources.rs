@@ -117,7 +117,7 @@ fn names_place(line: &str, place: &str) -> bool {
     })
 }
 
-/// Name and text of every file that is tracked, or would be. Files that are no text are left out.
+/// Name and text of every file that is tracked, or would be. Files that are not text are left out.
 fn files() -> Result<Vec<(String, String)>> {
     Ok(names()?.into_iter().filter_map(|name| Some((name.clone(), std::fs::read_to_string(name).ok()?))).collect())
 }

@@ -329,7 +329,7 @@ pub fn matching_multipliers(scene: &Scene, removal: &Removal, motion: &mut Motio
         motion.equations.multipliers.iter().map(|m| m.name.clone()).zip(outputs).collect();
     let symbols: Vec<Symbol> =
         removal.parameters.iter().map(|u| u.symbol).chain(removal.memory.iter().map(|w| w.symbol)).collect();
-    assert_eq!(symbols.len(), system.dimension(), "(u, w) are no coordinates");
+    assert_eq!(symbols.len(), system.dimension(), "(u, w) are not coordinates");
     let momenta = removal.parameters.iter().map(|u| named[&format!("p_{}", g.name(u.symbol))]);
     let costates =
         removal.memory.iter().map(|w| -named.get(&format!("P_{}", g.name(w.symbol))).copied().unwrap_or(0.0));

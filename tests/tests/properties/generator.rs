@@ -112,7 +112,7 @@ fn classes_are_those_that_their_kind_may_have() {
         assert_eq!(has("more than six coordinates"), recipe.n() > MOST, "{kind} {index}");
         assert!(!has("a start farther than 100") || recipe.features.far.is_some(), "{kind} {index}");
         assert!(!has("constraints nearer than 1e-3") || kind == Kind::NearRankLoss, "{kind} {index}");
-        assert!(!has("a constraint that is no cone") || kind == Kind::Nonlinear, "{kind} {index}");
+        assert!(!has("a constraint that is not a cone") || kind == Kind::Nonlinear, "{kind} {index}");
         signs.extend(recipe.velocities.iter().map(|v| v.signum()));
         let Scene { system, start, .. } = recipe.scene("random");
         let timed = ["an L that depends on time", "a breakpoint"].into_iter().any(has);

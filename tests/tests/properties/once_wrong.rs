@@ -26,8 +26,8 @@ const LATER: [(u64, u64, Kind, u8, &str); 7] = [
     (5, 458, Kind::Nonlinear, 0, "the tip of a cone is passed, where its direction is lost"),
     (2223, 304, Kind::PartlyIntegrable, 8, "two terms of a distance nearly cancel after a sudden force"),
     (5, 677, Kind::TimeDependent, 5, "derivatives of a steep switch have no value at the start"),
-    (1117, 2431, Kind::ChaplyginIntegrable, 12, "an error that is large far from the origin is no difference"),
-    (1117, 2841, Kind::ChaplyginIntegrable, 12, "an error that is large far from the origin is no difference"),
+    (1117, 2431, Kind::ChaplyginIntegrable, 12, "an error that is large far from the origin is not a difference"),
+    (1117, 2841, Kind::ChaplyginIntegrable, 12, "an error that is large far from the origin is not a difference"),
     (8, 3299, Kind::NearRankLoss, 9, "constants do for the first moment, the only one that round-off leaves"),
     (424_242, 9913, Kind::HiddenIntegrable, 0, "a costate that is zero is round-off in other units"),
 ];

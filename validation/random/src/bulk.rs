@@ -51,7 +51,7 @@ impl Batch {
         self.record_of(draw(self.seed, index, &self.kinds).current(), index, fault)
     }
 
-    /// [`Batch::faulty_record`] with another recipe in the place of that with this index.
+    /// [`Batch::faulty_record`] with another recipe instead of that with this index.
     pub fn record_of(&self, recipe: Recipe, index: u64, fault: &Fault) -> Record {
         let thorough = self.is_thorough(index);
         let null = thorough.then(|| NullTest::draw(self.seed, index).current());

@@ -182,7 +182,7 @@ impl Case {
     }
 
     /// A motion of `equations` of another system from `start`, with every block by LU factorization: what is
-    /// said of the case's own motions is said of the forms that were chosen for them, too.
+    /// said of the case's own motions is said of the forms that were chosen for them as well.
     ///
     /// # Errors
     /// [`SolveError`].

@@ -27,9 +27,10 @@ pub struct Classes {
     pub units: Option<Units>,
     /// Coordinates beyond [`crate::MOST`].
     pub more: usize,
-    /// `−log₁₀` of the angle between two nearly dependent constraints, in the place of the recipe's.
+    /// `−log₁₀` of the angle between two nearly dependent constraints, instead of the recipe's.
     pub closeness: Option<i32>,
-    /// `q₁` has a negative inertia, so that `M` is indefinite, on the velocities that constraints allow, too.
+    /// `q₁` has a negative inertia, so that `M` is indefinite, on the velocities that constraints allow as
+    /// well.
     pub indefinite: bool,
     /// A force that is switched on, at a time that is a breakpoint.
     pub sudden: Option<Sudden>,
@@ -56,7 +57,7 @@ pub struct Sudden {
 pub struct Units {
     /// Of the coordinates.
     pub lengths: Vec<i32>,
-    /// Of time, action (by division) and constraints (likewise).
+    /// Of time, action (by division) and constraints (in the same way).
     pub others: [i32; 3],
 }
 
@@ -174,7 +175,7 @@ impl Classes {
             ("an L that is not quadratic in the velocities", self.quartic.is_some()),
             ("forces", self.forces.is_some()),
             ("units by powers of ten", self.units.is_some()),
-            ("a constraint that is no cone", self.surface != Surface::Cone),
+            ("a constraint that is not a cone", self.surface != Surface::Cone),
             ("more than six coordinates", self.more > 0),
             ("constraints nearer than 1e-3", self.closeness.is_some()),
             ("an indefinite M", self.indefinite),

@@ -144,7 +144,7 @@ pub fn with_added_mass(system: &System, strength: f64) -> System {
     unconstrained(system, strength, 0.0)
 }
 
-/// The system with `L + ½ mass f·f` and the force `Q − friction Aᵀ f` in the place of its constraints.
+/// The system with `L + ½ mass f·f` and the force `Q − friction Aᵀ f` instead of its constraints.
 fn unconstrained(system: &System, mass: f64, friction: f64) -> System {
     let mut other = system.clone();
     let g = &other.graph;

@@ -12,7 +12,7 @@ use super::class::{Classes, classes};
 use super::feature::{Features, features};
 use super::{Kind, Truth};
 
-/// Most coordinates of a random system, but for those of the class that has more.
+/// Most coordinates of a random system, except those of the class that has more.
 pub const MOST: usize = 6;
 
 /// Most coordinates of that class.

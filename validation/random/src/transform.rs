@@ -91,8 +91,8 @@ impl Scaling {
         State { t: state.t / self.time, q: scaled(&state.q, 1.0), v: scaled(&state.v, self.time) }
     }
 
-    /// A removal in the new units, of the `scaled` system. Parameters and memory that are no coordinates keep
-    /// their unit but for time; costates `P` are scaled where one is given for each memory variable.
+    /// A removal in the new units, of the `scaled` system. Parameters and memory that are not coordinates
+    /// keep their unit except for time; costates `P` are scaled where one is given for each memory variable.
     pub fn removal(&self, scaled: &System, removal: &Removal) -> Removal {
         let g = &scaled.graph;
         let mut map = self.map(scaled);

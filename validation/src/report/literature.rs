@@ -1,4 +1,4 @@
-//! The page about published claims: what each says, what was computed, and the word that follows.
+//! The page about published claims and questions: what was computed, and the word that follows for a claim.
 
 use equations::Formulation;
 use std::collections::{BTreeMap, HashMap};
@@ -18,6 +18,9 @@ use program::File;
 
 const DATA: &str = include_str!("../../equivalence/pages/claims.toml");
 
+/// The word for a question, which has no verdict.
+const ANSWERED: &str = "answered";
+
 /// Instants at which a quantity along a motion is looked at.
 const INSTANTS: usize = 400;
 
@@ -35,7 +38,10 @@ struct Claim {
     /// What was read of it.
     read: String,
     about: String,
+    /// What the source says. Of a source that was not read there is a question instead, which has no word.
+    #[serde(default)]
     says: String,
+    question: Option<String>,
     /// The full statement was read, not an abstract or what is remembered.
     #[serde(default)]
     in_full: bool,
@@ -173,6 +179,11 @@ impl Claim {
         }
     }
 
+    /// What the page says of it.
+    fn word(&self) -> &str {
+        if self.question.is_some() { ANSWERED } else { &self.word }
+    }
+
     /// What was computed, which leads to the word.
     fn found(&self) -> Result<Vec<Found>> {
         let found = self.case.iter().map(Case::found).collect::<Result<Vec<_>>>();
@@ -216,19 +227,20 @@ impl LiteratureReport {
 
     /// The first line of the page.
     pub fn headline(&self) -> String {
-        let [confirmed, contradicted, refuted, qualified, open] =
-            ["confirmed", "contradicted", "refuted", "qualified", "open"]
-                .map(|word| self.claims.iter().filter(|claim| claim.word == word).count());
+        let count = |word: &str| self.claims.iter().filter(|claim| claim.word() == word).count();
+        let words = ["confirmed", "qualified", "contradicted", "refuted"].map(|word| (word, count(word)));
+        let found: Vec<String> = words.iter().filter(|(_, n)| *n > 0).map(|(word, n)| format!("{n} {word}")).collect();
+        let (claims, questions, open) = (words.iter().map(|(_, n)| n).sum::<usize>(), count(ANSWERED), count("open"));
         format!(
-            "Of {} published claims, as abstracts or memory have them, {confirmed} are confirmed on the scenes here, {qualified} hold under a condition, \
-             {contradicted} are contradicted in the reading given here, {refuted} are refuted, {open} are open.",
-            self.claims.len()
+            "{claims} claims whose abstract was read were computed on the systems here: {}. {questions} further questions from the \
+             literature are answered for the systems named, without a verdict on their sources. {open} statements were not computed.",
+            found.join(", ")
         )
     }
 
     /// The words for machines.
     pub fn verdicts(&self) -> Value {
-        let word = |claim: &Claim| (format!("{}: {}", claim.source, claim.about), claim.word.clone().into());
+        let word = |claim: &Claim| (format!("{}: {}", claim.source, claim.about), claim.word().into());
         Value::Object(self.claims.iter().map(word).collect())
     }
 
@@ -237,13 +249,21 @@ impl LiteratureReport {
         let mut text = format!("# Published claims, computed\n\n**{}**\n\n{}\n", self.headline(), self.about);
         let (mut all, mut each) = (Table::new([">", "source", "about", "word"]), String::new());
         for (i, (claim, found)) in self.claims.iter().zip(&self.found).enumerate() {
-            let Claim { source, read, about, says, word, remark, .. } = claim;
-            all.row(&[&(i + 1), source, about, &format!("**{word}**")]);
-            let word = if word == "contradicted" { "contradicted in the reading given here" } else { word };
-            let condition = claim.condition.as_ref().map_or(String::new(), |condition| format!(" where {condition}"));
-            let word = format!("**{word}**{condition}. {remark}");
-            let _ = writeln!(each, "\n## {}. {source}: {about}\n\n{says} {read}\n\n{}", i + 1, word.trim_end());
-            let mut table = Table::new(["asked", "the claim says", "found"]);
+            let Claim { source, read, about, remark, .. } = claim;
+            let says = claim.question.as_ref().unwrap_or(&claim.says);
+            all.row(&[&(i + 1), source, about, &format!("**{}**", claim.word())]);
+            let condition = claim.condition.as_ref().map_or(String::new(), |condition| format!(" if {condition}"));
+            let word = match claim.word() {
+                ANSWERED => remark.clone(),
+                "contradicted" => format!("**contradicted in the reading given here**{condition}. {remark}"),
+                word => format!("**{word}**{condition}. {remark}"),
+            };
+            let _ = writeln!(each, "\n## {}. {source}: {about}\n\n{says} {read}", i + 1);
+            if !word.is_empty() {
+                let _ = writeln!(each, "\n{}", word.trim_end());
+            }
+            let head = if claim.question.is_some() { "looked for" } else { "the claim says" };
+            let mut table = Table::new(["asked", head, "found"]);
             for (case, found) in claim.case.iter().zip(found) {
                 table.row(&[&case.question(), &case.claimed, found]);
             }

@@ -45,7 +45,9 @@ impl KeptReferences {
         let motion = |part: &str| {
             let (head, lines) = part.split_once('\n').context("a motion without numbers")?;
             let words: Vec<&str> = head.rsplitn(5, ' ').collect();
-            let [dimension, own, numbers, formulas, name] = words[..] else { anyhow::bail!("`{head}` is no heading") };
+            let [dimension, own, numbers, formulas, name] = words[..] else {
+                anyhow::bail!("`{head}` is not a heading")
+            };
             let number = |word: &str| u64::from_str_radix(word, 16).with_context(|| format!("{name}: digest `{word}`"));
             ensure!(number(own)? == digest(lines), "{name}: not the numbers that were written");
             let reference = dimension.parse().ok().and_then(|n| Kept::read(lines, n));

@@ -90,7 +90,7 @@ impl Residuals for Weighted<'_> {
     }
 
     /// Of the derivative of `w r`, the part along `r` is taken times `2(p−1)/p`, and that across it times
-    /// `√(p−1)`: so the step is Newton's for the sum of powers, but for second derivatives of `r`.
+    /// `√(p−1)`: so the step is Newton's for the sum of powers, except second derivatives of `r`.
     fn jacobian(&mut self, constants: &[f64], jacobian: &mut [f64]) -> Result<bool, BoundaryError> {
         let Differences { prepared, goal, start, end, .. } = &mut *self.differences;
         let Power { power, stride, part, .. } = *self.power;

@@ -16,6 +16,28 @@ pub(super) fn sentences(comparison: &Comparison) -> Vec<String> {
     sentences
 }
 
+/// For which `μ₀` two motions are different, and for which the same, in a few words.
+pub(super) fn in_brief(comparison: &Comparison) -> (String, String) {
+    let own = "with the scene's μ₀".to_string();
+    let Some(Ok(membership)) = comparison.membership() else { return (own.clone(), own) };
+    let every = membership.decision.set.dimension() == membership.decision.constants.len();
+    let (some, proved) = match membership.answer() {
+        Answer::NoneProved { .. } => (false, "proved"),
+        Answer::None { .. } => (false, "computed, not proved"),
+        Answer::SomeProved => (true, "proved"),
+        Answer::Some { .. } => (true, "computed, not proved"),
+        Answer::Undecided => {
+            return (format!("{own}; whether another μ₀ makes them the same is undecided"), own);
+        }
+    };
+    let constants = constants(membership, "μ₀");
+    match some {
+        false => (format!("for every μ₀ ({proved})"), own),
+        true if every => (own.clone(), format!("for every μ₀ ({proved})")),
+        true => (format!("{own}; the same with {constants} ({proved})"), own),
+    }
+}
+
 /// The answer for Chetaev's motion and the vakonomic family, in a sentence.
 pub fn sentence(membership: &Membership) -> String {
     let reason = reason(membership);
@@ -81,7 +103,7 @@ fn reason(membership: &Membership) -> String {
     match membership.answer() {
         Answer::NoneProved { order } => format!("proved (order {order}); {mismatch}"),
         Answer::None { unproved } => {
-            format!("{mismatch}{}; there is no proof, since {unproved}", up_to(decision.until))
+            format!("{mismatch}{}; not proved: {unproved}", up_to(decision.until))
         }
         Answer::SomeProved => identity(membership),
         Answer::Some { order, settled } => how_far(membership, order, settled),
@@ -106,7 +128,7 @@ fn identity(membership: &Membership) -> String {
 
 /// Up to when the numbers were judged, where that is not the end.
 fn up_to(until: Option<f64>) -> String {
-    until.map_or(String::new(), |t| format!(" up to t = {}, after which round-off is too loud", precise(t)))
+    until.map_or(String::new(), |t| format!(" up to t = {}, after which round-off is too large", precise(t)))
 }
 
 /// The best that a search over `μ₀` has found, where none leaves nothing: smaller gaps may exist.
@@ -147,11 +169,11 @@ pub fn how_far(membership: &Membership, order: Option<usize>, settled: bool) -> 
     let part = membership.proof.domain.part();
     if let Some(section) = &membership.section {
         let section = section.expressions.join(", ");
-        return format!("({section}) at random starts{part} modulo two primes, which is no proof");
+        return format!("({section}) at random starts{part} modulo two primes (not proved)");
     }
     if settled {
         let at = if part.is_empty() { "" } else { " at random starts" };
-        return format!("ranks modulo two primes grow no more{at}{part}, which is no proof");
+        return format!("supported by rank computations modulo two primes{at}{part} (not proved)");
     }
     let decision = &membership.decision;
     let part = decision.least.max(decision.noise) / decision.acceleration;

@@ -16,6 +16,28 @@ use motion::{CERTAINTY, CHETAEV, REMOVED_CONSTRAINT, VAKONOMIC, VAKONOMIC_COSTAT
 const WHICH: &str = "Wheels, skates and rolling bodies follow Chetaev (d'Alembert–Lagrange): friction holds their \
                      constraints. Vakonomic motions solve constrained variational problems, such as optimal control.";
 
+/// Which of them is the user's, in a few words.
+const MINE: &str = "Wheels, skates and rolling bodies follow Chetaev (d'Alembert–Lagrange).";
+
+/// Same or different, and which is the user's: one line; `None` without a Chetaev and a vakonomic motion.
+pub fn answer(comparison: &Comparison) -> Option<String> {
+    if !comparison.contradictions().is_empty() {
+        return None;
+    }
+    let chetaev = comparison.run(CHETAEV)?;
+    let pair = comparison.pair(chetaev, comparison.run(VAKONOMIC)?)?;
+    let constants = decision::in_brief(comparison);
+    Some(match &pair.gap.verdict {
+        Verdict::Different => format!("Different: Chetaev and vakonomic, {}. {MINE}", constants.0),
+        Verdict::Undecided { .. } => format!("Undecided: Chetaev and vakonomic, {}. {MINE}", constants.1),
+        Verdict::Same => {
+            let other = |p: &&Pair| p.gap.verdict == Verdict::Different && [p.first, p.second].contains(&chetaev);
+            let rest = if rows(comparison).any(|p| other(&p)) { " Other formulations differ." } else { "" };
+            format!("Same: Chetaev and vakonomic, {}, within the error estimates.{rest}", constants.1)
+        }
+    })
+}
+
 /// Four answers, a few sentences each.
 pub struct Headline {
     /// The same or different, and from when.
@@ -203,7 +225,7 @@ fn why(comparison: &Comparison) -> Vec<String> {
     let pair = comparison.run(CHETAEV).zip(comparison.run(VAKONOMIC)).and_then(|(a, b)| comparison.pair(a, b));
     if let Some((predicted, measured)) = pair.and_then(|p| p.predicted.as_ref().zip(p.growth.as_ref())) {
         sentences.push(format!(
-            "Its curvature at the start predicts that Chetaev and vakonomic part as {} t^{}; measured: {} t^{:.2}.",
+            "Predicted growth of the gap between Chetaev and vakonomic: {} t^{}; fitted: {} t^{:.2}.",
             precise(predicted.length),
             predicted.exponent,
             precise(measured.length),
@@ -226,7 +248,7 @@ fn why(comparison: &Comparison) -> Vec<String> {
 /// What the vakonomic motion asks of contacts.
 fn contacts(comparison: &Comparison, beyond: Option<&Beyond>) -> String {
     let Some(Beyond { coordinate, force, t }) = beyond else {
-        return "Forces at the contacts can make the vakonomic motion, too.".into();
+        return "Contact forces can also produce the vakonomic motion.".into();
     };
     let angle = comparison.scene.system.coordinates.iter().any(|c| c.name == *coordinate && c.unit == "rad");
     let what = if angle { "torque" } else { "generalized force" };
@@ -277,8 +299,8 @@ fn errors(comparison: &Comparison) -> Option<String> {
     let largest =
         estimates.fold(None, |a: Option<f64>, b| Some(a.map_or(b, |a| if b > a || b.is_nan() { b } else { a })))?;
     let indefinite = if rows(comparison).any(|p| p.gap.indefinite) {
-        " M is not positive definite: gaps are lengths by |M|, whose eigenvalues have no signs, and each coordinate is judged by its own \
-         estimates, too."
+        " M is not positive definite: gaps are lengths by |M|, whose eigenvalues have no signs. Each coordinate is also \
+         judged by its own estimates."
     } else {
         ""
     };

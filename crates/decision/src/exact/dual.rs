@@ -63,7 +63,7 @@ impl Entry for Dual {
         Some(self.through(over, -(over * over)))
     }
 
-    /// What is 0 and has a slope is no pivot, and is not 0.
+    /// What is 0 and has a slope is not a pivot, and is not 0.
     fn weight(self) -> f64 {
         if self.value.is_zero() { 0.5 * self.slope.weight() } else { 1.0 }
     }

@@ -77,7 +77,7 @@ impl<C: Coefficient, const N: usize> Jet<C, N> {
         self.exact
     }
 
-    /// Why its coefficients are no images, if they are none; π in its constant counts.
+    /// Why its coefficients are not images, if they are none; π in its constant counts.
     pub fn flaw(&self) -> Option<Flaw> {
         self.flaw.or(self.has_pi().then_some(Flaw::Pi))
     }

@@ -25,14 +25,14 @@ pub use rational::{Exact, PARTS};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum Flaw {
-    /// A number that is no decimal fraction of moderate length, or was rounded.
-    #[error("a number of the system is no fraction of moderate size")]
+    /// A number that is not a decimal fraction of moderate length, or was rounded.
+    #[error("a number of the system is not a fraction of moderate size")]
     Number,
     /// A trigonometric or exponential function of a number that is not rational, or not followed as one.
     #[error("a sine, cosine or exponential is taken of a number at the start that is not known to be rational")]
     Angle,
     /// A root of something else than a product of small primes.
-    #[error("a root is taken of a number at the start that is no rational one made of small primes")]
+    #[error("a root is taken of a number at the start that is not a rational one made of small primes")]
     Root,
     /// A logarithm of a number other than 1.
     #[error("a logarithm is taken at the start")]
@@ -44,7 +44,7 @@ pub enum Flaw {
     #[error("a number is a multiple of pi rounded to a double: write it as a formula, as in \"pi/3\"")]
     Rounded,
     /// An angle that is too fine a part of π.
-    #[error("a multiple of pi is no multiple of pi/720720")]
+    #[error("a multiple of pi is not a multiple of pi/720720")]
     Turn,
     /// π outside of trigonometric functions.
     #[error("the number pi stands outside of sines and cosines")]
@@ -100,7 +100,7 @@ pub trait Coefficient: Entry {
         function: symbolic::Function,
         exact: Option<Exact>,
     ) -> Result<(Self, Option<Exact>), Flaw>;
-    /// `self^exponent` where that is no integer.
+    /// `self^exponent` where that is not an integer.
     fn power(self, exact: Option<Exact>, exponent: Self) -> Result<Self, Flaw>;
 }
 

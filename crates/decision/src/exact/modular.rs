@@ -165,7 +165,7 @@ impl Modular {
         Ok(((forward - backward) * kept.half_over_i, (forward + backward) * kept.over[2]))
     }
 
-    /// A square root, the same in every call; `None` for what is no square.
+    /// A square root, the same in every call; `None` for what is not a square.
     pub(crate) fn square_root(self) -> Option<Self> {
         if self.is_zero() {
             return Some(self);

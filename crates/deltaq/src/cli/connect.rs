@@ -23,10 +23,10 @@ pub struct ConnectArguments {
     /// vakonomic, chetaev, removed-constraint, kappa; or one of their forms.
     #[arg(long, short, default_value = motion::VAKONOMIC.name, value_parser = motion::formulation)]
     pub formulation: &'static Formulation,
-    /// What is given here is where the search begins.
+    /// First guess of the search.
     #[command(flatten)]
     pub free: FreeArguments,
-    /// From how many starts motions are searched.
+    /// Number of starting guesses of the search.
     #[arg(long, value_name = "N", default_value_t = motion::CONNECT_STARTS as u32, value_parser = clap::value_parser!(u32).range(1..=100_000))]
     pub starts: u32,
     /// Tolerance of the motions that are found.

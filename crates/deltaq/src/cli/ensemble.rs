@@ -13,7 +13,10 @@ use super::{Format, SceneArguments};
 pub struct MotionArguments {
     #[command(flatten)]
     pub scene: SceneArguments,
-    /// chetaev, vakonomic, removed-constraint, kappa; or one of their forms, `show` lists them.
+    /// chetaev (d'Alembert–Lagrange: wheels, skates, rolling bodies), vakonomic (constrained variational
+    /// problems), removed-constraint (Gao 2017), kappa (the family between the first two), first-order
+    /// (Chetaev with the first correction), prescribed (servo constraints, `virtual` in the scene); or one
+    /// of their forms, which `show` lists.
     #[arg(long, short, value_parser = motion::formulation)]
     pub formulation: &'static Formulation,
     /// Form of the equations of chetaev and vakonomic: the one that suits the system, or with multipliers,

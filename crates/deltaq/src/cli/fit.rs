@@ -13,18 +13,18 @@ use super::SceneArguments;
 pub struct FitArguments {
     #[command(flatten)]
     pub scene: SceneArguments,
-    /// Films, CSV: a column `t`, the others expressions of coordinates, velocities and parameters by their
-    /// names, `x` or `a*theta`, perhaps with a unit behind, `x [mm]`; empty cells are gaps.
+    /// Recordings (films), CSV: a column `t`; the name of each other column is an expression in coordinates,
+    /// velocities and parameters, `x` or `a*theta`, or with a unit, `x [mm]`. Empty cells are gaps.
     #[arg(required = true)]
     pub films: Vec<PathBuf>,
-    /// What is not known: parameters, start values; `NAME~VALUE` where the search begins,
-    /// `NAME~MEAN±DEVIATION` what is known before, `NAME>=BOUND`. Each film has start values of its own and
+    /// Unknowns: parameters and start values. `NAME~VALUE` gives the first guess, `NAME~MEAN±DEVIATION` a
+    /// prior, `NAME>=BOUND` a bound. Each film has start values of its own and
     /// shares parameters; `NAME@2` is the second film's own; `start` is all coordinates and given velocities;
     /// `clock` by how much clocks of films are slow. Multipliers and costates at the start are unknown
     /// anyway.
     #[arg(long, value_name = "NAME,…", value_delimiter = ',', required = true, allow_hyphen_values = true)]
     pub free: Vec<Unknown>,
-    /// Numbers of the law of first order, which adds a row: `eps` (ε ≥ 0), `slip` (1/N, above 0); as in
+    /// Numbers of the first-order law, which adds a row: `eps` (ε ≥ 0), `slip` (1/N, above 0); as in
     /// `--free`.
     #[arg(long, value_name = "NAME,…", value_delimiter = ',')]
     pub law: Vec<Unknown>,
@@ -32,7 +32,7 @@ pub struct FitArguments {
     /// formulation leaves.
     #[arg(long, value_name = "σ,…", value_delimiter = ',', allow_hyphen_values = true)]
     pub sigma: Vec<String>,
-    /// Numbers that are known and others in one film: `psi'@2=6`.
+    /// Numbers with another known value in one film: `psi'@2=6`.
     #[arg(long, value_name = "NAME@FILM=VALUE,…", value_delimiter = ',')]
     pub known: Vec<String>,
     /// Formulations by name, or `all`.
@@ -47,7 +47,7 @@ pub struct FitArguments {
     /// Tolerance of motions.
     #[arg(long, default_value_t = 1e-9)]
     pub tolerance: f64,
-    /// Most steps of a motion: a search that goes where motions take more comes back.
+    /// Maximum number of steps of a motion; the search avoids numbers with which motions need more.
     #[arg(long, default_value_t = 2_000)]
     pub max_steps: usize,
     /// Folder for pictures, SVG: the films with the fitted motions, residuals, profiles of the law's numbers.

@@ -14,7 +14,7 @@ use super::range::{Range, range};
 pub struct IntegralsArguments {
     #[command(flatten)]
     pub scene: SceneArguments,
-    /// chetaev, or a formulation whose equations are looked at in the ansatz alone: vakonomic, kappa.
+    /// chetaev; for vakonomic and kappa only integrals in the ansatz are searched.
     #[arg(long, short, default_value = motion::CHETAEV.name, value_parser = motion::formulation)]
     pub formulation: &'static Formulation,
     /// Highest degree in the velocities; 0 for measures alone.
@@ -27,7 +27,7 @@ pub struct IntegralsArguments {
     #[arg(long, value_name = "NAME=FROM:TO:COUNT", value_parser = range,
           conflicts_with_all = ["certificates", "format", "names", "formulation"])]
     pub sweep: Vec<Range>,
-    /// Folder for certificates of what is proved or written down, a file for each, which others can check.
+    /// Folder for certificates that others can check, one file for each proved or printed answer.
     #[arg(long, value_name = "FOLDER", value_parser = program::folder())]
     pub certificates: Option<PathBuf>,
     /// Output format.

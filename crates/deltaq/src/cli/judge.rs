@@ -20,7 +20,7 @@ pub struct JudgeArguments {
     /// follows. The distances of the samples if left out.
     #[arg(long, value_name = "H,…", value_delimiter = ',')]
     pub steps: Vec<f64>,
-    /// No law fits that leaves a larger part of the forces than this.
+    /// Largest relative residual of a law that fits, in parts of the forces.
     #[arg(long, default_value_t = 0.01)]
     pub tolerance: f64,
     /// Output format.

@@ -14,7 +14,7 @@ use super::range::{Range, range};
 pub struct LinearizeArguments {
     #[command(flatten)]
     pub scene: SceneArguments,
-    /// chetaev, vakonomic, removed-constraint, kappa; in quasi-velocities where there are any.
+    /// chetaev, vakonomic, removed-constraint or kappa; in quasi-velocities if the constraints allow it.
     #[arg(long, short, default_value = motion::CHETAEV.name, value_parser = motion::formulation)]
     pub formulation: &'static Formulation,
     #[command(flatten)]
@@ -22,8 +22,8 @@ pub struct LinearizeArguments {
     /// Linearize about the motion at this time, steady or not: the eigenvalues are those of an instant.
     #[arg(long, value_name = "T", allow_negative_numbers = true, conflicts_with_all = ["sweep", "find"])]
     pub at: Option<f64>,
-    /// Coordinates whose eigenvalues are asked for, with their velocities and what is coupled with them both
-    /// ways; all if left out.
+    /// Coordinates of the eigenvalues, with their velocities and all states coupled with them in both
+    /// directions; all coordinates if left out.
     #[arg(long, value_name = "NAME,…", value_delimiter = ',')]
     pub free: Vec<String>,
     /// Equidistant values of a parameter, a start value or mu0_1, …, both ends included.
@@ -44,7 +44,7 @@ pub struct LinearizeArguments {
 /// Output formats of eigenvalues.
 #[derive(ValueEnum, Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TableFormat {
-    /// A table, one line per value; digits as far as they are sure.
+    /// A table, one line per value, with the digits that are certain.
     Table,
     /// One line per eigenvalue other than zero, all digits.
     Csv,

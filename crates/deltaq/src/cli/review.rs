@@ -20,7 +20,7 @@ pub struct ReviewArguments {
     /// A coordinate or parameter of the scene as a formula in their names: `--where "theta = q2 - pi/2"`.
     #[arg(long = "where", value_name = "NAME=FORMULA")]
     pub wheres: Vec<String>,
-    /// The formulation whose equations they are to be.
+    /// The formulation that they are compared with.
     #[arg(short, long, value_name = "NAME", default_value = "chetaev", value_parser = motion::formulation)]
     pub formulation: &'static Formulation,
     /// Relative errors of the numbers of a table.

@@ -45,13 +45,13 @@ pub struct NewArguments {
     /// File to write; to standard output if left out or `-`. What deltaq did not write is not replaced, nor
     /// is a scene.
     pub file: Option<PathBuf>,
-    /// Built-in scene to begin with, in the place of the template.
+    /// Built-in scene to begin with, instead of the template.
     #[arg(long, value_name = "SCENE")]
     pub from: Option<String>,
-    /// The JSON schema of scene files, for editors, in the place of the template.
+    /// The JSON schema of scene files, for editors, instead of the template.
     #[arg(long, conflicts_with_all = ["from", "bodies"])]
     pub schema: bool,
-    /// A robot from bodies, in the place of the template.
+    /// A robot from bodies, instead of the template.
     #[arg(long, conflicts_with = "from")]
     pub bodies: bool,
 }
@@ -64,7 +64,7 @@ pub struct CheckArguments {
     pub scenes: Vec<String>,
     #[command(flatten)]
     pub set: Overrides,
-    /// Take notes for faults: exit code 2.
+    /// Treat notes as faults: exit code 2.
     #[arg(long)]
     pub strict: bool,
 }

@@ -9,7 +9,7 @@ use mechanics::elimination::{Pivot, SparseMatrix};
 pub const POINTS: usize = 10;
 pub(crate) const NEAR: usize = 2;
 
-/// A pivot is no smaller than this part of the largest entry under it, …
+/// A pivot is not smaller than this part of the largest entry under it, …
 const THRESHOLD: f64 = 0.1;
 
 /// … and than this in the scaled matrix, whose rows have a largest entry of 1.

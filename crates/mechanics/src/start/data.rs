@@ -74,6 +74,6 @@ pub struct Completion {
     /// positions, and the time of a formula: exact where the state is rounded. Empty where there are numbers
     /// only; NaN for a formula that arithmetic has rounded.
     pub written: Vec<(Symbol, Expr)>,
-    /// Guesses of the others likewise, in parameters, time and positions.
+    /// Guesses of the others in the same way, in parameters, time and positions.
     pub guessed: Vec<(Symbol, Expr)>,
 }

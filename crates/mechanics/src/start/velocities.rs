@@ -32,7 +32,7 @@ pub(super) struct VelocityProgram {
 pub(super) struct Attempt {
     /// The first solution, or the nearest to one.
     pub(super) state: State,
-    /// Whether it is no solution.
+    /// Whether it is not a solution.
     pub(super) unsolved: bool,
     root: Root,
     /// Velocities that are left open.

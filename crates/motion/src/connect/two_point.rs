@@ -21,7 +21,7 @@ pub(super) struct TwoPoint {
     pub(super) aim: Aim,
     /// Coordinates with their values at the end.
     pub(super) goal: Vec<(usize, f64)>,
-    /// Others that follow, where constraints are integrable: what is found has to have them, too.
+    /// Others that follow, where constraints are integrable: what is found has to have them as well.
     pub(super) others: Vec<(usize, f64)>,
     /// Whether every constant gives the same motion, so that none is unknown.
     pub(super) every_constant: bool,

@@ -145,7 +145,7 @@ def _refuse_unless_a_rate(point: Any, velocity: Any, coordinates: list[Any], rat
 
 
 def text(thing: object) -> str | None:
-    """A formula in deltaq's language; None where `thing` is no expression of SymPy.
+    """A formula in deltaq's language; None where `thing` is not a SymPy expression.
 
     TypeError with what the language does not have, ValueError with a symbol that cannot be a name.
     """

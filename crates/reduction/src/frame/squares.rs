@@ -50,7 +50,7 @@ impl Known<'_> {
         self.g.evaluate(e, &self.values).unwrap_or(f64::NAN)
     }
 
-    /// Eliminates by diagonal pivots: constant ones, then least fill. `None` where one is no square, or an
+    /// Eliminates by diagonal pivots: constant ones, then least fill. `None` where one is not a square, or an
     /// entry gets long.
     pub(super) fn squares(&self, mass: &[Sparse], tie: Tie) -> Option<Vec<Square>> {
         let g = self.g;

@@ -237,7 +237,7 @@ impl<'a> Elimination<'a> {
     }
 
     /// Adds to a coefficient what is zero at the start if `is_zero`. What cancels exactly is taken out; what
-    /// is round-off at the start stays as 0 there, and so is no pivot.
+    /// is round-off at the start stays as 0 there, and so is not a pivot.
     fn add(&mut self, row: usize, column: usize, e: Expr, is_zero: bool) {
         let g = self.g;
         let old = self.matrix.rows()[row].get(&column).copied();

@@ -255,7 +255,7 @@ impl<'i> Builder<'i> {
                 }
                 Value::Mul(a, b) => self.product(sum, a, b, weight),
                 Value::Square(a) => self.product(sum, a, a, weight),
-                other => unreachable!("{other:?} is no sum of products"),
+                other => unreachable!("{other:?} is not a sum of products"),
             }
         }
     }

@@ -109,7 +109,7 @@ impl Instruction {
 
 impl Recorded {
     /// `Σ_r |∂Y/∂r| |r|` for each combination `Y` of outputs (their indices with factors), with these sizes
-    /// of the inputs in the place of their magnitudes. NaN or infinite where the evaluation is singular.
+    /// of the inputs instead of their magnitudes. NaN or infinite where the evaluation is singular.
     ///
     /// ```
     /// use std::collections::HashMap;

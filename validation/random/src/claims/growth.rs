@@ -11,7 +11,7 @@ use crate::{Case, Findings};
 const EXPONENT: f64 = 1e-2;
 
 /// The doubt in a figure, in its changes where the fit has one term less: a change tells the size of what is
-/// left out, and is no bound. Exponents are whole numbers: one that is wrong is off by more.
+/// left out, and is not a bound. Exponents are whole numbers: one that is wrong is off by more.
 const CHANGES: f64 = 3.0;
 
 /// An exponent that is less certain than this is neither judged nor counted, nor is a coefficient with that

@@ -11,7 +11,7 @@ use crate::{Case, Kind};
 /// The first `N`; each further one is ten times the one before.
 const STRENGTH: f64 = 1e2;
 
-/// The first `κ` in 1/s, likewise: large ones make the equations stiff.
+/// The first `κ` in 1/s, in the same way: large ones make the equations stiff.
 const KAPPA: f64 = 1e1;
 
 /// Distances measured: `a/N + b/N² + …` shrinks tenfold in the end, and how soon depends on `b/a`.

@@ -75,7 +75,7 @@ impl Builder<'_> {
                 let a = self.rate(a);
                 self.push(Value::Sub(a, b))
             }
-            other => unreachable!("{other:?} is no linear combination"),
+            other => unreachable!("{other:?} is not a linear combination"),
         }
     }
 
