@@ -60,6 +60,7 @@
 //! [`Ending`], and the part up to its end is valid. An error estimate that cannot be trusted carries a
 //! [`Doubt`].
 
+mod band;
 mod beyond;
 mod by_name;
 mod carried;
@@ -75,14 +76,11 @@ mod costates;
 mod differences;
 mod direction;
 mod discrete_run;
-mod disturbed;
-mod doubt;
 mod ending;
 mod ensemble;
 mod equations_text;
 mod equidistant;
 mod error;
-mod error_estimate;
 mod first_trace;
 mod fit;
 mod fits;
@@ -92,9 +90,7 @@ mod grid;
 mod growth;
 mod integrability;
 mod kinks;
-mod last_digits;
 mod later_chart;
-mod lost_digits;
 mod lost_rank;
 mod membership;
 mod method;
@@ -104,14 +100,13 @@ mod motion;
 #[doc(hidden)]
 pub mod parts;
 mod prepared;
-mod round_off;
 mod runs;
 mod sensitivities;
 mod sensitivity_start;
 mod settings;
 mod single_run;
-mod sizes;
 mod start_values;
+mod state_scales;
 mod steps;
 mod sweep;
 mod table;
@@ -120,9 +115,12 @@ mod trial;
 mod variables;
 mod varying;
 mod wanted;
-mod watch;
 pub mod words;
 
+pub use band::estimate_failure::Doubt;
+pub use band::invariant_monitor::Breach;
+pub use band::limits::{CERTAINTY, SAME_ESTIMATE, TRUSTED};
+pub use band::{ErrorEstimate, Known, NoInformation, error_estimate, error_estimates};
 pub use beyond::{Beyond, beyond_contacts};
 pub use decision::{Finding, PlainScene, Section};
 pub use symbolic::{Broken, Language, caught};
@@ -139,7 +137,6 @@ pub use connect::{Aim, CONNECT_STARTS, ConjugateTime, Connection, Connections, S
 pub use constants::{constant_names, prepare};
 pub use contradiction::{Contradicted, Contradiction, holds_beside_numbers};
 pub use costates::{costate_names, given_costates, is_costate};
-pub use doubt::Doubt;
 pub use ending::Ending;
 pub use ensemble::{
     Ensemble, EnsembleMember, EnsembleOptions, EnsembleStart, MemberMotion, MemberRun, number_of_threads, over_threads,
@@ -147,12 +144,11 @@ pub use ensemble::{
 pub use equations_text::{EquationStyle, equations_text, shared_text, system_text};
 pub use equidistant::{equidistant, equidistant_value};
 pub use error::SolveError;
-pub use error_estimate::{ErrorEstimate, TRUSTED, error_estimate, error_estimates};
 pub use first_trace::{FirstTrace, first_trace};
 pub use fit::best_fit;
 pub use fits::{Fit, Fits, FittedMotion};
 pub use form::{ChosenForm, FORM_WORDS, Form, derive_in_form, formulation_in};
-pub use gap::{Gap, GapPoint, SAME_ESTIMATE, Sampling, THRESHOLDS, Verdict, compare_motions, compare_motions_by};
+pub use gap::{Gap, GapPoint, Sampling, THRESHOLDS, Verdict, compare_motions, compare_motions_by};
 pub use growth::{Growth, LeadingTerm, growth};
 pub use integrability::{integrability, integrals_by_ranks};
 pub use membership::{Answer, Membership, Pairing, certificate, costates_of, membership, multipliers_of};
@@ -163,7 +159,7 @@ pub use motion::{FormReport, Motion, Seconds, solve, solve_choice, solve_from};
 pub use prepared::Prepared;
 pub use runs::{Decided, Pair, Run};
 pub use sensitivities::{Sensitivities, sensitivities};
-pub use settings::{CERTAINTY, Setting, Settings, TIGHTER, setting};
+pub use settings::{Setting, Settings, TIGHTER, setting};
 pub use single_run::SingleRun;
 pub use steps::{STEP_LIMIT, Stepping, Steps, discrete_of, solve_by_steps};
 pub use sweep::{Sweep, SweepPoint};
@@ -172,4 +168,3 @@ pub use table::{
     REMOVED_CONSTRAINT, UnknownFormulation, VAKONOMIC, VAKONOMIC_COSTATE, formulation,
 };
 pub use varying::Varying;
-pub use watch::Breach;

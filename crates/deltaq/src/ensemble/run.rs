@@ -11,12 +11,13 @@ use symbolic::caught;
 
 use super::threads::{Take, shared};
 use super::{Ensemble, EnsembleMember};
-use crate::disturbed::disturbed_by_constants;
-use crate::last_digits::{UNITS, move_digits};
+use crate::band::limits::UNITS;
+use crate::band::perturbed_rates::perturbed_by_constants;
+use crate::band::ulp_perturbation::move_digits;
 use crate::lost_rank::column_factors;
 use crate::metric::subtract;
 use crate::single_run::SingleRun;
-use crate::sizes::sizes;
+use crate::state_scales::sizes;
 use crate::{Ending, Metric, Prepared, SolveError, TIGHTER};
 
 /// How an ensemble is run.
@@ -79,7 +80,7 @@ impl Ensemble {
     }
 
     /// The looser runs of `members` once more, alone, with this round-off in their rates.
-    pub(super) fn run_disturbed(
+    pub(super) fn run_perturbed(
         &self,
         members: Vec<(&EnsembleMember, Vec<f64>)>,
         times: &[f64],
@@ -87,19 +88,19 @@ impl Ensemble {
     ) -> Result<Vec<Outcome>, SolveError> {
         let Prepared { t, start, constants, .. } = self.by_name.varying().prepared();
         let parameters = constants.len() - self.by_name.varying().constants().len();
-        let equations = disturbed_by_constants(self.equations(), parameters);
-        let with = |constants: &[f64], disturbance: &[f64]| {
+        let equations = perturbed_by_constants(self.equations(), parameters);
+        let with = |constants: &[f64], offsets: &[f64]| {
             let (own, varied) = constants.split_at(constants.len() - parameters);
-            [own, disturbance, varied].concat()
+            [own, offsets, varied].concat()
         };
         let point = [&[*t], &start[..], &with(constants, &vec![0.0; 2 * start.len()])].concat();
         let plan = Plan::choose(&equations, Some(&point))?;
         let compiled = Compiled::with_plan(&equations, &plan)?.with_series(&equations, &plan)?;
-        let disturbed = |(member, disturbance): (&EnsembleMember, Vec<f64>)| EnsembleMember {
-            constants: with(&member.constants, &disturbance),
+        let perturbed = |(member, offsets): (&EnsembleMember, Vec<f64>)| EnsembleMember {
+            constants: with(&member.constants, &offsets),
             ..member.clone()
         };
-        let members: Vec<EnsembleMember> = members.into_iter().map(disturbed).collect();
+        let members: Vec<EnsembleMember> = members.into_iter().map(perturbed).collect();
         let why = String::from("round-off of its rates is put into them");
         let by = (&compiled, Err(&why));
         Ok(self.run_by(by, &members, times, self.settings.tolerance, Origin::LastDigit, threads))
