@@ -2,11 +2,9 @@
 
 use std::collections::BTreeMap;
 
-use deltaq::{
-    CHETAEV, Comparison, Ending, Finding, Fit, Fits, FittedMotion, Form, Membership, Metric, Settings, SolveError,
-    VAKONOMIC, Verdict, choices, compare_unfitted, solve_choice,
-};
+use comparison::{Comparison, Finding, Fit, Fits, FittedMotion, Membership, Verdict, compare_unfitted};
 use integrate::{Method, Projection};
+use motion::{CHETAEV, Ending, Form, Metric, Settings, SolveError, VAKONOMIC, choices, solve_choice};
 use pages::{membership::value as membership_value, scene_page, summary, verdicts};
 use review::substitution::SUBSTITUTION;
 use serde_json::{Value, json};
@@ -54,7 +52,7 @@ fn the_tables_of_a_scene_say_what_its_rows_are() {
     let gap = sledge.pairs[0].gap.clone();
     let fitted = FittedMotion {
         constants: vec![("mu0_1".into(), 0.25)],
-        gap: deltaq::Gap { largest: 0.125, ..gap },
+        gap: comparison::Gap { largest: 0.125, ..gap },
         starts: 7,
         by_half: 0.126,
     };
@@ -163,7 +161,7 @@ fn the_summary_and_the_verdicts_say_what_the_rows_are() {
     says(cells[5], Some(gap.largest));
     // pairs that are not shown are counted by their verdicts
     let principal = |i: usize| [CHETAEV, VAKONOMIC].contains(&sledge.runs[i].choice.formulation);
-    let others = deltaq::words::rows(&sledge).filter(|p| !principal(p.first));
+    let others = comparison::words::rows(&sledge).filter(|p| !principal(p.first));
     let mut counts = BTreeMap::new();
     others.for_each(|p| *counts.entry(p.gap.verdict.word()).or_insert(0) += 1);
     let counted = ["different", "undecided"].map(|word| {
@@ -211,7 +209,7 @@ fn the_overview_counts_its_own_table() {
     let control = format!(
         ": flagged on {}. It is called right on {}, with",
         named("flagged").len(),
-        deltaq::words::enumerate(&named("right here"))
+        comparison::words::enumerate(&named("right here"))
     );
     assert!(page.contains(&control), "{control}\n{page}");
     for (row, scene) in rows.iter().zip(&scenes) {
@@ -258,8 +256,11 @@ fn the_overview_names_the_removals_that_lack_the_vakonomic_motion() {
         let all: Vec<(String, bool)> = scenes.iter().flat_map(asked).collect();
         let lacks: Vec<String> = all.iter().filter(|(_, has)| !has).map(|(name, _)| name.clone()).collect();
         let (has, count) = (all.len() - lacks.len(), all.len());
-        let not =
-            if lacks.is_empty() { String::new() } else { format!(" (not on {})", deltaq::words::enumerate(&lacks)) };
+        let not = if lacks.is_empty() {
+            String::new()
+        } else {
+            format!(" (not on {})", comparison::words::enumerate(&lacks))
+        };
         let said = format!("all costates, {has} of {count} removals have the vakonomic motion{not}. ");
         assert!(page.contains(&said), "{said}\n{page}");
         (lacks, said)

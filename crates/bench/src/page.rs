@@ -8,7 +8,7 @@ use integrate::Method;
 use serde_json::{Value, json};
 
 use crate::{Bench, Entry, Fastest, MEMBERS, Measurements, Series, TARGETS, Throughput, Time};
-use deltaq::words::{enumerate, short};
+use comparison::words::{enumerate, short};
 use pages::Table;
 use pages::markdown::{folded, inert, link};
 use picture::{Axis, Curve, Panel, Picture, PictureError, Style};

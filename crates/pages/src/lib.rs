@@ -16,8 +16,8 @@ mod tables;
 mod verdicts;
 
 pub use bodies::bodies;
-pub use deltaq::words::Headline;
-pub use deltaq::words::sentence as membership_sentence;
+pub use comparison::words::Headline;
+pub use comparison::words::sentence as membership_sentence;
 pub use fill::fill;
 pub use linear_page::{pairs, sweep_picture, sweep_text};
 pub use pictures::pictures;

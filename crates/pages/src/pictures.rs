@@ -3,9 +3,10 @@
 use std::path::PathBuf;
 
 use anyhow::Result;
-use deltaq::{CHETAEV, Comparison, PRESCRIBED, REMOVED_CONSTRAINT, Run, VAKONOMIC, Verdict};
+use comparison::{Comparison, Run, Verdict};
 use equations::Outputs;
 use mechanics::Observables;
+use motion::{CHETAEV, PRESCRIBED, REMOVED_CONSTRAINT, VAKONOMIC};
 use scene::Scene;
 
 use crate::family::family;

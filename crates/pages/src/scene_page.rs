@@ -3,15 +3,16 @@
 use std::fmt::Write;
 
 use anyhow::{Context, Result};
-use deltaq::{CHETAEV, Comparison, EquationStyle, FirstTrace, derive_at, equations_text};
+use comparison::{Comparison, FirstTrace};
+use motion::{CHETAEV, EquationStyle, derive_at, equations_text};
 
 use crate::bodies::bodies;
 use crate::markdown::{folded, image, inert};
 use crate::pictures::pictures;
 use crate::table::Table;
 use crate::{membership, tables};
-use deltaq::words::Headline;
-use deltaq::words::{precise, short};
+use comparison::words::Headline;
+use comparison::words::{precise, short};
 use program::File;
 use review::substitution::SUBSTITUTION;
 
@@ -110,7 +111,7 @@ fn first_trace(comparison: &mut Comparison) -> Result<String> {
     let Some(run) = comparison.run(CHETAEV) else { return Ok(String::new()) };
     let Comparison { scene, runs, .. } = comparison;
     let Ok(motion) = &mut runs[run].outcome else { return Ok(String::new()) };
-    let Some(FirstTrace { slope, acceleration }) = deltaq::first_trace(scene, motion, TRACED)? else {
+    let Some(FirstTrace { slope, acceleration }) = comparison::first_trace(scene, motion, TRACED)? else {
         return Ok(String::new());
     };
     let size = match slope / acceleration {

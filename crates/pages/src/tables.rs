@@ -1,10 +1,11 @@
 //! The tables of a scene page.
 
 use anyhow::Result;
-use deltaq::{ChartChange, Comparison, Ending, Pair, Verdict};
+use comparison::{Comparison, Pair, Verdict};
+use motion::{ChartChange, Ending};
 
 use crate::table::Table;
-use deltaq::words::{by_half, enumerate, or_dash, precise, reached, short, unseen};
+use comparison::words::{by_half, enumerate, or_dash, precise, reached, short, unseen};
 
 /// Times at which invariants and residuals are sampled.
 const SAMPLES: usize = 400;
@@ -13,7 +14,7 @@ const SAMPLES: usize = 400;
 const BEFORE_A_STOP: f64 = 0.95;
 
 /// The word on a pair, with the time from which it holds.
-pub fn verdict_words(gap: &deltaq::Gap) -> String {
+pub fn verdict_words(gap: &comparison::Gap) -> String {
     match &gap.verdict {
         Verdict::Same => "same".into(),
         Verdict::Different => match gap.passes[0] {
@@ -32,7 +33,7 @@ pub(crate) fn runs(comparison: &Comparison) -> Table {
         match &run.outcome {
             Err(error) => table.row(&[&run.choice.label, &"", &format!("refused: {error}"), &"", &"", &""]),
             Ok(motion) => {
-                let names = deltaq::constant_names(&motion.equations);
+                let names = motion::constant_names(&motion.equations);
                 let symbol = |name: &String| {
                     let g = &motion.equations.graph;
                     g.find_symbol(name).map_or(name.clone(), |s| format!("${}$", g.latex_symbol(s)))
@@ -146,7 +147,7 @@ pub(crate) fn fits(comparison: &Comparison) -> Table {
 
 /// Drift of what should be constant, and how far the constraint was left.
 pub(crate) fn invariants(comparison: &mut Comparison) -> Result<Table> {
-    let mut metric = deltaq::Metric::new(&comparison.scene.system)?;
+    let mut metric = motion::Metric::new(&comparison.scene.system)?;
     let columns = ["motion", "largest constraint residual", "constant by theory: largest deviation"];
     let mut table = Table::new(columns.into_iter().chain(["largest projection"]));
     for run in &mut comparison.runs {

@@ -1,12 +1,12 @@
 //! The page about the benchmark bicycle.
 
 use anyhow::{Context, Result, bail};
-use deltaq::{CHETAEV, Choice, default_constants};
 use linear::{Eigenvalue, Sweep, SweepPoint, sweep};
+use motion::{CHETAEV, Choice, default_constants};
 use nalgebra::Complex;
 use serde_json::{Value, json};
 
-use deltaq::words::short;
+use comparison::words::short;
 use pages::{Table, fill};
 use pages::{pairs, sweep_picture};
 use program::File;
@@ -124,7 +124,7 @@ fn bicycle((from, to, count): (f64, f64, usize)) -> Result<Sweep> {
         &scene,
         &choice,
         &["lean", "steer"],
-        ("v", &deltaq::equidistant(from, to, count).collect::<Vec<_>>()),
+        ("v", &motion::equidistant(from, to, count).collect::<Vec<_>>()),
         false,
     )?)
 }

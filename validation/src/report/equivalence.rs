@@ -4,15 +4,16 @@ use std::collections::BTreeMap;
 use std::fmt::{self, Write};
 
 use anyhow::{Context, Result, ensure};
-use deltaq::{Answer, Contradicted, Finding, Membership, Pairing, Section, VAKONOMIC, choices, membership};
+use comparison::{Answer, Contradicted, Finding, Membership, Pairing, Section, membership};
 use mechanics::Removal;
+use motion::{VAKONOMIC, choices};
 use program::parallel;
 use scene::{Number, Scene};
 use serde::Deserialize;
 use serde_json::Value;
 
 use catalogue::CLASSICS;
-use deltaq::words::short;
+use comparison::words::short;
 use pages::Table;
 use program::File;
 

@@ -5,14 +5,14 @@ use std::collections::{BTreeMap, HashMap};
 use std::fmt::Write;
 
 use anyhow::{Context, Result, ensure};
-use deltaq::{CHETAEV, Settings, choices, formulation, solve_choice};
+use motion::{CHETAEV, Settings, choices, formulation, solve_choice};
 use program::parallel;
 use serde::de::Error;
 use serde::{Deserialize, Deserializer};
 use serde_json::Value;
 
 use crate::report::equivalence::{Asked, Found, Written};
-use deltaq::words::short;
+use comparison::words::short;
 use pages::Table;
 use program::File;
 

@@ -1,11 +1,12 @@
 //! The first page of the reports.
 
-use deltaq::{Answer, CHETAEV, Comparison, Fit, Membership, REMOVED_CONSTRAINT, VAKONOMIC, Verdict};
+use comparison::{Answer, Comparison, Fit, Membership, Verdict};
 use equations::Formulation;
 use mechanics::Integrability;
+use motion::{CHETAEV, REMOVED_CONSTRAINT, VAKONOMIC};
 
 use crate::report::control::{self, Control};
-use deltaq::words::{enumerate, reached, short};
+use comparison::words::{enumerate, reached, short};
 use pages::{Table, fill, membership};
 
 /// One page: verdict matrix, findings, further pages (`further`: a line and a path), how to regenerate.

@@ -1,17 +1,17 @@
 //! The page about realizations.
 
 use anyhow::{Context, Result};
-use deltaq::{
+use equations::Formulation;
+use mechanics::ConstantsRule;
+use motion::{
     CHETAEV, Metric, Motion, REMOVED_CONSTRAINT, Setting, Settings, SolveError, VAKONOMIC, choices, setting, solve,
     solve_choice,
 };
-use equations::Formulation;
-use mechanics::ConstantsRule;
 use scene::Scene;
 use serde_json::{Map, Value, json};
 
 use super::law_rows;
-use deltaq::words::short;
+use comparison::words::short;
 use pages::{Table, fill};
 use picture::{Axis, Curve, Picture, Style};
 use program::File;
@@ -223,7 +223,7 @@ fn of_scene(name: &str, duration: f64) -> Result<Vec<Approach>> {
     if scene.multipliers.iter().all(|mu| *mu == 0.0) {
         scene.multipliers = (0..scene.multipliers.len()).map(|i| MULTIPLIERS[i % 2]).collect();
     }
-    let settings = deltaq::Settings::default();
+    let settings = motion::Settings::default();
     let choice =
         |own: &Formulation| choices(&scene).into_iter().find(|c| c.formulation == own).context("no such formulation");
     let mut metric = Metric::new(&scene.system)?;
@@ -267,7 +267,7 @@ fn approaches(
     let system = with_kappa(setting.system, KAPPA);
     let (rule, settings) = (ConstantsRule::Given(multipliers.to_vec()), Settings::default());
     let mut between =
-        solve(Setting { system: &system, ..setting }, equations(&system, deltaq::KAPPA, None)?, &rule, &settings)?;
+        solve(Setting { system: &system, ..setting }, equations(&system, motion::KAPPA, None)?, &rule, &settings)?;
     Ok(vec![
         approach(FRICTION, Style::Chetaev, chetaev, metric, &plain(Realization::Friction))?,
         approach(ADDED_MASS, Style::Vakonomic, vakonomic, metric, &plain(Realization::AddedMass))?,

@@ -1,7 +1,8 @@
 //! The section of a scene page that says what the referees found.
 
 use anyhow::Result;
-use deltaq::{CHETAEV, Comparison, Metric};
+use comparison::Comparison;
+use motion::{CHETAEV, Metric};
 
 use crate::casadi_job::{Outcome, Row, Word, referee_table};
 use referees::maggi::{Maggi, Motion};

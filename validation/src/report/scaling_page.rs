@@ -6,8 +6,8 @@ use anyhow::Result;
 
 use crate::scaling::{FROM, Line, Point};
 use bench::Exponent;
-use deltaq::FORMS;
-use deltaq::words::{or_dash, short};
+use comparison::words::{or_dash, short};
+use motion::FORMS;
 use pages::Table;
 use picture::{Axis, Curve, Picture, Style};
 use program::File;

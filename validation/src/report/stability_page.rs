@@ -12,7 +12,7 @@ use serde_json::{Map, Value, json};
 use crate::stability::{
     Answering, CASES, Case, Cell, LONG_RUNS, LongRun, MAX_STEPS, MILLION, Texts, Verdict, long_runs, run, tolerance,
 };
-use deltaq::words::short;
+use comparison::words::short;
 use pages::markdown::folded;
 use pages::{Table, fill};
 use picture::{Axis, Curve, Picture, Style};
