@@ -95,7 +95,7 @@ pub use boundary::{BoundaryError, Residuals, ShootOptions, Shot, fit, shoot};
 pub use dense::DenseOutput;
 pub use error::{CallError, DenseError};
 pub use interrupt::Interrupt;
-pub use lanes::{LANES, Lane, LaneProblem, LaneRun, LaneStart, Left, integrate_lanes};
+pub use lanes::{LANES, Lane, LaneProblem, LaneRun, LaneStart, Left, Shortest, integrate_lanes};
 pub use options::{Dense, LinkedMethod, Method, Options, Projection};
 pub use problem::{EvaluationError, Gauge, Problem, Start};
 pub use rank::{may_lose as may_lose_rank, orthonormal};

@@ -56,7 +56,7 @@ pub use known::{Answer, Known, NoInformation, ask};
 pub use limits::{ALONE, CERTAINTY, SAME_ESTIMATE, TRUSTED};
 pub(crate) use runs::TwoRuns;
 
-use self::limits::{ROUND_OFF, ROUNDED, TRUSTED};
+use self::limits::{ROUND_OFF, ROUNDED};
 use crate::metric::{larger, subtract};
 use crate::{Metric, SolveError};
 

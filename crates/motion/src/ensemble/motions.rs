@@ -70,6 +70,7 @@ impl Ensemble {
         let joined = |(run, read): (Outcome, Option<Result<Reading, SolveError>>)| {
             let mut run = run?;
             let Reading { outputs, estimate, doubt, breaches, .. } = read.unwrap_or_else(|| Ok(Reading::default()))?;
+            run.shortest = Vec::new();
             for values in [&mut run.states, &mut run.differences, &mut run.unknowns] {
                 let mut asked = instants.iter().map(|(_, asked)| *asked);
                 values.retain(|_| asked.next().unwrap_or(true));

@@ -123,6 +123,16 @@ impl Runs<'_> {
         Some(found)
     }
 
+    /// Just before a singularity all terms are large.
+    fn is_judged(&self, t: f64) -> bool {
+        let EnsembleMember { t: start, end, .. } = *self.member;
+        let length = match self.run.ending {
+            Ending::Completed => (end - start).abs(),
+            Ending::Stopped { t, .. } => BEFORE_THE_END * (t - start).abs(),
+        };
+        (t - start).abs() <= length
+    }
+
     fn not_stored(&self, t: f64) -> DenseError {
         DenseError::NotStored { t, start: self.member.t, end: self.member.end }
     }
@@ -152,7 +162,13 @@ impl TwoRuns for Runs<'_> {
                 self.member.set(self.compiled);
                 Some(self.member.y.clone())
             }
-            None => None,
+            None => {
+                let (_, y) = self.run.shortest.iter().find(|(end, _)| *end == t)?;
+                let nearest = |i: &usize| (self.instants[*i].0 - t).abs();
+                let known = (0..self.run.unknowns.len()).min_by(|a, b| nearest(a).total_cmp(&nearest(b)));
+                known.into_iter().for_each(|i| self.compiled.set_guess(&self.run.unknowns[i]));
+                Some(y.clone())
+            }
         }
     }
     fn looser_states(&mut self, t: f64) -> Option<Vec<f64>> {
@@ -173,18 +189,13 @@ impl TwoRuns for Runs<'_> {
         self.states.to_vec()
     }
     fn equidistant(&self, _: usize) -> Vec<f64> {
-        let EnsembleMember { t: start, end, .. } = *self.member;
-        let reached = match self.run.ending {
-            Ending::Completed => end,
-            Ending::Stopped { t, .. } => start + BEFORE_THE_END * (t - start),
-        };
-        let within = self.instants.iter().take_while(|(t, _)| (t - start).abs() <= (reached - start).abs());
-        let count = within.count().min(self.run.states.len());
+        let within = self.instants.iter().take_while(|(t, _)| self.is_judged(*t));
+        let (start, count) = (self.member.t, within.count().min(self.run.states.len()));
         let mut places: Vec<usize> = (1..=SUMS).map(|k| k * count / SUMS).filter(|&i| i > 0).collect();
         places.dedup();
         std::iter::once(start).chain(places.into_iter().map(|i| self.instants[i - 1].0)).collect()
     }
     fn ends_of_steps(&self) -> Vec<f64> {
-        Vec::new()
+        self.run.shortest.iter().map(|(t, _)| *t).filter(|t| self.is_judged(*t)).collect()
     }
 }

@@ -5,7 +5,7 @@ use std::sync::{Mutex, PoisonError};
 
 use equations::{Compiled, Equations, LaneEquations, Plan};
 use integrate::{
-    Interrupt, LANES, Lane, LaneProblem, LaneStart, Options, ProjectionReport, Start, Status, StopCause, Work,
+    Interrupt, LANES, Lane, LaneProblem, LaneStart, Options, ProjectionReport, Shortest, Start, Status, StopCause, Work,
 };
 use symbolic::caught;
 
@@ -55,6 +55,8 @@ pub struct MemberRun {
     pub alone: Option<String>,
     /// Unknowns of the instant near these times, where its equations have several roots; otherwise empty.
     pub(super) unknowns: Vec<Vec<f64>>,
+    /// Ends of the shortest steps of the kept run, and the states there.
+    pub(super) shortest: Vec<(f64, Vec<f64>)>,
     /// Whether it stopped where its equations may be no good, and others might be.
     pub(super) left_chart: bool,
 }
@@ -247,8 +249,8 @@ impl Task<'_> {
             match outcome {
                 Ok(run) => {
                     let states = run.states.chunks_exact(n).map(<[f64]>::to_vec).collect();
-                    let (work, projection) = (run.work, run.projection);
-                    done.push((index, Ok(MemberRun { states, work, projection, ..MemberRun::default() })));
+                    let (work, projection, shortest) = (run.work, run.projection, run.shortest.ends());
+                    done.push((index, Ok(MemberRun { states, work, projection, shortest, ..MemberRun::default() })));
                 }
                 Err(why) => self.leave(vec![index], &why.to_string()),
             }
@@ -324,6 +326,15 @@ impl Task<'_> {
             matches!(cause, Interrupted | Memory { .. } | TimeLimit { .. } | TooManySteps { .. })
         };
         let stopped = matches!(&solution.status, Status::Stopped { cause, .. } if !of_limits(cause));
+        let mut shortest = Shortest::default();
+        for step in solution.dense.step_times().windows(2) {
+            let state = || {
+                let mut y = vec![0.0; member.y.len()];
+                solution.dense.evaluate(step[1], &mut y);
+                y
+            };
+            shortest.add((step[1] - step[0]).abs(), step[1], std::iter::once_with(state).flatten());
+        }
         let words = self.words.lock().unwrap_or_else(PoisonError::into_inner);
         Ok(MemberRun {
             states: states.collect(),
@@ -331,6 +342,7 @@ impl Task<'_> {
             ending: Ending::of(&words, compiled, solution, &[]),
             work: solution.work,
             projection: solution.projection,
+            shortest: shortest.ends(),
             alone: Some(why),
             left_chart: stopped && compiled.has_chart(),
             ..MemberRun::default()
