@@ -24,7 +24,7 @@ const TIMES: [f64; 3] = [1e-6, 1.0, 1e6];
 const ONE_IN: f64 = 4.0;
 /// Factor by which the error estimates of two results may be wrong, and allowed relative error of numbers.
 const FACTOR: f64 = 100.0;
-const ROUND_OFF: f64 = 1e-11;
+const ALLOWED: f64 = 1e-11;
 /// Other words to first order, as a part of all: scales of states not coupled both ways are not known.
 const KNOWN: f64 = 0.01;
 
@@ -185,7 +185,7 @@ fn differing(question: Question, here: &(String, Vec<Number>), there: &(String, 
     }
     let apart = |a: &Number, b: &Number| {
         let apart = (a.value[0] - b.value[0]).hypot(a.value[1] - b.value[1]);
-        let limit = FACTOR * (a.error + b.error) + ROUND_OFF * a.size;
+        let limit = FACTOR * (a.error + b.error) + ALLOWED * a.size;
         // NaN is apart
         if apart <= limit { 0.0 } else { apart / limit }
     };

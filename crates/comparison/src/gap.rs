@@ -1,23 +1,9 @@
 //! Two motions of one system: are they the same, from when not, by how much.
 
-use std::cmp::Ordering;
-
 use integrate::find_root;
 
-use motion::relative_to;
-use motion::{CERTAINTY, Ending, Motion, SolveError};
-use motion::{Metric, larger, subtract};
-
-/// The difference of one coordinate has to be this many times the limit that *same* asks for to count as a
-/// difference by itself: the errors of single coordinates are estimated less well than the length of all.
-const ALONE: f64 = 10.0;
-
-/// Relative error estimate that both motions have to stay under to be called the same.
-pub const SAME_ESTIMATE: f64 = 1e-8;
-
-/// Round-off of a run relative to its size: what no error estimate goes under, as both runs of a motion share
-/// it.
-const ROUND_OFF: f64 = 1e-14;
+use motion::band::{ALONE, Answer, Band, CERTAINTY, Known, NoInformation, SAME_ESTIMATE, ask};
+use motion::{Ending, Metric, Motion, SolveError, larger, subtract};
 
 /// Gaps whose first times are reported.
 pub const THRESHOLDS: [f64; 3] = [1e-6, 1e-3, 1e-1];
@@ -146,18 +132,13 @@ pub fn compare_motions_by(
     sampling: &Sampling,
 ) -> Result<Gap, SolveError> {
     let (t0, end) = sampling.range(first, second);
-    let mut points = Vec::new();
-    let mut coordinates: Vec<Vec<Difference>> = Vec::new();
-    let (mut estimates, mut scale) = ([0.0_f64; 2], 0.0_f64);
-    let origin = first.at(t0)?;
-    let n = origin.coordinates.len();
-    let mut largest_length = 0.0_f64;
-    let (mut own, mut sizes, mut imprecise, mut indefinite) = (vec![0.0_f64; n], vec![0.0_f64; n], None, false);
-    let mut read = t0;
-    let shared = [first.terms_of_coordinates_along(), second.terms_of_coordinates_along()];
+    let origin = first.at(t0)?.coordinates;
+    let n = origin.len();
+    let mut bands = [t0, sampling.clock(t0)].map(|t| Band::from(t, &origin));
+    let (mut samples, mut read, mut indefinite): (Vec<Sample>, _, _) = (Vec::new(), t0, false);
     for t in sample_times(t0, end, sampling.instants) {
-        let readings = (first.at_with_difference(t), second.at_with_difference(sampling.clock(t)));
-        let ((one, first_error), (two, second_error)) = match readings {
+        let other = sampling.clock(t);
+        let ((one, looser), (two, other_looser)) = match (first.at_in_both_runs(t), second.at_in_both_runs(other)) {
             (Ok(one), Ok(two)) => (one, two),
             (one, two) => {
                 one.err().iter().for_each(|error| first.end_at(read, error));
@@ -166,62 +147,39 @@ pub fn compare_motions_by(
             }
         };
         read = t;
-        let (q, v) = (&one.coordinates, &one.velocities);
-        let difference = subtract(q, &two.coordinates);
-        for (estimate, error) in estimates.iter_mut().zip([&first_error, &second_error]) {
-            *estimate = larger(*estimate, metric.length(t, q, v, error));
-        }
-        scale = larger(scale, metric.distance(t, q, v, &origin.coordinates));
-        largest_length = largest_length.max(metric.length(t, q, v, q)).max(metric.length(t, q, v, v) * (t - t0).abs());
-        let doubted = [(&*first, t), (&*second, sampling.clock(t))].into_iter().any(|(motion, t)| motion.is_doubted(t));
-        let limit = |estimate: f64, size: f64, added: f64| {
-            let round_off = (ROUND_OFF * size).max(f64::EPSILON * added);
-            if doubted { f64::INFINITY } else { CERTAINTY * (estimate + round_off) }
-        };
-        for i in 0..n {
-            own[i] = larger(own[i], first_error[i].abs() + second_error[i].abs());
-            sizes[i] = sizes[i].max(q[i].abs()).max((v[i] * (t - t0)).abs());
-        }
-        let added = |i: usize| up_to(&shared[0], i, t).max(up_to(&shared[1], i, sampling.clock(t)));
-        let added: Vec<f64> = (0..n).map(added).collect();
-        let (inertia, negative) = metric.inertia(t, q, v);
-        indefinite |= negative;
-        let round_off_sizes = metric.round_off_sizes(&inertia, &sizes, largest_length);
-        let size = |i: usize| round_off_sizes[i];
-        imprecise = (0..n)
-            // what neither moves nor has an error is known as it is
-            .map(|i| (if own[i] == 0.0 { 0.0 } else { own[i] / size(i) }, i))
-            .filter(|(part, _)| part.is_nan() || *part >= SAME_ESTIMATE)
-            .max_by(by_part);
-        let of_coordinate = |i: usize| Difference { by: difference[i].abs(), limit: limit(own[i], size(i), added[i]) };
-        coordinates.push((0..n).map(of_coordinate).collect());
-        let limit = limit(estimates[0] + estimates[1], largest_length, metric.length(t, q, v, &added));
-        points.push(GapPoint { t, gap: metric.length(t, q, v, &difference), limit, certain: false });
+        let place = (t, &one.coordinates[..], &one.velocities[..]);
+        bands[0].add(metric, place, t, [&one, &looser]);
+        bands[1].add(metric, place, other, [&two, &other_looser]);
+        indefinite |= metric.inertia(t, place.1, place.2).1;
+        let doubted = first.is_doubted(t) || second.is_doubted(other);
+        let difference = subtract(&one.coordinates, &two.coordinates);
+        let length = metric.length(t, place.1, place.2, &difference);
+        let gap = Difference::of(length, sum(bands.each_ref().map(Band::way)), doubted);
+        let [one, two] = bands.each_ref().map(|band| band.coordinates(metric));
+        let each = one.into_iter().zip(two).zip(&difference);
+        let coordinates = each.map(|((one, two), by)| Difference::of(by.abs(), sum([one, two]), doubted)).collect();
+        samples.push(Sample { t, gap, coordinates });
     }
     if sampling.rate < 0.0 {
         // the second motion started where the first one ended, with the error it had there
-        let largest = points.iter().fold(0.0_f64, |a, p| larger(a, p.limit));
-        points.iter_mut().for_each(|p| p.limit = largest);
-        for i in 0..n {
-            let largest = coordinates.iter().fold(0.0_f64, |a, d| larger(a, d[i].limit));
-            coordinates.iter_mut().for_each(|d| d[i].limit = largest);
+        for i in 0..=n {
+            let of = |sample: &mut Sample| sample.difference(i).bound;
+            let largest = samples.iter_mut().try_fold(0.0, |most, sample| Some(larger(most, of(sample)?)));
+            samples.iter_mut().for_each(|sample| sample.difference(i).bound = largest);
         }
     }
-    for (p, differences) in points.iter_mut().zip(&coordinates) {
-        p.certain = p.gap > p.limit || differences.iter().any(Difference::is_certain);
-    }
-    let first_of = |i: usize| points.iter().zip(&coordinates).find(|(_, d)| d[i].is_certain()).map(|(p, _)| p.t);
-    let certain_by_coordinate: Vec<Option<f64>> = (0..n).map(first_of).collect();
+    let certain_from = samples.iter().find(|sample| sample.is_certain()).map(|sample| sample.t);
+    let first_of = |i: usize| samples.iter().find(|sample| sample.coordinates[i].is_certain_alone()).map(|s| s.t);
     // where a difference is certain, only certain gaps count; otherwise all of them
-    let certain = points.iter().any(|p| p.certain);
     let mut largest = 0.0_f64;
     let mut largest_by_coordinate = vec![0.0_f64; n];
-    for (p, differences) in points.iter().zip(&coordinates).filter(|(p, _)| !certain || p.certain) {
-        largest = larger(largest, p.gap);
-        for (l, d) in largest_by_coordinate.iter_mut().zip(differences) {
-            *l = larger(*l, d.by);
+    for sample in samples.iter().filter(|sample| certain_from.is_none() || sample.is_certain()) {
+        largest = larger(largest, sample.gap.by);
+        for (largest, difference) in largest_by_coordinate.iter_mut().zip(&sample.coordinates) {
+            *largest = larger(*largest, difference.by);
         }
     }
+    let points: Vec<GapPoint> = samples.iter().map(Sample::point).collect();
     let mut gap_at = |t: f64| -> f64 {
         match (first.at(t), second.at(sampling.clock(t))) {
             (Ok(one), Ok(two)) => metric.distance(t, &one.coordinates, &one.velocities, &two.coordinates),
@@ -229,94 +187,126 @@ pub fn compare_motions_by(
         }
     };
     let passes = THRESHOLDS.map(|threshold| first_passing(&points, &mut gap_at, threshold));
-    let doubtful =
-        coordinates.iter().flat_map(|all| all.iter().enumerate()).find(|(_, d)| d.by > d.limit || d.by.is_nan());
-    let certain_from = points.iter().find(|p| p.certain).map(|p| p.t);
-    let estimate = larger(estimates[0], estimates[1]);
-    let relative = relative_to(scale, estimate);
-    let doubt = first.doubt.as_ref().or(second.doubt.as_ref());
-    let verdict = if certain_from.is_some() {
-        Verdict::Different
-    } else if let Some(doubt) = doubt {
-        Verdict::Undecided { because: doubt.because.clone() }
-    } else if let Some((t, cause)) = earlier_stop(first, second) {
-        Verdict::Undecided { because: format!("no difference up to t = {t:.6}, where one stops: {cause}") }
-    } else if let (true, Some((part, i))) = (relative < SAME_ESTIMATE, imprecise) {
-        let name = &metric.names[i];
-        let because =
-            format!("relative error estimate of {name} {part:.1e} is over {SAME_ESTIMATE:.0e}, and no gap is certain");
-        Verdict::Undecided { because }
-    } else if let Some((i, d)) = doubtful {
-        let [by, limit] = [d.by, d.limit];
-        let name = &metric.names[i];
-        let because =
-            format!("{name} differs by {by:.1e}, over {limit:.1e}, which is {CERTAINTY} times its own estimates");
-        Verdict::Undecided { because }
-    } else if relative < SAME_ESTIMATE {
-        Verdict::Same
-    } else if scale <= CERTAINTY * estimate {
-        let because = if scale > SAME_ESTIMATE * largest_length {
-            format!("the error estimate {estimate:.1e} has grown to the size of the motion, {scale:.1e}")
-        } else {
-            // nothing that an error could be relative to
-            format!(
-                "at rest, as far as can be told: no way is over {CERTAINTY} times the error estimate {estimate:.1e}"
-            )
-        };
-        Verdict::Undecided { because }
-    } else {
-        let because =
-            format!("relative error estimate {relative:.1e} is over {SAME_ESTIMATE:.0e}, and no gap is certain");
-        Verdict::Undecided { because }
+    let verdict = match (certain_from, unknown([first, second], &bands, &samples, metric)) {
+        (Some(_), _) => Verdict::Different,
+        (None, Some(because)) => Verdict::Undecided { because },
+        (None, None) => Verdict::Same,
     };
     Ok(Gap {
         verdict,
         start: t0,
         end: read,
         certain_from,
-        certain_by_coordinate,
+        certain_by_coordinate: (0..n).map(first_of).collect(),
         proved: false,
         indefinite,
         passes,
         largest,
         largest_by_coordinate,
-        estimates,
-        scale,
+        estimates: bands.each_ref().map(|band| band.way().error),
+        scale: bands[0].way().size,
         points,
     })
 }
 
-/// The sum of terms behind coordinate `i` at `t`, by linear interpolation between known times.
-fn up_to(terms: &[(f64, Vec<f64>)], i: usize, t: f64) -> f64 {
-    let has_begun = |ends: &&[(f64, Vec<f64>)]| (t - ends[0].0) * (ends[1].0 - ends[0].0) >= 0.0;
-    let Some([(a, first), (b, last)]) = terms.windows(2).take_while(has_begun).last() else { return 0.0 };
-    first[i] + ((t - a) / (b - a)).min(1.0) * (last[i] - first[i])
+/// What two bands say of each coordinate and of their gap, at an instant.
+struct Sample {
+    t: f64,
+    gap: Difference,
+    coordinates: Vec<Difference>,
 }
 
-/// The difference of a coordinate at an instant, and what it has to pass.
+/// A difference, and the bound of what the errors make of it; `None` in doubt.
+#[derive(Clone, Copy)]
 struct Difference {
     by: f64,
-    limit: f64,
+    bound: Option<f64>,
 }
 
 impl Difference {
-    fn is_certain(&self) -> bool {
-        self.by > ALONE * self.limit
+    fn of(by: f64, known: Known, doubted: bool) -> Difference {
+        Difference { by, bound: (!doubted).then(|| known.bound()) }
+    }
+
+    fn is_certain_alone(&self) -> bool {
+        ask(self.by / ALONE, self.bound) == Answer::Apart
+    }
+
+    fn limit(&self) -> f64 {
+        self.bound.map_or(f64::INFINITY, |bound| CERTAINTY * bound)
     }
 }
 
-fn by_part(a: &(f64, usize), b: &(f64, usize)) -> Ordering {
-    a.0.abs().total_cmp(&b.0.abs())
+impl Sample {
+    /// Of a coordinate, or the gap after all of them.
+    fn difference(&mut self, i: usize) -> &mut Difference {
+        self.coordinates.get_mut(i).unwrap_or(&mut self.gap)
+    }
+
+    fn is_certain(&self) -> bool {
+        ask(self.gap.by, self.gap.bound) == Answer::Apart || self.coordinates.iter().any(Difference::is_certain_alone)
+    }
+
+    fn point(&self) -> GapPoint {
+        GapPoint { t: self.t, gap: self.gap.by, limit: self.gap.limit(), certain: self.is_certain() }
+    }
+}
+
+/// Both errors together, beside the larger size.
+fn sum([one, two]: [Known; 2]) -> Known {
+    let [size, reach] = [one.size.max(two.size), one.reach.max(two.reach)];
+    Known { value: one.value, error: one.error + two.error, size, reach }
+}
+
+/// Why two motions that are nowhere apart may not be called the same, if so.
+fn unknown(motions: [&Motion; 2], bands: &[Band; 2], samples: &[Sample], metric: &Metric) -> Option<String> {
+    if let Some(doubt) = motions.iter().find_map(|motion| motion.doubt.as_ref()) {
+        return Some(doubt.because.clone());
+    }
+    if let Some((t, cause)) = earlier_stop(motions) {
+        return Some(format!("no difference up to t = {t:.6}, where one stops: {cause}"));
+    }
+    let ways = bands.each_ref().map(Band::way);
+    let way = Known { error: larger(ways[0].error, ways[1].error), ..ways[0] };
+    let (Known { error, size, reach, .. }, part) = (way, way.part());
+    if !part.is_ok_and(|part| part < SAME_ESTIMATE) {
+        return Some(match part {
+            Ok(relative) if size > CERTAINTY * error => {
+                format!("relative error estimate {relative:.1e} is over {SAME_ESTIMATE:.0e}, and no gap is certain")
+            }
+            Err(why @ NoInformation::NotFinite) => format!("relative error estimate: {why}"),
+            _ if size > SAME_ESTIMATE * reach => {
+                format!("the error estimate {error:.1e} has grown to the size of the motion, {size:.1e}")
+            }
+            // nothing that an error could be relative to
+            _ => {
+                let why = NoInformation::AtRest;
+                format!("{why}: no way is over {CERTAINTY} times the error estimate {error:.1e}")
+            }
+        });
+    }
+    let [one, two] = bands.each_ref().map(|band| band.coordinates(metric));
+    let imprecise = one.into_iter().zip(two).map(|(one, two)| sum([one, two])).zip(&metric.names);
+    // what neither moves nor has an error is known as it is
+    let imprecise = imprecise.filter(|(known, _)| !(known.error < SAME_ESTIMATE * known.reach || known.error == 0.0));
+    if let Some((known, name)) = imprecise.max_by(|a, b| (a.0.error / a.0.reach).total_cmp(&(b.0.error / b.0.reach))) {
+        let part = known.error / known.reach;
+        return Some(format!("relative error estimate of {name} {part:.1e} is over {SAME_ESTIMATE:.0e}, and no gap is certain"));
+    }
+    let each = samples.iter().flat_map(|sample| sample.coordinates.iter().zip(&metric.names));
+    let (difference, name) = each.into_iter().find(|(d, _)| ask(d.by, d.bound) != Answer::Within)?;
+    let (by, limit) = (difference.by, difference.limit());
+    Some(format!("{name} differs by {by:.1e}, over {limit:.1e}, which is {CERTAINTY} times its own estimates"))
 }
 
 /// When and why the first of the two stops that does, if one does.
-fn earlier_stop<'a>(first: &'a Motion, second: &'a Motion) -> Option<(f64, &'a str)> {
-    let stop = |motion: &'a Motion| match &motion.ending {
-        Ending::Stopped { t, cause } => Some(((t - motion.start()).abs(), *t, &cause[..])),
+fn earlier_stop(motions: [&Motion; 2]) -> Option<(f64, &str)> {
+    let stop = |motion: &&'_ Motion| (motion.end() - motion.start()).abs();
+    let stopped = motions.into_iter().filter(|motion| !motion.is_complete());
+    match &stopped.min_by(|a, b| stop(a).total_cmp(&stop(b)))?.ending {
+        Ending::Stopped { t, cause } => Some((*t, cause)),
         Ending::Completed => None,
-    };
-    let stops = [first, second].into_iter().filter_map(stop);
-    stops.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, t, cause)| (t, cause))
+    }
 }
 
 impl Gap {

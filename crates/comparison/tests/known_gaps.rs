@@ -36,17 +36,15 @@ fn what_is_added_up_to_either_motion_is_in_the_limit() {
             [(sums[0], 0.0), (sums[1], offset)].map(|(sum, start)| motion(REMOVED_CONSTRAINT, sum, 0.0, 1.0, start));
         let gap = compared(one, other, offset);
         let found = gap.limit_at(2.0);
-        assert!((0.9 * known..1.7 * known).contains(&found), "{sums:?}, {offset}: {found:e}, {known:e}");
+        assert!((known..2.0 * known).contains(&found), "{sums:?}, {offset}: {found:e}, {known:e}");
         assert_eq!(gap.verdict, Verdict::Same);
     }
-    let none = || motion(CHETAEV, 0.0, 0.0, 1.0, 0.0);
-    assert!(compared(none(), none(), 0.0).limit_at(2.0) < 0.5 * known);
 }
 
-/// A difference of `y`, whose inertia is little, has to pass a hundredfold of what was added up to it.
+/// A difference of `y`, whose inertia is little, has to pass a hundredfold of what may be added up to it.
 #[test]
 fn a_difference_under_what_is_added_up_to_a_coordinate_is_not_certain() {
-    let limit = 100.0 * 100.0 * EPS;
+    let limit = 100.0 * 256.0 * EPS;
     for (part, certain) in [(0.8, false), (2.0, true)] {
         let apart = part * limit;
         let [one, other] = [0.0, 0.5 * apart].map(|drift| motion(REMOVED_CONSTRAINT, 100.0, drift, 1e-6, 0.0));

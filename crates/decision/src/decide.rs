@@ -7,7 +7,7 @@ use nalgebra::{DMatrix, DVector};
 use crate::DecisionError;
 use crate::curve::{Curve, Flow};
 use crate::family::Family;
-use crate::sizes::{CERTAIN, Column, ROUND_OFF, Sizes, Sums};
+use crate::sizes::{CERTAIN, Column, LEAST_NOISE, Sizes, Sums};
 use crate::transport::{Path, Transport};
 
 /// Gauss nodes per panel, and the least number of panels.
@@ -197,7 +197,7 @@ fn judged(fine: &mut Transport, coarse: &mut Transport, paths: &[Path; 2]) -> Re
                 let all = terms.sum().sqrt();
                 sums.noise += squares(&here.rows - there.rows) * width.abs();
                 sums.terms += terms * width.abs();
-                sums.moves |= here.acceleration.hypot(here.speed / way) > CERTAIN * ROUND_OFF * all;
+                sums.moves |= here.acceleration.hypot(here.speed / way) > CERTAIN * LEAST_NOISE * all;
             }
             sums.acceleration += (here.acceleration * root).powi(2);
             sums.speed += (here.speed * root).powi(2);
@@ -276,7 +276,7 @@ fn judge(
     if least > CERTAIN * sizes.noise * reach {
         // a free direction may be what is missing: far along it, it moves more than the noise
         let largest = svd.values.iter().copied().fold(0.0, f64::max);
-        let (all, far, left) = solved(ROUND_OFF * largest);
+        let (all, far, left) = solved(LEAST_NOISE * largest);
         if left <= CERTAIN * sizes.noise * reach {
             (point, reach, least) = (all, far, left);
         }
@@ -294,7 +294,7 @@ fn judge(
     let directions = orthonormal(free.into_iter().map(own).collect());
     let verdict = match verdict_on(least, reach, &sizes, loudest) {
         // a mismatch this much larger than the motion is amplified round-off
-        Verdict::NotContained if ROUND_OFF * least > sizes.scale(reach) => Verdict::Undecided,
+        Verdict::NotContained if LEAST_NOISE * least > sizes.scale(reach) => Verdict::Undecided,
         Verdict::Contained if loud => Verdict::Undecided,
         verdict => verdict,
     };

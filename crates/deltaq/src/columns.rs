@@ -35,7 +35,7 @@ impl Columns {
 
     /// Those of [`error_row`].
     pub fn error_names(&self) -> Vec<String> {
-        self.coordinates.iter().chain(&self.multipliers).map(|name| format!("error {name}")).collect()
+        self.names()[1..].iter().map(|name| format!("error {name}")).collect()
     }
 
     /// Adds the columns to an object: one list of numbers per name.
@@ -49,7 +49,20 @@ impl Columns {
     pub fn errors(&self, rows: &[ErrorEstimate]) -> Value {
         json!({
             "coordinates": named_columns(&self.coordinates, rows, |r| &r.coordinates),
+            "velocities": named_columns(&self.coordinates, rows, |r| &r.velocities),
             "multipliers": named_columns(&self.multipliers, rows, |r| &r.multipliers),
+        })
+    }
+
+    /// The error estimates of one whole motion: one number per name.
+    pub fn whole_errors(&self, estimate: &ErrorEstimate) -> Value {
+        let of = |names: &[String], errors: &[f64]| -> Value {
+            names.iter().cloned().zip(errors.iter().map(|error| json!(error))).collect::<Map<_, _>>().into()
+        };
+        json!({
+            "coordinates": of(&self.coordinates, &estimate.coordinates),
+            "velocities": of(&self.coordinates, &estimate.velocities),
+            "multipliers": of(&self.multipliers, &estimate.multipliers),
         })
     }
 
@@ -91,7 +104,7 @@ pub fn named_columns<R>(names: &[String], rows: &[R], row: fn(&R) -> &[f64]) -> 
 
 /// The error estimates up to one time, between commas.
 pub fn error_row(estimate: &ErrorEstimate) -> String {
-    print(&[&estimate.coordinates[..], &estimate.multipliers].concat())
+    print(&[&estimate.coordinates[..], &estimate.velocities, &estimate.multipliers].concat())
 }
 
 /// The numbers at one time, between commas.

@@ -69,6 +69,13 @@ fn add(rows: &mut Rows, group: &Value, name: impl Fn(&str) -> String) {
     }
 }
 
+/// Adds the error estimates of JSON.
+fn add_errors(rows: &mut Rows, errors: &Value) {
+    add(rows, &errors["coordinates"], |name| format!("error {name}"));
+    add(rows, &errors["velocities"], |name| format!("error {name}'"));
+    add(rows, &errors["multipliers"], |name| format!("error {name}"));
+}
+
 /// Times, coordinates, velocities and multipliers of JSON, one row per time.
 fn motion(value: &Value) -> Rows {
     let times = value["times"].as_array().expect("times");
@@ -113,9 +120,7 @@ fn derivatives_have_in_their_columns_what_the_json_has_under_their_names() {
         let call = ["solve", disc, "-f", "vakonomic", "--times", "0,1", "--sensitivities", "a,mu0_1,yaw'"];
         let (found, json) = both(&call, 0);
         let mut expected = motion(&json);
-        for group in ["coordinates", "multipliers"] {
-            add(&mut expected, &json["error_estimates"][group], |name| format!("error {name}"));
-        }
+        add_errors(&mut expected, &json["error_estimates"]);
         add(&mut expected, &json["observables"], |name| name.into());
         for by in ["a", "mu0_1", "yaw'"] {
             let derivatives = &json["sensitivities"][by];
@@ -143,9 +148,7 @@ fn motions_have_in_their_columns_what_the_json_has_under_their_names() {
             let call = ["solve", disc, "-f", formulation, "--times", "0:2:5", "--tolerance", "1e-7"];
             let (found, json) = both(&[&call[..], &["--method", "dop853"]].concat(), 0);
             let mut expected = motion(&json);
-            for group in ["coordinates", "multipliers"] {
-                add(&mut expected, &json["error_estimates"][group], |name| format!("error {name}"));
-            }
+            add_errors(&mut expected, &json["error_estimates"]);
             add(&mut expected, &json["observables"], |name| name.into());
             are_the_same(&found, &expected);
             // and the JSON is of the scene: observables of these places, a constraint that holds

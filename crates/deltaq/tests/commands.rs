@@ -66,7 +66,7 @@ fn csv_has_the_same_numbers() {
     exit(&output, 0);
     let text = text(&output.stdout);
     let mut lines = text.lines();
-    let errors = "error x,error y,error phi,error lambda_1";
+    let errors = "error x,error y,error phi,error x',error y',error phi',error lambda_1";
     assert_eq!(lines.next(), Some(&format!("t,x,y,phi,x',y',phi',lambda_1,{errors}")[..]));
     let rows: Vec<Vec<f64>> = lines.map(|l| l.split(',').map(|x| x.parse().expect("a number")).collect()).collect();
     assert_eq!(rows.iter().map(|r| r[0]).collect::<Vec<_>>(), [0.0, 2.5, 10.0]);
@@ -75,7 +75,7 @@ fn csv_has_the_same_numbers() {
         |place: usize, of: Vec<f64>| rows.iter().zip(of).all(|(row, x)| (row[place] - x).abs() <= 1e-15 * x.abs());
     assert!(same(2, column(&value, "coordinates", "y")) && same(7, column(&value, "multipliers", "lambda_1")));
     let errors = &value["error_estimates"];
-    for (group, name, place) in [("coordinates", "y", 9), ("multipliers", "lambda_1", 11)] {
+    for (group, name, place) in [("coordinates", "y", 9), ("velocities", "y", 12), ("multipliers", "lambda_1", 14)] {
         let of = column(errors, group, name);
         assert!(rows.iter().zip(&of).all(|(row, e)| (row[place] - e).abs() <= 1e-14 * e), "{name}: {rows:?}, {of:?}");
         assert!(of[0] < of[2] && of[1] <= of[2] && of[2] < 1e-8, "{name}: {of:?}");

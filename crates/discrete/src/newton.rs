@@ -12,7 +12,7 @@ use crate::DiscreteError;
 const SOLVED: f64 = 4e-15;
 
 /// Round-off of ill-conditioned steps: corrections under this that have stopped to shrink are accepted.
-const ROUND_OFF: f64 = 1e-8;
+const STALLED: f64 = 1e-8;
 
 /// A correction that the next one, by quadratic convergence, would not be noticed after.
 const UNNOTICED: f64 = 2e-17;
@@ -95,7 +95,7 @@ impl Iteration {
                 return Ok(());
             }
             let shrinks = found < CONTRACTION * before;
-            if !shrinks && found <= ROUND_OFF {
+            if !shrinks && found <= STALLED {
                 return Ok(());
             }
             if !shrinks && self.of_rates(first).max(impulses) > FAR {

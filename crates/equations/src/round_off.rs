@@ -98,16 +98,6 @@ impl Compiled {
         Ok(values[2 * self.sizes.coordinates..][..self.sizes.multipliers].to_vec())
     }
 
-    /// The sum of magnitudes behind each coordinate at `(t, y)`, given the sums behind the states.
-    ///
-    /// # Errors
-    /// As [`Compiled::rates`].
-    pub fn terms_of_coordinates(&mut self, t: f64, y: &[f64], states: &[f64]) -> Result<Vec<f64>, EvaluationFailure> {
-        let mut values = self.terms_of_outputs(t, y, states)?;
-        values.truncate(self.sizes.coordinates);
-        Ok(values)
-    }
-
     fn terms_of_outputs(&mut self, t: f64, y: &[f64], states: &[f64]) -> Result<Vec<f64>, EvaluationFailure> {
         self.with_terms(|compiled, terms| {
             let inputs = compiled.in_terms(t, y, states, terms)?;

@@ -25,7 +25,7 @@ use crate::time_loop::HALVINGS;
 use events::Events;
 use inside::finite;
 use poles::Poles;
-pub use problem::{LANES, Lane, LaneProblem, LaneRun, LaneStart, Left};
+pub use problem::{LANES, Lane, LaneProblem, LaneRun, LaneStart, Left, Shortest};
 use rank::Ranks;
 
 /// Takes a member and what became of it.
@@ -175,7 +175,8 @@ impl<'a, P: LaneProblem> Lanes<'a, P> {
             self.absolute_tolerances[i][lane] = self.options.absolute_tolerance_of(start.sizes[i]);
         }
         let states = Vec::with_capacity(self.times.len() * start.y.len());
-        let run = LaneRun { states, work: Work::default(), projection: ProjectionReport::default() };
+        let (work, projection, shortest) = (Work::default(), ProjectionReport::default(), Shortest::default());
+        let run = LaneRun { states, work, projection, shortest };
         let pace = Pace::new(start.t, start.end);
         self.riders[lane] = Some(Rider { member, end: start.end, fresh: true, failures: 0, pace, read: 0, run });
     }
@@ -231,6 +232,8 @@ impl<'a, P: LaneProblem> Lanes<'a, P> {
         }
         rider.failures = 0;
         rider.run.work.steps += 1;
+        let end = self.candidate.iter().map(|y| y[lane]);
+        rider.run.shortest.add(self.taken[lane].abs(), self.taken_to[lane], end);
         if self.options.projection == Projection::EveryStep {
             rider.run.projection.record(self.moved[lane]);
         }

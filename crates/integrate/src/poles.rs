@@ -10,7 +10,7 @@ use crate::dense::segment_with_slope;
 use crate::events::Segment;
 use crate::options::{Method, Options};
 use crate::system::{Failure, System};
-use crate::taylor_step::{DEFECT, GOLDEN, ROUND_OFF};
+use crate::taylor_step::{DEFECT, GOLDEN, LEAST_RELATIVE};
 
 /// Round-off of rates, at most, over what one rounding makes of their terms.
 const ROUNDINGS: f64 = 16.0;
@@ -96,7 +96,7 @@ impl PoleWatch {
         let factor = DEFECT * if options.method == Method::Taylor { 1.0 } else { OTHERS };
         let place = Place { t, y: zeros(n), slope: zeros(n), rates: zeros(n), divisors: zeros(count) };
         let absolute = options.absolute_tolerances(n).iter().map(|x| factor * x).collect();
-        let relative = factor * options.relative_tolerance.max(ROUND_OFF);
+        let relative = factor * options.relative_tolerance.max(LEAST_RELATIVE);
         Ok(PoleWatch { reached, middle: zeros(count), end: zeros(count), place, terms: zeros(n), absolute, relative })
     }
 

@@ -50,7 +50,7 @@ const SECTIONS: usize = 40;
 const GOLDEN: f64 = 0.618_033_988_749_894_9;
 
 /// Makes the rows of `b` (row-major, `h` rows) orthonormal; returns |det L| = |p|.
-pub(crate) fn orthonormal(b: &mut [f64], h: usize) -> f64 {
+pub fn orthonormal(b: &mut [f64], h: usize) -> f64 {
     let n = b.len() / h;
     let mut size = 1.0;
     for i in 0..h {
@@ -137,8 +137,8 @@ fn cosine(p: &[f64], q: &[f64], h: usize) -> f64 {
 }
 
 /// Whether `p` may vanish in a step at whose begin, in whose middle and at whose end it has these sizes and
-/// rows.
-pub(crate) fn may_lose(sizes: [f64; 3], rows: [&[f64]; 3], h: usize) -> bool {
+/// rows ([`orthonormal`]), with `h` rows each.
+pub fn may_lose(sizes: [f64; 3], rows: [&[f64]; 3], h: usize) -> bool {
     let turns = |p: &[f64], q: &[f64]| apart(p, q) >= 1.0 && cosine(p, q, h) <= 0.0;
     may_vanish(sizes.map(|size| size * size)) || turns(rows[0], rows[1]) || turns(rows[1], rows[2])
 }

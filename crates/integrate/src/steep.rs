@@ -18,7 +18,7 @@ pub const GAUGE_NODES: usize = 9;
 /// Number of parts in which the polynomial through these is sampled.
 const PARTS: usize = 16;
 /// Round-off of differences of arguments, in parts of the largest argument.
-const ROUND_OFF: f64 = 64.0 * f64::EPSILON;
+const ARGUMENT_DIGITS: f64 = 64.0 * f64::EPSILON;
 /// Error of the polynomial between the nodes, in parts of the largest sum of terms behind an argument.
 const BLUR: f64 = 16.0 * f64::EPSILON;
 /// Arguments are clamped to ± this, so that differences stay finite.
@@ -133,7 +133,7 @@ fn growth(gauge: Gauge, x: &[f64; GAUGE_NODES], blur: f64) -> f64 {
     let at = |theta: f64| through(&fine, theta);
     let place = |k: usize| k as f64 / (GAUGE_NODES - 1) as f64;
     let missed = (1..GAUGE_NODES).step_by(2).map(|k| (x[k] - through(&coarse, place(k))).abs()).fold(0.0, f64::max);
-    let missed = missed + blur + ROUND_OFF * x.iter().fold(0.0, |largest, x| x.abs().max(largest));
+    let missed = missed + blur + ARGUMENT_DIGITS * x.iter().fold(0.0, |largest, x| x.abs().max(largest));
     let width = 1.0 / PARTS as f64;
     let values: Vec<f64> = (0..=PARTS).map(|i| at(i as f64 * width)).collect();
     let grown = |(low, high): (f64, f64), beyond: f64| gauge(high + beyond) - gauge(low - beyond);

@@ -34,7 +34,7 @@ use crate::problem::Start;
 use crate::status::StopCause;
 use crate::stepper::{Attempt, Stepper, next_step};
 use crate::system::{Failure, System};
-use crate::taylor_step::{DEFECT, Ends, GOLDEN, MANY, ROUND_OFF, UNLIMITED, first_powers, longest_step, once, order};
+use crate::taylor_step::{DEFECT, Ends, GOLDEN, MANY, LEAST_RELATIVE, UNLIMITED, first_powers, longest_step, once, order};
 
 /// Where coefficients overflow, the unit of time is shortened by this factor, this often.
 const SHORTER_UNIT: f64 = 1e-8;
@@ -189,7 +189,7 @@ impl<'s, 'p> Taylor<'s, 'p> {
         }
         let places = MANY.max((WITHIN * self.highest_power.sqrt()) as usize);
         let (theta, order, begin) = (self.taken / self.unit, self.order, self.t);
-        let relative = self.relative_tolerance.max(ROUND_OFF);
+        let relative = self.relative_tolerance.max(LEAST_RELATIVE);
         // rates of constraints that are nearly dependent are known as badly as a projection moves the end
         let ends = self.candidate.iter().zip(&self.reached).zip(&self.absolute_tolerances);
         let moves = ends.map(|((y, reached), absolute)| (y - reached).abs() / (absolute + relative * y.abs()));

@@ -15,7 +15,7 @@ const SLACK: f64 = 1e3;
 /// end of a step also this many times the move of the projection, which itself may be this many tolerances.
 /// A relative tolerance below round-off counts as round-off.
 pub(crate) const DEFECT: f64 = 100.0;
-pub(crate) const ROUND_OFF: f64 = 1e-14;
+pub(crate) const LEAST_RELATIVE: f64 = 1e-14;
 /// A step that is this many times shorter than its terms allow is checked at many places inside, as these do
 /// not tell how much happens in it: at multiples of this part of it, modulo 1.
 pub(crate) const GOLDEN: f64 = 0.618_033_988_749_894_9;
@@ -144,7 +144,7 @@ impl<const N: usize> Ends<'_, N> {
     #[inline(always)]
     pub(crate) fn defect(&self, absolute_tolerances: &[[f64; N]], relative_tolerance: f64) -> Defect<N> {
         let orders = self.next_coefficients.len() / self.candidate.len();
-        let relative = relative_tolerance.max(ROUND_OFF);
+        let relative = relative_tolerance.max(LEAST_RELATIVE);
         let mut found = Defect { worst: [0.0; N], component: [0; N], moved: [0.0; N] };
         for (i, absolute) in absolute_tolerances.iter().enumerate() {
             let (y, slope, rates) = (self.candidate[i], self.slope[i], self.next_coefficients[i * orders + 1]);

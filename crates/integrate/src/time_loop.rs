@@ -11,7 +11,7 @@ use crate::status::{ProjectionReport, Solution, Status, StopCause};
 use crate::steep::SteepWatch;
 use crate::stepper::{Attempt, Stepper};
 use crate::system::{Failure, System, check_finite};
-use crate::taylor_step::{DEFECT, ROUND_OFF};
+use crate::taylor_step::{DEFECT, LEAST_RELATIVE};
 
 /// Maximum number of consecutive halvings of a step that cannot be evaluated.
 pub(crate) const HALVINGS: usize = 60;
@@ -185,7 +185,7 @@ impl Record<'_, '_> {
     /// dependent constraints, and is allowed from then on. With a multistep method every move is allowed:
     /// several steps may have added it up.
     fn check_move(&mut self, candidate: &[f64]) -> Result<(), Failure> {
-        let relative = self.options.relative_tolerance.max(ROUND_OFF);
+        let relative = self.options.relative_tolerance.max(LEAST_RELATIVE);
         let (mut component, mut worst) = (0, 0.0);
         for (i, (y, before)) in candidate.iter().zip(&self.before).enumerate() {
             let allowed = DEFECT * (self.absolute[i] + relative * y.abs().max(before.abs()));

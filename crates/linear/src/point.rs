@@ -28,7 +28,7 @@ const DIGITS: f64 = 100.0;
 /// Where the sum of terms behind an entry exceeds this many times the entry, its round-off counts as noise.
 const CANCELLED: f64 = 1e4;
 /// Entries up to this fraction of the sum of terms behind them are round-off.
-const ROUND_OFF: f64 = 64.0 * f64::EPSILON;
+const OF_TERMS: f64 = 64.0 * f64::EPSILON;
 
 impl Point {
     pub(crate) fn start(setting: Setting, choice: &Choice) -> Result<Point, LinearError> {
@@ -78,7 +78,7 @@ impl Point {
         Ok(noise.zip_zip_map(jacobian, &terms, |noise, entry, terms| {
             let is_cancelled = entry != 0.0 && terms > CANCELLED * entry.abs();
             let digits = if is_cancelled { f64::EPSILON * terms } else { 0.0 };
-            let all = if entry.abs() <= ROUND_OFF * terms { entry.abs() } else { 0.0 };
+            let all = if entry.abs() <= OF_TERMS * terms { entry.abs() } else { 0.0 };
             noise.max(digits).max(all)
         }))
     }

@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use discrete::{DiscreteError, Trajectory};
 use equations::{Compiled, Equations};
-use integrate::{GAUGE_LIMIT, GAUGE_NODES, gauge_growth};
+use integrate::{GAUGE_LIMIT, GAUGE_NODES, gauge_growth, may_lose_rank, orthonormal};
 use mechanics::System;
 use symbolic::Symbol;
 
@@ -57,17 +57,39 @@ impl DiscreteRun {
     /// The first step that knows nothing of what is within it, on the straight line from node to node: a step
     /// knows its middle only. The gauge of a steep function grows as [`integrate::Problem::gauges`] does not
     /// let it, or the rates jump with the angle of a point. `kept` is the length of the steps of the run that
-    /// is kept. Nodes whose outputs cannot be evaluated are not part of the motion.
-    pub(crate) fn passed_over(&mut self, prepared: &mut Prepared, kept: f64) -> Option<PassedOver> {
+    /// is kept. Nodes whose outputs cannot be evaluated are not part of the motion. Two steps along which the
+    /// constraints may lose rank are too long to tell on which branch the motion goes on; `columns` are
+    /// [`column_factors`].
+    pub(crate) fn passed_over(&mut self, prepared: &mut Prepared, kept: f64, columns: &[f64]) -> Option<PassedOver> {
         let Prepared { compiled, equations, .. } = prepared;
         let angles = equations.angles();
-        if compiled.gauges().is_empty() && angles.is_empty() {
+        let (h, n) = compiled.rank();
+        if compiled.gauges().is_empty() && angles.is_empty() && h == 0 {
             return None;
         }
         let mut from: Option<Node> = None;
+        let mut minors: Vec<(f64, Vec<f64>)> = Vec::new();
         for t in self.times().to_vec() {
             let mut y = vec![0.0; compiled.dimension()];
             let Ok(()) = self.state(compiled, t, &mut y) else { break };
+            if h > 0 {
+                let mut rows = vec![0.0; h * n];
+                let Ok(()) = compiled.rows(t, &y, &mut rows) else { break };
+                rows.chunks_exact_mut(n).for_each(|row| row.iter_mut().zip(columns).for_each(|(x, c)| *x *= c));
+                if minors.len() == 3 {
+                    minors.remove(0);
+                }
+                minors.push((orthonormal(&mut rows, h), rows));
+                if let [a, b, c] = &minors[..]
+                    && may_lose_rank([a.0, b.0, c.0], [&a.1, &b.1, &c.1], h)
+                {
+                    let cause = format!(
+                        "steps of {kept:.3e} are too long to tell whether the rank of ∂f/∂v falls within them, where several \
+                         motions or none go on; shorter ones may tell, or a method that chooses its own"
+                    );
+                    return Some(PassedOver { t: from.map_or(t, |from| from.0), cause });
+                }
+            }
             let Some(from) = from.replace((t, y.clone())) else { continue };
             let begin = from.0;
             if let Some(j) = jump(compiled, &from, &(t, y.clone())) {
@@ -139,7 +161,7 @@ fn between(from: &Node, to: &Node, theta: f64) -> Node {
 /// The first angle that passes from π to −π or back from node to node, where the rates jump with it.
 fn jump(compiled: &mut Compiled, from: &Node, to: &Node) -> Option<usize> {
     /// Rates that differ by less than this part of the largest on both sides of a place do not jump there.
-    const ROUND_OFF: f64 = 1e-6;
+    const CONTINUOUS: f64 = 1e-6;
     const HALVINGS: usize = 45;
     let places: [Node; GAUGE_NODES] = std::array::from_fn(|k| between(from, to, k as f64 / (GAUGE_NODES - 1) as f64));
     for pair in places.windows(2) {
@@ -157,7 +179,7 @@ fn jump(compiled: &mut Compiled, from: &Node, to: &Node) -> Option<usize> {
             let [mut before, mut behind] = [vec![0.0; low.1.len()], vec![0.0; low.1.len()]];
             let read = compiled.rates(low.0, &low.1, &mut before).and(compiled.rates(high.0, &high.1, &mut behind));
             let largest = before.iter().chain(&behind).fold(0.0_f64, |most, x| most.max(x.abs()));
-            let jumps = |(a, b): (&f64, &f64)| (a - b).abs() > ROUND_OFF * largest;
+            let jumps = |(a, b): (&f64, &f64)| (a - b).abs() > CONTINUOUS * largest;
             if read.is_err() || before.iter().zip(&behind).any(jumps) {
                 return Some(j);
             }

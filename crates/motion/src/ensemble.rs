@@ -17,7 +17,7 @@ use symbolic::caught;
 
 use crate::by_name::{Beginning, ByName};
 use crate::{Choice, Metric, Prepared, Settings, SolveError, setting};
-pub use motions::{MemberMotion, WATCHED, instants};
+pub use motions::{MemberMotion, instants};
 pub use run::{EnsembleOptions, MemberRun};
 pub use threads::{number_of_threads, over_threads};
 

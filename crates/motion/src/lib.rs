@@ -43,8 +43,9 @@
 //!
 //! **What it refuses.** A motion that cannot be started is a [`SolveError`]. Once started, it ends with an
 //! [`Ending`], and the part up to its end is valid. An error estimate that cannot be trusted carries a
-//! [`Doubt`].
+//! [`Doubt`]. How errors are found and what they decide stands in [`band`].
 
+pub mod band;
 mod by_name;
 mod carried;
 mod charts;
@@ -57,20 +58,15 @@ mod costates;
 mod differences;
 mod direction;
 mod discrete_run;
-mod disturbed;
-mod doubt;
 mod ending;
 mod ensemble;
 mod equations_text;
 mod equidistant;
 mod error;
-mod error_estimate;
 mod form;
 mod grid;
 mod kinks;
-mod last_digits;
 mod later_chart;
-mod lost_digits;
 mod lost_rank;
 mod method;
 mod metric;
@@ -80,13 +76,12 @@ pub mod numbers;
 #[doc(hidden)]
 pub mod parts;
 mod prepared;
-mod round_off;
 mod sensitivities;
 mod sensitivity_start;
 mod settings;
 mod single_run;
-mod sizes;
 mod start_values;
+mod state_scales;
 mod steps;
 mod table;
 mod trajectory;
@@ -94,8 +89,8 @@ mod trial;
 mod variables;
 mod varying;
 mod wanted;
-mod watch;
 
+pub use band::{Breach, CERTAINTY, Doubt, ErrorEstimate, TRUSTED, error_estimate, error_estimates};
 pub use by_name::ByName;
 pub use carried::{Carried, Which};
 pub use charts::ChartChange;
@@ -108,7 +103,6 @@ pub use connect::{Aim, CONNECT_STARTS, ConjugateTime, Connection, Connections, S
 pub use constants::{constant_names, prepare};
 pub use costates::{Costates, costate_names, given_costates, is_costate};
 pub use direction::Direction;
-pub use doubt::Doubt;
 pub use ending::Ending;
 pub use ensemble::{
     Ensemble, EnsembleMember, EnsembleOptions, EnsembleStart, MemberMotion, MemberRun, number_of_threads, over_threads,
@@ -116,7 +110,6 @@ pub use ensemble::{
 pub use equations_text::{EquationStyle, equations_text, shared_text, system_text};
 pub use equidistant::{equidistant, equidistant_value};
 pub use error::SolveError;
-pub use error_estimate::{ErrorEstimate, TRUSTED, error_estimate, error_estimates, relative_to};
 pub use form::{ChosenForm, FORM_WORDS, Form, derive_in_form, formulation_in};
 pub use method::Chosen;
 pub use metric::{Metric, larger, subtract};
@@ -124,7 +117,7 @@ pub use model::{Model, Reading};
 pub use motion::{FormReport, Motion, Seconds, solve, solve_choice, solve_from};
 pub use prepared::Prepared;
 pub use sensitivities::{Sensitivities, sensitivities};
-pub use settings::{CERTAINTY, Setting, Settings, TIGHTER, setting};
+pub use settings::{Setting, Settings, TIGHTER, setting};
 pub use single_run::{SingleRun, outputs};
 pub use steps::{STEP_LIMIT, Stepping, Steps, discrete_of, solve_by_steps};
 pub use symbolic::{Broken, Language, caught};
@@ -133,4 +126,3 @@ pub use table::{
     REMOVED_CONSTRAINT, UnknownFormulation, VAKONOMIC, VAKONOMIC_COSTATE, formulation, is_in_table,
 };
 pub use varying::Varying;
-pub use watch::Breach;

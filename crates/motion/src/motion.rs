@@ -7,18 +7,18 @@ use integrate::{Method, ProjectionReport, Work};
 use mechanics::ConstantsRule;
 use scene::Scene;
 
+use crate::band::invariant_monitor::{Breach, InvariantMonitor};
+use crate::band::limits::LOOKS;
 use crate::charts::{self, ChartChange, Course, Runs};
 use crate::choice::removals;
 use crate::clock::Clock;
 use crate::constants::resolve;
 use crate::form::derive_in_form;
-use crate::lost_digits::{self, Looked, RoundOff};
 use crate::method::Chosen;
 use crate::metric::{larger, subtract};
 use crate::trajectory::Trajectory;
 use crate::trial::{FARTHER, NotSuited, TRIAL};
 use crate::wanted::kept_before;
-use crate::watch::{Breach, Watch};
 use crate::{Choice, ChosenForm, Doubt, Ending, Prepared, Setting, Settings, SolveError, setting};
 
 /// Wall-clock seconds spent.
@@ -124,14 +124,8 @@ impl Motion {
     /// # Errors
     /// As [`Motion::at`].
     pub fn difference_of_runs(&mut self, t: f64) -> Result<Vec<f64>, SolveError> {
-        Ok(self.at_with_difference(t)?.1)
-    }
-
-    /// [`Motion::at`] and [`Motion::difference_of_runs`] in one.
-    pub fn at_with_difference(&mut self, t: f64) -> Result<(Outputs, Vec<f64>), SolveError> {
         let (kept, looser) = self.at_in_both_runs(t)?;
-        let difference = subtract(&kept.coordinates, &looser.coordinates);
-        Ok((kept, difference))
+        Ok(subtract(&kept.coordinates, &looser.coordinates))
     }
 
     /// [`Motion::at`] from the kept and the looser run: what both give has its own error estimate.
@@ -141,40 +135,6 @@ impl Motion {
     pub fn at_in_both_runs(&mut self, t: f64) -> Result<(Outputs, Outputs), SolveError> {
         let kept = self.at(t)?;
         Ok((kept, self.looser.outputs(&mut self.compiled, t)?))
-    }
-
-    /// The states at `t` and the sums of terms behind their rates; `None` where these cannot be evaluated.
-    pub(crate) fn look(&mut self, t: f64) -> Option<Looked> {
-        let y = self.states_at(t).ok()?;
-        lost_digits::look(&mut self.compiled, t, &y)
-    }
-
-    /// [`lost_digits::round_off`] of this motion.
-    pub(crate) fn round_off(&mut self, looked: &[Looked], looser: &[Vec<f64>], sizes: &[f64]) -> RoundOff {
-        let Motion { equations, compiled, kept, .. } = self;
-        let names = || lost_digits::names_of_states(equations);
-        // a state that was read off has the root of the motion behind it
-        let mut rates = |t: f64, y: &[f64], rates: &mut [f64]| {
-            kept.state(compiled, t).is_ok() && compiled.rates(t, y, rates).is_ok()
-        };
-        lost_digits::round_off(&mut rates, &names, looked, looser, sizes)
-    }
-
-    /// The states of the looser run.
-    pub(crate) fn looser_state(&mut self, t: f64) -> Option<Vec<f64>> {
-        self.looser.state(&mut self.compiled, t).ok()
-    }
-
-    /// The sum of terms behind each multiplier at `t`, since the time `begin`; `None` where it cannot be
-    /// evaluated.
-    pub(crate) fn terms_of_multipliers(&mut self, begin: f64, t: f64) -> Option<Vec<f64>> {
-        let y = self.states_at(t).ok()?;
-        self.compiled.terms_of_multipliers(begin, t, &y).ok()
-    }
-
-    /// The sum of terms behind each coordinate at `t`, given those behind the states.
-    pub(crate) fn terms_of_coordinates(&mut self, t: f64, y: &[f64], states: &[f64]) -> Option<Vec<f64>> {
-        self.compiled.terms_of_coordinates(t, y, states).ok()
     }
 
     /// Name, value at the start and largest deviation from it at `times`, of each invariant.
@@ -193,9 +153,6 @@ impl Motion {
         Ok(names.zip(start).zip(drift).map(|((name, start), drift)| (name, start, drift)).collect())
     }
 }
-
-/// Stretches of a motion at whose ends the scene's own constraints are looked at.
-const WATCHED: usize = 32;
 
 /// Integrates `equations` from `setting.start` to `setting.end`, twice, and keeps the tighter run.
 ///
@@ -222,12 +179,11 @@ pub fn solve(
     let by = motion.method.as_ref().map(|chosen| chosen.method);
     motion.doubt = Doubt::of([&steps[0], &steps[1]], motion.end, motion.is_complete(), by);
     if motion.doubt.is_none() && !settings.plain {
-        let mut watch = Watch::new(setting.system, &motion.equations, &[])?;
-        let times = motion.grid(WATCHED);
-        let kept: Vec<Outputs> = times.iter().map_while(|&t| motion.at(t).ok()).collect();
-        let Motion { kept: run, looser, compiled, equations, .. } = &mut motion;
-        motion.doubt = watch.doubt((&times, &kept), [run, looser], compiled, &equations.invariants);
-        motion.breaches = watch.breaches;
+        let mut monitor = InvariantMonitor::new(setting.system, &motion.equations, &[])?;
+        let times = motion.grid(LOOKS);
+        let kept: Vec<(f64, Outputs)> = times.iter().map_while(|&t| Some((t, motion.at(t).ok()?))).collect();
+        motion.doubt = monitor.doubt(&mut motion, &kept, &[]);
+        motion.breaches = monitor.breaches;
         if motion.doubt.is_none() {
             motion.count_round_off(setting, &Settings { method: by, ..settings.clone() })?;
         }

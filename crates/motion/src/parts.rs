@@ -2,30 +2,22 @@
 
 pub use crate::connect::{merge, samples, spread, times};
 pub use crate::constants::searched;
-pub use crate::ensemble::{WATCHED, instants};
-pub use crate::last_digits::{move_digits, signs};
-pub use crate::lost_digits::{Looked, RoundOff, is_small, largest, look, round_off};
-pub use crate::sizes::{sizes, unbounded_sizes};
-pub use crate::wanted::{HALVES, STRETCHES, kept_before, wanted};
+pub use crate::band::accumulated_round_off::{Looked, RoundOff, accumulated as round_off, is_small, largest, look};
+pub use crate::band::limits::{STRETCHES, WATCHED};
+pub use crate::band::ulp_perturbation::{move_digits, signs};
+pub use crate::ensemble::instants;
+pub use crate::state_scales::{sizes, unbounded_sizes};
+pub use crate::wanted::{HALVES, kept_before, wanted};
 
-use crate::{Motion, round_off};
+use crate::band::limits::{FEW, LOOKS};
+use crate::Motion;
 
 /// In how many stretches a motion is looked at: in a first check, and closely.
-pub const LOOKED_AT: [usize; 2] = [round_off::FEW, round_off::STRETCHES];
+pub const LOOKED_AT: [usize; 2] = [FEW, LOOKS];
 
 /// Instants of a motion in its first chart, the states of its looser run there, and sizes of states.
 pub fn looked_at(motion: &mut Motion, stretches: usize) -> (Vec<Looked>, Vec<Vec<f64>>, Vec<f64>) {
-    motion.looked_at(stretches)
-}
-
-/// The largest value of each state, or the size by which it was integrated, if that is more.
-pub fn sizes_of(motion: &Motion, looked: &[Looked]) -> Vec<f64> {
-    motion.sizes_of(looked)
-}
-
-/// The sum of terms behind each coordinate since the start, at a few times.
-pub fn terms_of_coordinates_along(motion: &mut Motion) -> Vec<(f64, Vec<f64>)> {
-    motion.terms_of_coordinates_along()
+    crate::band::round_off::looked_at(motion, stretches)
 }
 
 /// The kept run of `other` instead of the looser run of a motion, where it comes as far.

@@ -5,10 +5,11 @@ use integrate::{Method, Options, Start};
 use symbolic::Symbol;
 
 use crate::direction::{Chord, Direction};
-use crate::last_digits::{UNITS, move_digits};
+use crate::band::limits::UNITS;
+use crate::band::ulp_perturbation::move_digits;
 use crate::method::{Chosen, suited};
 use crate::single_run::{SingleRun, chart_size};
-use crate::sizes::unbounded_sizes;
+use crate::state_scales::unbounded_sizes;
 use crate::start_values::StartValues;
 use crate::{Metric, Setting, Settings, SolveError};
 

@@ -17,6 +17,7 @@ use integrate::{Dense, Options, Status, StopCause, Work};
 use mechanics::ConstantsRule;
 use scene::Scene;
 
+use crate::band::Errors;
 use crate::carried::{Carried, Which};
 use crate::clock::Clock;
 use crate::constants::places;
@@ -125,19 +126,14 @@ pub fn sensitivities(
     let ends: Vec<f64> = kept.ends().chain(looser.ends()).collect();
     let reached = times.partition_point(|t| ends.iter().all(|end| direction * (t - end) <= 0.0));
     found.missing = times[reached..].to_vec();
+    let mut errors = vec![Errors::default(); names.len()];
     for &t in &times[..reached] {
         let ((outputs, derivatives), (_, others)) = (kept.at(prepared, t)?, looser.at(prepared, t)?);
-        let pairs = derivatives.iter().zip(&others).enumerate();
-        let errors = pairs.map(|(k, (kept, looser))| {
-            let differences = joined(kept, looser, |a, b| (a - b).abs());
-            let before = found.errors.last().map(|before: &Vec<Outputs>| &before[k]);
-            before.map_or(differences.clone(), |before| joined(before, &differences, f64::max))
-        });
-        let errors = errors.collect();
+        errors.iter_mut().zip(derivatives.iter().zip(&others)).for_each(|(errors, (a, b))| errors.add([a, b]));
         found.times.push(t);
         found.outputs.push(outputs);
         found.derivatives.push(derivatives);
-        found.errors.push(errors);
+        found.errors.push(errors.iter().map(|Errors(errors)| errors.clone()).collect());
     }
     Ok(found)
 }
@@ -208,15 +204,4 @@ fn keep_natural(
         ),
     };
     kept_natural(along, constants, of_numbers, of_constants).ok_or_else(dependent)
-}
-
-/// `f` of each pair of corresponding outputs.
-fn joined(a: &Outputs, b: &Outputs, f: impl Fn(f64, f64) -> f64) -> Outputs {
-    let each = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(&a, &b)| f(a, b)).collect();
-    Outputs {
-        coordinates: each(&a.coordinates, &b.coordinates),
-        velocities: each(&a.velocities, &b.velocities),
-        multipliers: each(&a.multipliers, &b.multipliers),
-        invariants: each(&a.invariants, &b.invariants),
-    }
 }

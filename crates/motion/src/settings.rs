@@ -9,9 +9,6 @@ use crate::{Form, SolveError};
 /// The tolerance of the second run over that of the first.
 pub const TIGHTER: f64 = 1e-2;
 
-/// A gap has to be this many times the sum of the two error estimates to count as a difference.
-pub const CERTAINTY: f64 = 10.0;
-
 /// The start of a motion: a system, a state on its constraint, and the end time.
 #[derive(Clone, Copy, Debug)]
 pub struct Setting<'a> {

@@ -6,7 +6,7 @@ use equations::{Compiled, EvaluationFailure, Outputs, Tangents};
 use integrate::{Gauge, Options, Problem, Solution, Start, Status, StopCause};
 
 use crate::lost_rank::column_factors;
-use crate::sizes::sizes;
+use crate::state_scales::sizes;
 use crate::{Metric, SolveError};
 
 /// The result of a single run. Without a second run, only its tolerance indicates its error.

@@ -7,9 +7,10 @@ use scene::Scene;
 use crate::clock::Clock;
 use crate::constants::resolve;
 use crate::discrete_run::{DiscreteRun, PassedOver};
+use crate::lost_rank::{column_factors, watch_rank};
 use crate::trajectory::Trajectory;
 use crate::{
-    CHETAEV, Choice, Ending, Motion, Prepared, REMOVED_CONSTRAINT, Seconds, Settings, SolveError, VAKONOMIC,
+    CHETAEV, Choice, Ending, Metric, Motion, Prepared, REMOVED_CONSTRAINT, Seconds, Settings, SolveError, VAKONOMIC,
     VAKONOMIC_COSTATE, derive, setting,
 };
 
@@ -120,7 +121,8 @@ pub fn solve_by_steps(scene: &Scene, choice: &Choice, steps: Steps, settings: &S
         }
     }
     let clock = Clock::start();
-    let equations = derive(&scene.system, choice)?;
+    let mut equations = derive(&scene.system, choice)?;
+    watch_rank(&mut equations, &scene.system);
     let derive = clock.seconds();
     let clock = Clock::start();
     let mut prepared = Prepared::new(setting(scene), equations, settings)?;
@@ -151,7 +153,9 @@ pub fn solve_by_steps(scene: &Scene, choice: &Choice, steps: Steps, settings: &S
         DiscreteRun::new(run, values, &prepared.equations, &scene.system)
     });
     let step = scene.duration / count as f64;
-    let passed_over = runs.iter_mut().filter_map(|run| run.passed_over(&mut prepared, step));
+    let (t, start) = (prepared.t, prepared.start.clone());
+    let columns = column_factors(&mut prepared.compiled, &mut Metric::new(&scene.system)?, t, &start);
+    let passed_over = runs.iter_mut().filter_map(|run| run.passed_over(&mut prepared, step, &columns));
     let passed_over = passed_over.min_by(|a, b| (direction * a.t).total_cmp(&(direction * b.t)));
     let runs = runs.map(|run| Trajectory::Discrete(Box::new(run)));
     let seconds = Seconds { derive, compile, integrate };

@@ -3,10 +3,9 @@
 
 use std::sync::Arc;
 
+use crate::band::limits::STRETCHES;
 use crate::equidistant::equidistant;
 
-/// Stretches of the whole run at whose ends everything that looks along a motion may look.
-pub const STRETCHES: [usize; 3] = [200, 32, 4];
 /// Number of times at unequal distances, which no period fits.
 const SCATTERED: usize = 200;
 /// A run may end early: number of stretches in its second half, in the second half of the rest, and so on,

@@ -1,5 +1,6 @@
 //! The library as its user meets it: one program, one module per subject.
 
+mod band;
 mod collocation;
 mod cones;
 mod connect;

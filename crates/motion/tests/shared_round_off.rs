@@ -1,7 +1,7 @@
 //! What both runs of a motion share: where it is looked at, and which run takes the place of the looser one.
 
 use mechanics::{ConstantsRule, Removal};
-use motion::parts::{LOOKED_AT, looked_at, replace_looser, sizes_of, stop_at, terms_of_coordinates_along};
+use motion::parts::{LOOKED_AT, largest, looked_at, replace_looser, stop_at};
 use motion::{Choice, Motion, REMOVED_CONSTRAINT, Settings, choices, setting, solve_choice};
 use scene::Scene;
 
@@ -14,19 +14,6 @@ fn particle(speed: f64, spring: f64, duration: f64) -> Motion {
     let scene = Scene::parse("free", &text).unwrap_or_else(|e| panic!("{e}"));
     assert_eq!(setting(&scene).end, duration);
     solve_choice(&scene, &choices(&scene)[0], &Settings::default()).expect("a motion")
-}
-
-/// `x = v t`, to whose rate `v` is added up: together `v t + |x|`.
-#[test]
-fn what_is_added_up_to_a_coordinate_is_a_sum_over_time() {
-    for speed in [3.0, -0.25] {
-        let found = terms_of_coordinates_along(&mut particle(speed, 0.0, 2.0));
-        assert!(found.len() > LOOKED_AT[0], "{found:?}");
-        for (t, terms) in found {
-            let known = 2.0 * (speed * t).abs();
-            assert!((terms[0] - known).abs() <= 1e-12 * known, "{speed}, at {t}: {terms:?}, {known}");
-        }
-    }
 }
 
 /// A sledge that turns past 90°, where its removal by coordinates goes on in another chart.
@@ -50,12 +37,10 @@ fn only_the_first_chart_is_looked_at() {
 
 #[test]
 fn states_are_as_large_as_the_scene_or_the_motion_makes_them() {
-    // a velocity of 10⁹ is integrated by 10⁻⁵ of it
-    for (speed, known) in [(1e-9, 1e-9), (1.0, 1.0), (1e9, 1e4)] {
-        let motion = particle(speed, 0.1, 2.0);
-        let sizes = sizes_of(&motion, &[(0.0, vec![0.0; 2], vec![0.0; 2])]);
+    for (speed, known) in [(1e-9, 1e-9), (1.0, 1.0), (1e9, 1e9)] {
+        let (_, _, sizes) = looked_at(&mut particle(speed, 0.1, 2.0), LOOKED_AT[0]);
         assert!(sizes.iter().all(|size| (0.1 * known..=10.0 * known).contains(size)), "{speed:e}: {sizes:?}");
-        let sizes = sizes_of(&motion, &[(0.0, vec![-5.0 * speed, speed], vec![0.0; 2])]);
+        let sizes = largest(&[(0.0, vec![-5.0 * speed, speed], vec![0.0; 2])], sizes);
         assert_eq!(sizes[0].max(5.0 * speed), sizes[0], "{speed:e}");
     }
 }

@@ -133,3 +133,21 @@ fn hills_of_high_powers_are_not_passed() {
         assert!(told <= 4, "{hill}: {told} told, {ends:?}");
     }
 }
+
+/// A ramp of slope 1 that begins at x = 3/4 within w: `w log(1 + exp((x − 3/4)/w))`.
+#[test]
+fn potentials_that_bend_within_little_are_as_narrow_as_one_likes() {
+    for w in [1e-3, 1e-6, 1e-9] {
+        let text = format!(
+            "title = \"ramp\"\n[coordinates]\nx = {{ start = 0 }}\n[system]\n\
+             lagrangian = \"x'^2/2 - {w:?}*log(1 + exp((x - 0.75)/{w:?}))\"\n[start.velocities]\n\"x'\" = 1\n\
+             [run]\nduration = 1.25\n"
+        );
+        let scene = read("ramp", &text);
+        let mut motion = solve_choice(&scene, &choices(&scene)[0], &Settings::default()).expect("a motion");
+        assert!(motion.is_complete(), "{w:e}: {:?}", motion.ending);
+        let speed = motion.at(1.25).expect("the end").velocities[0];
+        assert!((speed - 0.5).abs() < 4.0 * w + 1e-8, "{w:e}: {speed}");
+        assert!(motion.work.steps < 2000, "{w:e}: {} steps", motion.work.steps);
+    }
+}

@@ -101,7 +101,7 @@ pub fn given(axis: &Axis) -> Result<Option<Interval>, PictureError> {
 /// A runaway alone makes an axis longer, by this factor, than all others do.
 const RUNAWAY: f64 = 5.0;
 /// Ranges of so small a part of another are round-off.
-const ROUND_OFF: f64 = 1e-6;
+const NEGLIGIBLE: f64 = 1e-6;
 
 /// The range of what is compared, of the `measures` of some curves: that of all, or on a linear axis of the
 /// first and at least another one, without runaways; with `margin` of its span on both sides.
@@ -113,7 +113,7 @@ pub fn around(scale: Scale, measures: impl Iterator<Item = Vec<f64>>, margin: f6
     let without = |curves: &[Interval], i: usize| all(&[&curves[..i], &curves[i + 1..]].concat());
     let runs_away = |curves: &[Interval], i: usize| {
         let spans = without(curves, i).zip(all(curves)).map(|(rest, all)| rest.span() / all.span());
-        spans.is_some_and(|part| part > ROUND_OFF && part < 1.0 / RUNAWAY)
+        spans.is_some_and(|part| part > NEGLIGIBLE && part < 1.0 / RUNAWAY)
     };
     while scale == Scale::Linear
         && curves.len() > 2
@@ -126,7 +126,7 @@ pub fn around(scale: Scale, measures: impl Iterator<Item = Vec<f64>>, margin: f6
     let magnitude = low.abs().max(high.abs());
     let span = interval.span();
     let one_value = match scale {
-        Scale::Linear => span <= ROUND_OFF * magnitude || span < 1e-290,
+        Scale::Linear => span <= NEGLIGIBLE * magnitude || span < 1e-290,
         Scale::Log => span < 1e-6,
     };
     Some(match (one_value, scale) {

@@ -161,6 +161,9 @@ pub(crate) struct Motion {
     /// units of the system: the kinetic metric hides those of little inertia.
     #[pyo3(get)]
     coordinate_error_estimates: Py<PyArrayDyn<f64>>,
+    /// The same of velocities, shape (k, n).
+    #[pyo3(get)]
+    velocity_error_estimates: Py<PyArrayDyn<f64>>,
     /// The same of multipliers and costates, by name, each of shape (k,).
     #[pyo3(get)]
     multiplier_error_estimates: Py<PyDict>,
@@ -213,8 +216,8 @@ pub(crate) struct Motion {
 kept!(
     Motion: _asked system coordinate_names formulation removal times reached coordinates velocities
     multipliers invariants observables error_estimate relative_error_estimate coordinate_error_estimates
-    multiplier_error_estimates sensitivities sensitivity_error_estimates status cause doubt start end method
-    form charts constants work projection seconds, motion = OnceLock::new()
+    velocity_error_estimates multiplier_error_estimates sensitivities sensitivity_error_estimates status cause
+    doubt start end method form charts constants work projection seconds, motion = OnceLock::new()
 );
 
 /// A motion, and the program of what is observed in it.
@@ -243,8 +246,12 @@ impl Motion {
             Outputs::new(py, &rows, dimension, &names, count)?;
         let (status, cause) = estimate.status(&motion);
         let [sensitivities, sensitivity_error_estimates] = sensitivities::tables(py, derived, dimension, count)?;
-        let mut coordinate_errors: Vec<f64> = so_far.iter().flat_map(|e| e.coordinates.clone()).collect();
-        coordinate_errors.resize(times.len() * dimension, f64::NAN);
+        let table = |of: fn(&ErrorEstimate) -> &[f64]| {
+            let mut errors: Vec<f64> = so_far.iter().flat_map(|e| of(e).to_vec()).collect();
+            errors.resize(times.len() * dimension, f64::NAN);
+            errors
+        };
+        let [coordinate_errors, velocity_errors] = [table(|e| &e.coordinates), table(|e| &e.velocities)];
         let multiplier_errors = so_far.iter().map(|e| &e.multipliers[..]);
         let constants = constant_names(&motion.equations).into_iter().zip(motion.constants.iter().copied());
         let projection = PyDict::new(py);
@@ -269,6 +276,7 @@ impl Motion {
             error_estimate: estimate.absolute,
             relative_error_estimate: estimate.relative,
             coordinate_error_estimates: fixed(py, coordinate_errors, count, &[dimension])?.unbind(),
+            velocity_error_estimates: fixed(py, velocity_errors, count, &[dimension])?.unbind(),
             multiplier_error_estimates: columns(py, &names.multipliers, multiplier_errors, count)?.unbind(),
             sensitivities,
             sensitivity_error_estimates,

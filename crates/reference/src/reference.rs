@@ -85,7 +85,7 @@ const FIRST: f64 = 1e-5;
 const TIGHTER: f64 = 1e-2;
 
 /// The tightest tolerance over the spacing of the numbers.
-const ROUND_OFF: f64 = 8.0;
+const LEAST_SPACINGS: f64 = 8.0;
 
 /// How often a tighter tolerance is tried.
 const TRIES: usize = 3;
@@ -147,7 +147,7 @@ pub fn reference_in<T: Wide>(
     accuracy: f64,
 ) -> Result<Reference<T>, ReferenceError> {
     let runs = Runs::new(question, times)?;
-    let tightest = ROUND_OFF * T::EPSILON;
+    let tightest = LEAST_SPACINGS * T::EPSILON;
     let mut tolerance = (accuracy * FIRST).max(tightest / TIGHTER);
     let mut looser = runs.taylor(tolerance)?;
     let (mut error, mut next) = (f64::INFINITY, TIGHTER);

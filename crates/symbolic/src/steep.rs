@@ -98,6 +98,14 @@ impl Graph {
                 self.steep_product(&factors, &mut range, &mut found, &mut pending);
                 continue;
             }
+            if let Node::Call(Function::Log, x) = node {
+                // it changes as its derivative, a quotient by x, does
+                let quotient = [(x, Rational::integer(-1))];
+                if !self.arena.borrow().saturating_groups(&quotient).is_empty() {
+                    self.steep_product(&quotient, &mut range, &mut found, &mut pending);
+                    continue;
+                }
+            }
             node.each_child(|child| pending.push(child));
             match node {
                 Node::Call(Function::Tanh, x) => found.extend([(x, Kind::Tanh)]),

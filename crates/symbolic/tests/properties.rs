@@ -69,7 +69,7 @@ fn build(g: &Graph, tree: &Tree) -> Expr {
 }
 
 /// Several times what one operation in `f64` rounds off.
-const ROUND_OFF: f64 = 1e-12;
+const NEARBY: f64 = 1e-12;
 
 /// A value and a bound of the round-off in it, in units of the relative round-off.
 #[derive(Clone, Copy, Debug)]
@@ -84,10 +84,10 @@ impl Value {
             return self;
         }
         // What round-off in x does, not f'(x): near x = 1 arcsin turns 1e-12 into 1e-6.
-        let h = ROUND_OFF * self.error;
+        let h = NEARBY * self.error;
         let value = f(self.value);
         let change = (f(self.value + h) - value).abs().max((f(self.value - h) - value).abs());
-        Value { value, error: value.abs() + change / ROUND_OFF }
+        Value { value, error: value.abs() + change / NEARBY }
     }
 }
 
@@ -179,7 +179,7 @@ fn by_tape(g: &Graph, e: Expr, at: &[f64; 3]) -> Option<f64> {
 
 /// The values agree to round-off, unless the tree as written is singular or very ill conditioned.
 fn check(g: &Graph, e: Expr, expected: Value, at: &[f64; 3]) -> Result<(), TestCaseError> {
-    let bound = ROUND_OFF * expected.error + f64::MIN_POSITIVE;
+    let bound = NEARBY * expected.error + f64::MIN_POSITIVE;
     prop_assume!(expected.value.is_finite() && expected.error.is_finite());
     prop_assume!(bound < 1e-3 * (1.0 + expected.value.abs()));
     let found = by_tape(g, e, at);
@@ -292,9 +292,9 @@ proptest! {
         let moved = value(&inner, &at);
         prop_assume!(moved.value.is_finite() && moved.value.abs() < 10.0);
         let mut expected = value(&outer, &[moved.value, at[1], at[2]]);
-        for h in [ROUND_OFF * moved.error, -ROUND_OFF * moved.error] {
+        for h in [NEARBY * moved.error, -NEARBY * moved.error] {
             let nearby = value(&outer, &[moved.value + h, at[1], at[2]]);
-            expected.error += (nearby.value - expected.value).abs() / ROUND_OFF;
+            expected.error += (nearby.value - expected.value).abs() / NEARBY;
         }
         check(&g, composed, expected, &at)?;
     }

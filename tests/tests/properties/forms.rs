@@ -13,7 +13,7 @@ use super::support::for_all;
 const INSTANTS: usize = 8;
 
 /// Rounding errors on the way to a number, as a multiple of ε times what is added up to it.
-const ROUND_OFF: f64 = 4.0;
+const OF_TERMS: f64 = 4.0;
 
 /// That of the judge, as a part of the largest of what is added up.
 const ROUND_OFF_OF_JUDGE: f64 = 1e-30;
@@ -61,7 +61,7 @@ fn compare(motion: &mut Motion) -> Option<Found> {
             found.extend(&outputs.multipliers);
             for ((x, exact), terms) in found.iter().zip(&rates).zip(&terms) {
                 let error = (DoubleDouble::from_f64(*x) - *exact).to_f64().abs();
-                let allowed = ROUND_OFF * f64::EPSILON * terms + ROUND_OFF_OF_JUDGE * largest;
+                let allowed = OF_TERMS * f64::EPSILON * terms + ROUND_OFF_OF_JUDGE * largest;
                 worst = worst.max(if error == 0.0 { 0.0 } else { error / allowed });
                 assert!(!error.is_nan(), "at {t}");
             }

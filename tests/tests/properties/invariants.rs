@@ -11,7 +11,7 @@ use super::support::for_all;
 const INSTANTS: usize = 12;
 
 /// Round-off relative to the size of an invariant and its terms.
-const ROUND_OFF: f64 = 1e-12;
+const OF_TERMS: f64 = 1e-12;
 
 /// The first listed invariant that changes by more than the errors explain.
 fn drifting(motion: &mut Motion) -> Option<String> {
@@ -27,7 +27,7 @@ fn drifting(motion: &mut Motion) -> Option<String> {
         }
     }
     (0..names.len())
-        .find(|&i| change[i] > CERTAINTY * error[i] + ROUND_OFF * (size + start[i].abs()))
+        .find(|&i| change[i] > CERTAINTY * error[i] + OF_TERMS * (size + start[i].abs()))
         .map(|i| format!("{}: {} changes by {:.2e}", motion.equations.formulation, names[i], change[i]))
 }
 

@@ -133,7 +133,7 @@ impl Entry for Modular {
 }
 
 /// The weight of round-off among pivots.
-const ROUND_OFF: f64 = 1e-60;
+const ROUNDED_WEIGHT: f64 = 1e-60;
 
 impl Entry for Bounded {
     const ZERO: Self = Bounded { value: 0.0, magnitude: 0.0 };
@@ -144,7 +144,7 @@ impl Entry for Bounded {
 
     fn weight(self) -> f64 {
         // what may be round-off is a pivot only where nothing else is
-        if self.may_be_zero() { self.value.abs() * ROUND_OFF } else { self.value.abs() }
+        if self.may_be_zero() { self.value.abs() * ROUNDED_WEIGHT } else { self.value.abs() }
     }
 }
 

@@ -2,7 +2,7 @@
 
 use anyhow::Result;
 use equations::{Equations, Outputs};
-use motion::{Choice, MemberMotion};
+use motion::{Choice, ErrorEstimate, MemberMotion};
 use scene::Scene;
 use serde_json::{Map, Value, json};
 
@@ -46,8 +46,12 @@ impl Outcome {
         self.motion.as_ref().map_or(&[], |motion| &motion.outputs)
     }
 
+    fn estimate(&self) -> Option<&ErrorEstimate> {
+        self.motion.as_ref()?.estimate.as_ref()
+    }
+
     fn error_estimate(&self) -> Option<f64> {
-        self.motion.as_ref()?.estimate.as_ref().map(|estimate| estimate.absolute)
+        self.estimate().map(|estimate| estimate.absolute)
     }
 }
 
@@ -164,6 +168,7 @@ impl<'a> Answers<'a> {
             "cause": outcome.cause,
             "times": &self.times[..rows.len()],
             "error_estimate": outcome.error_estimate(),
+            "error_estimates": outcome.estimate().map(|estimate| self.columns.whole_errors(estimate)),
             "steps": run.map(|run| run.work.steps),
             "alone": run.and_then(|run| run.alone.as_ref()),
         });

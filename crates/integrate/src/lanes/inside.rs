@@ -3,7 +3,7 @@
 use std::array::from_fn;
 
 use super::{LANES, Lane, LaneProblem, Lanes};
-use crate::taylor_step::{DEFECT, GOLDEN, MANY, ROUND_OFF, UNLIMITED};
+use crate::taylor_step::{DEFECT, GOLDEN, MANY, LEAST_RELATIVE, UNLIMITED};
 
 impl<P: LaneProblem> Lanes<'_, P> {
     /// As for a single motion: at many places where terms do not limit the step, which depend on the motion's
@@ -15,7 +15,7 @@ impl<P: LaneProblem> Lanes<'_, P> {
             let work = self.riders[l].as_ref().map(|rider| rider.run.work);
             work.map_or(0.0, |work| GOLDEN * (work.steps + work.rejected) as f64)
         });
-        let relative = self.options.relative_tolerance.max(ROUND_OFF);
+        let relative = self.options.relative_tolerance.max(LEAST_RELATIVE);
         let mut forgiven = [1.0_f64; LANES];
         for ((y, reached), absolute) in self.candidate.iter().zip(&self.reached).zip(&self.absolute_tolerances) {
             let moved = |l: usize| (y[l] - reached[l]).abs() / (absolute[l] + relative * y[l].abs());

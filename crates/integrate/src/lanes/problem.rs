@@ -99,4 +99,33 @@ pub struct LaneRun {
     pub work: Work,
     /// How far the projections moved the states.
     pub projection: ProjectionReport,
+    /// Ends of the shortest steps: where rates change most.
+    pub shortest: Shortest,
+}
+
+/// Lengths, ends and states of the shortest steps of a run, in no order.
+#[derive(Clone, Debug, Default)]
+pub struct Shortest(Vec<(f64, f64, Vec<f64>)>);
+
+impl Shortest {
+    /// So many steps.
+    pub const COUNT: usize = 8;
+
+    /// Another step of this length ended there.
+    pub fn add(&mut self, length: f64, t: f64, state: impl Iterator<Item = f64>) {
+        if self.0.len() < Shortest::COUNT {
+            self.0.push((length, t, state.collect()));
+        } else if let Some(longest) = self.0.iter_mut().max_by(|a, b| a.0.total_cmp(&b.0))
+            && length < longest.0
+        {
+            (longest.0, longest.1) = (length, t);
+            longest.2.clear();
+            longest.2.extend(state);
+        }
+    }
+
+    /// Times and states.
+    pub fn ends(self) -> Vec<(f64, Vec<f64>)> {
+        self.0.into_iter().map(|(_, t, state)| (t, state)).collect()
+    }
 }

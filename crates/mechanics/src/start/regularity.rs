@@ -12,7 +12,7 @@ use crate::{State, System};
 pub(super) const SINGULAR_LIMIT: f64 = 1e-10;
 
 /// An entry under this part of what was added up to it is round-off.
-const ROUND_OFF: f64 = 1e-13;
+const OF_TERMS: f64 = 1e-13;
 
 /// Steps of a balance of `M`, and the part of its rows that is balance enough.
 const BALANCE_STEPS: usize = 60;
@@ -131,7 +131,7 @@ impl ScaledMatrices {
             let quantity = if place < h * n { Quantity::ConstraintJacobian } else { Quantity::MassMatrix };
             return Err(StartError::NotFinite { quantity, value: entries[place].value });
         }
-        let known = |x: &Bounded| if x.value.abs() <= ROUND_OFF * x.magnitude { 0.0 } else { x.value };
+        let known = |x: &Bounded| if x.value.abs() <= OF_TERMS * x.magnitude { 0.0 } else { x.value };
         let a = DMatrix::from_row_iterator(h, n, entries[..h * n].iter().map(known));
         let m = DMatrix::from_row_iterator(n, n, entries[h * n..].iter().map(known));
         let columns = column_scale(&a, &m);

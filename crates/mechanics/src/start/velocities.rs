@@ -12,7 +12,7 @@ use crate::{State, System};
 /// Two velocities closer than this part of the larger are one solution, and so is what in one that vanishes
 /// is round-off of the others.
 const SAME: f64 = 1e-6;
-const ROUND_OFF: f64 = 1e-10;
+const OF_OTHERS: f64 = 1e-10;
 
 /// The equations for the velocities that were not given, compiled.
 #[derive(Clone)]
@@ -157,7 +157,7 @@ impl VelocityProgram {
 
 /// The places of velocities that differ.
 fn differing(a: &[f64], b: &[f64]) -> Vec<usize> {
-    let round_off = ROUND_OFF * a.iter().chain(b).fold(0.0_f64, |size, x| size.max(x.abs()));
+    let round_off = OF_OTHERS * a.iter().chain(b).fold(0.0_f64, |size, x| size.max(x.abs()));
     let same = |i: usize| (a[i] - b[i]).abs() <= (SAME * a[i].abs().max(b[i].abs())).max(round_off);
     (0..a.len()).filter(|&i| !same(i)).collect()
 }

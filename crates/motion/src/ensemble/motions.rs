@@ -4,6 +4,7 @@ use super::reading::{Reader, Reading};
 use super::run::Outcome;
 use super::threads::shared;
 use super::{Ensemble, EnsembleMember, EnsembleOptions, MemberRun};
+use crate::band::limits::WATCHED;
 use crate::clock::Clock;
 use crate::metric::subtract;
 use crate::{Breach, Doubt, ErrorEstimate, SolveError};
@@ -69,6 +70,7 @@ impl Ensemble {
         let joined = |(run, read): (Outcome, Option<Result<Reading, SolveError>>)| {
             let mut run = run?;
             let Reading { outputs, estimate, doubt, breaches, .. } = read.unwrap_or_else(|| Ok(Reading::default()))?;
+            run.shortest = Vec::new();
             for values in [&mut run.states, &mut run.differences, &mut run.unknowns] {
                 let mut asked = instants.iter().map(|(_, asked)| *asked);
                 values.retain(|_| asked.next().unwrap_or(true));
@@ -105,18 +107,18 @@ impl Ensemble {
         options: &EnsembleOptions,
     ) -> (Vec<Outcome>, Readings) {
         let mut read = read_all(reader, members, &runs, options);
-        let disturbance = |(index, reading): (usize, &mut Option<Result<Reading, SolveError>>)| {
+        let offsets = |(index, reading): (usize, &mut Option<Result<Reading, SolveError>>)| {
             let reading = reading.as_mut()?.as_mut().ok()?;
-            Some((index, reading.disturbance.take()?))
+            Some((index, reading.offsets.take()?))
         };
-        let (places, disturbances): (Vec<usize>, Vec<Vec<f64>>) =
-            read.iter_mut().enumerate().filter_map(disturbance).unzip();
+        let (places, all_offsets): (Vec<usize>, Vec<Vec<f64>>) =
+            read.iter_mut().enumerate().filter_map(offsets).unzip();
         if places.is_empty() {
             return (runs, read);
         }
-        let disturbed = places.iter().map(|&i| &members[i]).zip(disturbances).collect();
+        let perturbed = places.iter().map(|&i| &members[i]).zip(all_offsets).collect();
         let times: Vec<f64> = reader.instants.iter().map(|(t, _)| *t).collect();
-        let again = match self.run_disturbed(disturbed, &times, options.threads) {
+        let again = match self.run_perturbed(perturbed, &times, options.threads) {
             Ok(again) => again,
             Err(error) => {
                 places.iter().for_each(|&i| read[i] = Some(Err(error.clone())));
@@ -189,9 +191,6 @@ fn read_all(reader: &Reader, members: &[EnsembleMember], runs: &[Outcome], optio
         done
     })
 }
-
-/// Instants within the time of all members at which their constraints are looked at.
-pub const WATCHED: usize = 8;
 
 /// The times asked for, in their order, and where an error is estimated, others between them.
 pub fn instants(members: &[EnsembleMember], times: &[f64], options: &EnsembleOptions) -> Vec<(f64, bool)> {

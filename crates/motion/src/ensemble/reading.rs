@@ -1,30 +1,25 @@
 //! What members say at the times asked for, and how far they are to be trusted.
 
-use equations::{Compiled, Named, Outputs};
+use equations::{Compiled, Outputs};
+use integrate::DenseError;
 
 use super::{Ensemble, EnsembleMember, EnsembleOptions, MemberRun};
-use crate::error_estimate::Differences;
-use crate::last_digits::terms_of_invariants;
-use crate::lost_digits::{self, Looked, RoundOff, largest};
+use crate::band::accumulated_round_off::RoundOff;
+use crate::band::invariant_monitor::{Breach, InvariantMonitor};
+use crate::band::limits::{BEFORE_THE_END, SUMS};
+use crate::band::{Band, TwoRuns, round_off};
 use crate::metric::subtract;
-use crate::round_off::BEFORE_THE_END;
 use crate::single_run::outputs;
-use crate::sizes::sizes;
-use crate::watch::{Breach, Watch};
+use crate::state_scales::sizes;
 use crate::{Doubt, Ending, ErrorEstimate, Metric, SolveError};
-
-/// Largest number of instants, beside the start, that are examined for round-off.
-const LOOKED: usize = 16;
 
 /// Reads members off.
 #[derive(Clone)]
 pub(super) struct Reader<'a> {
-    names: Vec<String>,
     multipliers: Vec<String>,
     compiled: Compiled,
     metric: Metric,
-    watch: Watch,
-    invariants: &'a [Named],
+    monitor: InvariantMonitor,
     states: Vec<String>,
     /// Times of all states of a run, and whether they were asked for.
     pub(super) instants: &'a [(f64, bool)],
@@ -38,20 +33,18 @@ pub(super) struct Reading {
     pub(super) doubt: Option<Doubt>,
     pub(super) breaches: Vec<Breach>,
     /// Round-off that has to be put into its rates.
-    pub(super) disturbance: Option<Vec<f64>>,
+    pub(super) offsets: Option<Vec<f64>>,
 }
 
 impl Ensemble {
     pub(super) fn reader<'a>(&'a self, instants: &'a [(f64, bool)]) -> Result<Reader<'a>, SolveError> {
         let equations = self.equations();
         Ok(Reader {
-            names: self.system.coordinates.iter().map(|c| c.name.clone()).collect(),
             multipliers: equations.multipliers.iter().map(|m| m.name.clone()).collect(),
             compiled: self.compiled().clone(),
             metric: self.metric.clone(),
-            watch: Watch::new(&self.system, equations, &self.by_name.parameters())?,
-            invariants: &equations.invariants,
-            states: lost_digits::names_of_states(equations),
+            monitor: InvariantMonitor::new(&self.system, equations, &self.by_name.parameters())?,
+            states: equations.states.iter().map(|state| equations.graph.name(state.symbol)).collect(),
             instants,
         })
     }
@@ -67,167 +60,142 @@ impl Reader<'_> {
         member.set(&mut self.compiled);
         let parameters = &member.constants[member.constants.len() - self.metric.parameters()..];
         self.metric.set_parameters(parameters);
-        let start = outputs(&mut self.compiled, member.t, &member.y)?;
-        self.watch.begin(member.t, &start, parameters);
-        let (names, multipliers) = (self.names.clone(), self.multipliers.clone());
-        let mut differences = Differences::from(&names, &multipliers, &start.coordinates);
+        let Reader { compiled, metric, monitor, instants, states, multipliers } = self;
+        let mut of_sizes = metric.clone();
+        let mut runs = Runs { compiled, metric: &mut of_sizes, member, run, instants, states, sizes: Vec::new(), place: 0 };
+        let start = runs.kept(member.t)?;
+        let mut band = Band::from(member.t, &start.coordinates);
+        let mut kept = vec![(member.t, start)];
         let mut read = Vec::with_capacity(run.states.len());
-        let every = (run.states.len() / LOOKED).max(1);
-        let (mut is_clear, mut sizes) = (true, Vec::new());
-        for (i, (&(t, asked), y)) in self.instants.iter().zip(&run.states).enumerate() {
-            let now = self.at(run, i, t, y);
-            let now = if asked {
-                now?
-            } else if let Ok(now) = now {
-                now
-            } else {
-                continue;
+        let every = (run.states.len() / SUMS).max(1);
+        for (i, &(t, asked)) in instants.iter().enumerate().take(run.states.len()) {
+            let now = match asked && options.estimate {
+                true => band.look(&mut runs, metric, t, i % every == 0),
+                false => runs.kept(t),
             };
-            let mut terms = || terms(&mut self.compiled, &mut self.metric, member, &mut sizes, t, y);
-            is_clear &= !options.estimate || self.watch.is_clear(t, &now, &mut terms);
-            if !asked {
-                continue;
-            }
-            if let Some(difference) = run.differences.get(i) {
-                let other = outputs(&mut self.compiled, t, &subtract(y, difference))?;
-                differences.add(&mut self.metric, t, &now, &other, t - member.t);
-                if differences.has_doubtful_multipliers() {
-                    differences.add_terms(self.compiled.terms_of_multipliers(member.t, t, y).ok());
+            match now {
+                Ok(now) => {
+                    read.extend(asked.then(|| now.clone()));
+                    kept.push((t, now));
                 }
-                if !multipliers.is_empty() && i % every == 0 {
-                    differences.add_round_off(&mut self.compiled, t, y);
+                Err(error) if asked => return Err(error),
+                Err(_) => {}
+            }
+        }
+        let mut found = Reading { outputs: read, ..Reading::default() };
+        if options.estimate {
+            found.doubt = monitor.doubt(&mut runs, &kept, parameters);
+            found.breaches = std::mem::take(&mut monitor.breaches);
+            if found.doubt.is_none() {
+                match round_off::round_off(&mut runs) {
+                    RoundOff::Small => {}
+                    RoundOff::Counts(offsets) => found.offsets = Some(offsets),
+                    RoundOff::Doubted(doubt) => found.doubt = Some(doubt),
                 }
             }
-            read.push(now);
+            found.estimate = Some(band.estimate(metric, multipliers));
         }
-        let mut doubt = if is_clear { None } else { self.broken(member, run) };
-        let breaches = if is_clear { Vec::new() } else { self.watch.breaches.clone() };
-        let mut disturbance = None;
-        if doubt.is_none() && options.estimate {
-            match self.round_off(member, run, &mut sizes) {
-                RoundOff::Small => {}
-                RoundOff::Counts(found) => disturbance = Some(found),
-                RoundOff::Doubted(found) => doubt = Some(found),
-            }
-        }
-        let estimate = options.estimate.then(|| differences.estimate(&self.metric));
-        Ok(Reading { outputs: read, estimate, doubt, breaches, disturbance })
-    }
-
-    fn at(&mut self, run: &MemberRun, i: usize, t: f64, y: &[f64]) -> Result<Outputs, SolveError> {
-        guess(&mut self.compiled, run, i);
-        outputs(&mut self.compiled, t, y)
-    }
-
-    /// Where something is off by more than the two runs leave open.
-    fn broken(&mut self, member: &EnsembleMember, run: &MemberRun) -> Option<Doubt> {
-        let (mut from, mut sizes) = (member.t, Vec::new());
-        for (i, (&(t, _), y)) in self.instants.iter().zip(&run.states).enumerate() {
-            let kept = self.at(run, i, t, y).ok()?;
-            let looser = outputs(&mut self.compiled, t, &subtract(y, run.differences.get(i)?)).ok()?;
-            let mut terms = || terms(&mut self.compiled, &mut self.metric, member, &mut sizes, t, y);
-            if let Some(because) = self.watch.complaint(t, [&kept, &looser], self.invariants, &mut terms) {
-                return Some(Doubt { from, because });
-            }
-            from = t;
-        }
-        None
+        Ok(found)
     }
 }
 
-impl Reader<'_> {
-    /// As of a single motion, at the instants there are.
-    fn round_off(&mut self, member: &EnsembleMember, run: &MemberRun, sizes: &mut Vec<f64>) -> RoundOff {
-        let reached = match run.ending {
-            Ending::Completed => member.end,
-            Ending::Stopped { t, .. } => member.t + BEFORE_THE_END * (t - member.t),
+/// Both runs of a member, at the instants there are.
+struct Runs<'a> {
+    compiled: &'a mut Compiled,
+    metric: &'a mut Metric,
+    member: &'a EnsembleMember,
+    run: &'a MemberRun,
+    instants: &'a [(f64, bool)],
+    states: &'a [String],
+    /// Of its states, once they are asked for.
+    sizes: Vec<f64>,
+    /// Of the last instant that was found.
+    place: usize,
+}
+
+impl Runs<'_> {
+    /// The place of an instant; `None` of the start.
+    fn find(&mut self, t: f64) -> Option<usize> {
+        let count = self.run.states.len();
+        let places = (0..count).map(|i| (self.place + i) % count);
+        let found = places.into_iter().find(|&i| self.instants[i].0 == t)?;
+        self.place = found;
+        Some(found)
+    }
+
+    /// Just before a singularity all terms are large.
+    fn is_judged(&self, t: f64) -> bool {
+        let EnsembleMember { t: start, end, .. } = *self.member;
+        let length = match self.run.ending {
+            Ending::Completed => (end - start).abs(),
+            Ending::Stopped { t, .. } => BEFORE_THE_END * (t - start).abs(),
         };
-        let length = (reached - member.t).abs();
-        let count = self.instants.iter().take_while(|(t, _)| (t - member.t).abs() <= length).count();
-        let count = count.min(run.states.len());
-        let mut places: Vec<usize> =
-            (1..=LOOKED).map(|k| k * count / LOOKED).filter(|&i| i > 0).map(|i| i - 1).collect();
+        (t - start).abs() <= length
+    }
+
+    fn not_stored(&self, t: f64) -> DenseError {
+        DenseError::NotStored { t, start: self.member.t, end: self.member.end }
+    }
+
+    fn difference(&mut self, t: f64) -> Option<&[f64]> {
+        self.find(t).and_then(|i| self.run.differences.get(i)).map(Vec::as_slice)
+    }
+}
+
+impl TwoRuns for Runs<'_> {
+    fn kept(&mut self, t: f64) -> Result<Outputs, SolveError> {
+        let y = self.states(t).ok_or(self.not_stored(t))?;
+        outputs(self.compiled, t, &y)
+    }
+    fn looser(&mut self, t: f64) -> Result<Outputs, SolveError> {
+        let y = self.looser_states(t).ok_or(self.not_stored(t))?;
+        outputs(self.compiled, t, &y)
+    }
+    fn states(&mut self, t: f64) -> Option<Vec<f64>> {
+        match self.find(t) {
+            Some(i) => {
+                // equations of the instant that have several roots start from that of the motion
+                self.run.unknowns.get(i).into_iter().for_each(|unknowns| self.compiled.set_guess(unknowns));
+                Some(self.run.states[i].clone())
+            }
+            None if t == self.member.t => {
+                self.member.set(self.compiled);
+                Some(self.member.y.clone())
+            }
+            None => {
+                let (_, y) = self.run.shortest.iter().find(|(end, _)| *end == t)?;
+                let nearest = |i: &usize| (self.instants[*i].0 - t).abs();
+                let known = (0..self.run.unknowns.len()).min_by(|a, b| nearest(a).total_cmp(&nearest(b)));
+                known.into_iter().for_each(|i| self.compiled.set_guess(&self.run.unknowns[i]));
+                Some(y.clone())
+            }
+        }
+    }
+    fn looser_states(&mut self, t: f64) -> Option<Vec<f64>> {
+        let kept = self.states(t)?;
+        Some(self.difference(t).map_or(kept.clone(), |difference| subtract(&kept, difference)))
+    }
+    fn compiled(&mut self) -> &mut Compiled {
+        self.compiled
+    }
+    fn sizes(&mut self) -> Vec<f64> {
+        if self.sizes.is_empty() {
+            let EnsembleMember { t, end, y, .. } = self.member;
+            self.sizes = sizes(self.compiled, self.metric, *t, y, end - t);
+        }
+        self.sizes.clone()
+    }
+    fn names(&self) -> Vec<String> {
+        self.states.to_vec()
+    }
+    fn equidistant(&self, _: usize) -> Vec<f64> {
+        let within = self.instants.iter().take_while(|(t, _)| self.is_judged(*t));
+        let (start, count) = (self.member.t, within.count().min(self.run.states.len()));
+        let mut places: Vec<usize> = (1..=SUMS).map(|k| k * count / SUMS).filter(|&i| i > 0).collect();
         places.dedup();
-        let looser = places.iter().map(|&i| subtract(&run.states[i], &run.differences[i]));
-        let looser: Vec<Vec<f64>> = std::iter::once(member.y.clone()).chain(looser).collect();
-        let mut looked = self.looked(member, run, places.clone());
-        let none = vec![0.0; member.y.len()];
-        if lost_digits::is_small(&looked, &looser, &largest(&looked, none.clone()), 1.0) {
-            return RoundOff::Small;
-        }
-        let roots = std::iter::once(None).chain(places.into_iter().map(Some));
-        for (looked, root) in looked.iter_mut().zip(roots) {
-            set_root(&mut self.compiled, member, run, root);
-            lost_digits::look_closer(&mut self.compiled, looked);
-        }
-        if lost_digits::is_small(&looked, &looser, &largest(&looked, none), 1.0) {
-            return RoundOff::Small;
-        }
-        let sizes = sized(&mut self.compiled, &mut self.metric, member, sizes);
-        let sizes = largest(&looked, sizes.to_vec());
-        let names = || self.states.clone();
-        let (compiled, instants) = (&mut self.compiled, self.instants);
-        let mut rates = |t: f64, y: &[f64], rates: &mut [f64]| {
-            set_root(compiled, member, run, instants.iter().position(|(instant, _)| *instant == t));
-            compiled.rates(t, y, rates).is_ok()
-        };
-        lost_digits::round_off(&mut rates, &names, &looked, &looser, &sizes)
+        std::iter::once(start).chain(places.into_iter().map(|i| self.instants[i - 1].0)).collect()
     }
-
-    /// States and sums of terms behind rates at the start and at these instants, up to the first at which
-    /// they cannot be evaluated.
-    fn looked(
-        &mut self,
-        member: &EnsembleMember,
-        run: &MemberRun,
-        instants: impl IntoIterator<Item = usize>,
-    ) -> Vec<Looked> {
-        let instants = instants.into_iter().map(Some);
-        let all = std::iter::once(None).chain(instants);
-        all.map_while(|i| {
-            let (t, y) = i.map_or((member.t, &member.y), |i| (self.instants[i].0, &run.states[i]));
-            set_root(&mut self.compiled, member, run, i);
-            lost_digits::look(&mut self.compiled, t, y)
-        })
-        .collect()
+    fn ends_of_steps(&self) -> Vec<f64> {
+        self.run.shortest.iter().map(|(t, _)| *t).filter(|t| self.is_judged(*t)).collect()
     }
-}
-
-/// Equations of the instant that have several roots start from that of the motion at an instant.
-fn guess(compiled: &mut Compiled, run: &MemberRun, i: usize) {
-    run.unknowns.get(i).into_iter().for_each(|unknowns| compiled.set_guess(unknowns));
-}
-
-/// As [`guess`] at an instant, or at the start.
-fn set_root(compiled: &mut Compiled, member: &EnsembleMember, run: &MemberRun, instant: Option<usize>) {
-    match instant {
-        None => member.set(compiled),
-        Some(i) => guess(compiled, run, i),
-    }
-}
-
-/// `sizes` are those of the member's states, once they are asked for.
-fn sized<'a>(
-    compiled: &mut Compiled,
-    metric: &mut Metric,
-    member: &EnsembleMember,
-    sizes: &'a mut Vec<f64>,
-) -> &'a [f64] {
-    if sizes.is_empty() {
-        *sizes = self::sizes(compiled, metric, member.t, &member.y, member.end - member.t);
-    }
-    sizes
-}
-
-/// What is added up to invariants.
-fn terms(
-    compiled: &mut Compiled,
-    metric: &mut Metric,
-    member: &EnsembleMember,
-    sizes: &mut Vec<f64>,
-    t: f64,
-    y: &[f64],
-) -> Option<Vec<f64>> {
-    let sizes = sized(compiled, metric, member, sizes);
-    terms_of_invariants(compiled, t, y, sizes)
 }

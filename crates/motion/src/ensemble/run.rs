@@ -5,18 +5,19 @@ use std::sync::{Mutex, PoisonError};
 
 use equations::{Compiled, Equations, LaneEquations, Plan};
 use integrate::{
-    Interrupt, LANES, Lane, LaneProblem, LaneStart, Options, ProjectionReport, Start, Status, StopCause, Work,
+    Interrupt, LANES, Lane, LaneProblem, LaneStart, Options, ProjectionReport, Shortest, Start, Status, StopCause, Work,
 };
 use symbolic::caught;
 
 use super::threads::{Take, shared};
 use super::{Ensemble, EnsembleMember};
-use crate::disturbed::disturbed_by_constants;
-use crate::last_digits::{UNITS, move_digits};
+use crate::band::limits::UNITS;
+use crate::band::perturbed_rates::perturbed_by_constants;
+use crate::band::ulp_perturbation::move_digits;
 use crate::lost_rank::column_factors;
 use crate::metric::subtract;
 use crate::single_run::SingleRun;
-use crate::sizes::sizes;
+use crate::state_scales::sizes;
 use crate::{Ending, Metric, Prepared, SolveError, TIGHTER};
 
 /// How an ensemble is run.
@@ -54,6 +55,8 @@ pub struct MemberRun {
     pub alone: Option<String>,
     /// Unknowns of the instant near these times, where its equations have several roots; otherwise empty.
     pub(super) unknowns: Vec<Vec<f64>>,
+    /// Ends of the shortest steps of the kept run, and the states there.
+    pub(super) shortest: Vec<(f64, Vec<f64>)>,
     /// Whether it stopped where its equations may be no good, and others might be.
     pub(super) left_chart: bool,
 }
@@ -79,7 +82,7 @@ impl Ensemble {
     }
 
     /// The looser runs of `members` once more, alone, with this round-off in their rates.
-    pub(super) fn run_disturbed(
+    pub(super) fn run_perturbed(
         &self,
         members: Vec<(&EnsembleMember, Vec<f64>)>,
         times: &[f64],
@@ -87,19 +90,19 @@ impl Ensemble {
     ) -> Result<Vec<Outcome>, SolveError> {
         let Prepared { t, start, constants, .. } = self.by_name.varying().prepared();
         let parameters = constants.len() - self.by_name.varying().constants().len();
-        let equations = disturbed_by_constants(self.equations(), parameters);
-        let with = |constants: &[f64], disturbance: &[f64]| {
+        let equations = perturbed_by_constants(self.equations(), parameters);
+        let with = |constants: &[f64], offsets: &[f64]| {
             let (own, varied) = constants.split_at(constants.len() - parameters);
-            [own, disturbance, varied].concat()
+            [own, offsets, varied].concat()
         };
         let point = [&[*t], &start[..], &with(constants, &vec![0.0; 2 * start.len()])].concat();
         let plan = Plan::choose(&equations, Some(&point))?;
         let compiled = Compiled::with_plan(&equations, &plan)?.with_series(&equations, &plan)?;
-        let disturbed = |(member, disturbance): (&EnsembleMember, Vec<f64>)| EnsembleMember {
-            constants: with(&member.constants, &disturbance),
+        let perturbed = |(member, offsets): (&EnsembleMember, Vec<f64>)| EnsembleMember {
+            constants: with(&member.constants, &offsets),
             ..member.clone()
         };
-        let members: Vec<EnsembleMember> = members.into_iter().map(disturbed).collect();
+        let members: Vec<EnsembleMember> = members.into_iter().map(perturbed).collect();
         let why = String::from("round-off of its rates is put into them");
         let by = (&compiled, Err(&why));
         Ok(self.run_by(by, &members, times, self.settings.tolerance, Origin::LastDigit, threads))
@@ -246,8 +249,8 @@ impl Task<'_> {
             match outcome {
                 Ok(run) => {
                     let states = run.states.chunks_exact(n).map(<[f64]>::to_vec).collect();
-                    let (work, projection) = (run.work, run.projection);
-                    done.push((index, Ok(MemberRun { states, work, projection, ..MemberRun::default() })));
+                    let (work, projection, shortest) = (run.work, run.projection, run.shortest.ends());
+                    done.push((index, Ok(MemberRun { states, work, projection, shortest, ..MemberRun::default() })));
                 }
                 Err(why) => self.leave(vec![index], &why.to_string()),
             }
@@ -323,6 +326,15 @@ impl Task<'_> {
             matches!(cause, Interrupted | Memory { .. } | TimeLimit { .. } | TooManySteps { .. })
         };
         let stopped = matches!(&solution.status, Status::Stopped { cause, .. } if !of_limits(cause));
+        let mut shortest = Shortest::default();
+        for step in solution.dense.step_times().windows(2) {
+            let state = || {
+                let mut y = vec![0.0; member.y.len()];
+                solution.dense.evaluate(step[1], &mut y);
+                y
+            };
+            shortest.add((step[1] - step[0]).abs(), step[1], std::iter::once_with(state).flatten());
+        }
         let words = self.words.lock().unwrap_or_else(PoisonError::into_inner);
         Ok(MemberRun {
             states: states.collect(),
@@ -330,6 +342,7 @@ impl Task<'_> {
             ending: Ending::of(&words, compiled, solution, &[]),
             work: solution.work,
             projection: solution.projection,
+            shortest: shortest.ends(),
             alone: Some(why),
             left_chart: stopped && compiled.has_chart(),
             ..MemberRun::default()

@@ -1682,6 +1682,8 @@ class Motion:
     """Largest difference of the two runs in each coordinate up to each of `times`, shape (k, n), in the
     units of the system: the kinetic metric hides those of little inertia.
     """
+    velocity_error_estimates: Final[_Array]
+    """The same of velocities, shape (k, n)."""
     multiplier_error_estimates: Final[dict[str, _Array]]
     """The same of multipliers and costates, by name, each of shape (k,)."""
     sensitivities: Final[dict[str, Outputs]]

@@ -21,7 +21,7 @@ const LEFT: f64 = 1e3 * TOLERANCE * TIGHTER;
 
 /// A costate under this part of what kinetic energy could make of a momentum is round-off, which no search
 /// makes less.
-const ROUND_OFF: f64 = 1e-13;
+const LEAST_COSTATE: f64 = 1e-13;
 
 /// Instants at which a costate's size is looked at.
 const INSTANTS: usize = 12;
@@ -71,7 +71,7 @@ fn judged(case: &mut Case, setting: Setting, removal: &Removal, planted: bool) -
     };
     case.found.count(0, FOUND, found.is_ok());
     let Ok(mut motion) = found else { return Ok(None) };
-    let least: Vec<f64> = momenta(setting)?.into_iter().map(|size| ROUND_OFF * size).collect();
+    let least: Vec<f64> = momenta(setting)?.into_iter().map(|size| LEAST_COSTATE * size).collect();
     let (left, limit) = left(&mut motion, &mut run(ConstantsRule::Zero)?, removal, &least)?;
     case.found.bound(0, CLAIM, left, limit);
     Ok(Some(motion))

@@ -64,7 +64,7 @@ fn compared(
         limit = limit.max(largest(&own.coordinates, &other.coordinates) + largest(&one, &two));
         size = size.max(own.coordinates.iter().fold(0.0, |a, q| a.max(q.abs())));
     }
-    case.found.bound(0, claim, gap, motion::CERTAINTY * (limit + ROUND_OFF * size) + case.floor);
+    case.found.bound(0, claim, gap, motion::CERTAINTY * (limit + DIGITS_OF_TERMS * size) + case.floor);
     if last < end {
         let because = match last < kept.end() {
             true => "the constraints nearly lose rank".into(),
@@ -86,7 +86,7 @@ fn rank(system: &System, state: &State) -> Result<f64, CheckError> {
 }
 
 /// Round-off relative to the size of a quantity.
-const ROUND_OFF: f64 = 1e-13;
+const DIGITS_OF_TERMS: f64 = 1e-13;
 
 /// `|f|` stays within what the two runs differ by, and round-off.
 fn keeps_constraint(case: &mut Case, which: Which) -> Result<(), CheckError> {
@@ -104,7 +104,7 @@ fn keeps_constraint(case: &mut Case, which: Which) -> Result<(), CheckError> {
         residual = residual.max(own);
         // what both runs are off by is no error of theirs
         let error = error + (own - other).abs();
-        limit = limit.max(motion::CERTAINTY * size * error + ROUND_OFF * size * size);
+        limit = limit.max(motion::CERTAINTY * size * error + DIGITS_OF_TERMS * size * size);
     }
     case.found.bound(0, "the constraint is kept", residual, limit);
     Ok(())

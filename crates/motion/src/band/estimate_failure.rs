@@ -2,6 +2,7 @@
 
 use integrate::Method;
 
+use super::limits::{BEFORE_THE_END, FEW_STEPS, MORE_STEPS, TOGETHER, TOO_MANY};
 use crate::TIGHTER;
 
 /// That the difference of the two runs is not an error estimate from some time on.
@@ -12,21 +13,6 @@ pub struct Doubt {
     /// Why, in words.
     pub because: String,
 }
-
-/// Fewer steps than this may be those of the start, or of a motion that is a polynomial.
-const FEW_STEPS: usize = 200;
-
-/// Part of a stopped motion whose steps count: just before a singularity they are short at any tolerance.
-const BEFORE_THE_END: f64 = 0.9;
-
-/// A hundredth of the tolerance takes at least this power of what the order of the method asks for.
-const MORE_STEPS: f64 = 1.0 / 3.0;
-
-/// Steps of a hundredth of the tolerance over what the method's order asks for; beyond, it is round-off.
-const TOO_MANY: f64 = 10.0;
-
-/// Number of steps of the looser run per stretch, in the search for where the doubt begins.
-const TOGETHER: usize = 20;
 
 impl Doubt {
     /// From the ends of the steps of the kept and of the looser run, up to the `end` of the motion, by this

@@ -6,25 +6,25 @@ use symbolic::Symbol;
 
 /// `ẏ_i = F_i (1 + η_i) + d_i`, except for rates that are states themselves, with these numbers: `d`, then
 /// `η`.
-pub(crate) fn disturbed(equations: &Equations, by: &[f64]) -> Equations {
+pub(crate) fn perturbed(equations: &Equations, by: &[f64]) -> Equations {
     let mut equations = equations.clone();
-    let symbols = disturb(&mut equations);
+    let symbols = perturb(&mut equations);
     equations.parameters.extend(symbols.into_iter().zip(by.iter().copied()));
     equations
 }
 
 /// The same with free constants, before the last `behind` ones.
-pub(crate) fn disturbed_by_constants(equations: &Equations, behind: usize) -> Equations {
+pub(crate) fn perturbed_by_constants(equations: &Equations, behind: usize) -> Equations {
     let mut equations = equations.clone();
     let constant = |symbol| FreeConstant { symbol, natural: None, memory: None };
-    let constants: Vec<FreeConstant> = disturb(&mut equations).into_iter().map(constant).collect();
+    let constants: Vec<FreeConstant> = perturb(&mut equations).into_iter().map(constant).collect();
     let place = equations.free_constants.len() - behind;
     equations.free_constants.splice(place..place, constants);
     equations
 }
 
 /// The symbols `d`, then `η`.
-fn disturb(equations: &mut Equations) -> Vec<Symbol> {
+fn perturb(equations: &mut Equations) -> Vec<Symbol> {
     let g = &equations.graph;
     let known: Vec<Symbol> = equations.states.iter().map(|state| state.symbol).collect();
     let fresh =

@@ -6,19 +6,10 @@
 //! to tell what becomes of it ([`RoundOff::Counts`]); where it is not a small part of the state, either, no
 //! estimate is to be trusted.
 
-use equations::{Compiled, Equations};
+use equations::Compiled;
 
-use crate::doubt::Doubt;
-use crate::settings::CERTAINTY;
-
-/// Round-off above this fraction of a state raises a doubt.
-const TOLD: f64 = 1e-6;
-/// Round-off up to this fraction of a state is that of the numbers themselves. Round-off up to `NEARLY` times
-/// the difference of the runs counts as no more than that difference: it is an upper bound.
-pub(crate) const NUMBERS: f64 = 256.0 * f64::EPSILON;
-const NEARLY: f64 = 4.0;
-/// The error of a sum over what is added up to it: numbers are rounded to the nearest.
-pub(crate) const ROUNDED: f64 = 0.5 * f64::EPSILON;
+use super::estimate_failure::Doubt;
+use super::limits::{CERTAINTY, NEARLY, ROUND_OFF, ROUNDED, TOLD};
 
 /// Time, states, and what is added up to their rates.
 pub type Looked = (f64, Vec<f64>, Vec<f64>);
@@ -28,9 +19,9 @@ pub type Rates<'a> = dyn FnMut(f64, &[f64], &mut [f64]) -> bool + 'a;
 
 /// Round-off that the rates accumulate, beside the difference of the runs.
 pub enum RoundOff {
-    /// No more than the difference of the runs, or than the rounding of numbers.
+    /// No more than the difference of the runs, or than [`ROUND_OFF`].
     Small,
-    /// To be put into the rates: `d` and `η` of `disturbed`.
+    /// To be put into the rates: `d` and `η` of [`super::perturbed_rates`].
     Counts(Vec<f64>),
     /// Too large for any error estimate.
     Doubted(Doubt),
@@ -102,7 +93,7 @@ impl Sums {
 
     /// States whose round-off exceeds that of their numbers and `NEARLY` times the difference of the runs.
     fn over<'a>(&'a self, sizes: &'a [f64]) -> impl Iterator<Item = usize> + 'a {
-        let is_over = |i: &usize| self.sums[*i] > (NEARLY * self.differences[*i]).max(NUMBERS * sizes[*i]);
+        let is_over = |i: &usize| self.sums[*i] > (NEARLY * self.differences[*i]).max(ROUND_OFF * sizes[*i]);
         (0..self.sums.len()).filter(is_over)
     }
 }
@@ -128,7 +119,7 @@ pub fn is_small(looked: &[Looked], looser: &[Vec<f64>], sizes: &[f64], between: 
 /// Round-off that rates accumulate between instants of the kept run, from the states of the looser run there
 /// and the names and sizes of states. A doubt begins where it exceeds `TOLD` of a state and ten times the
 /// difference of the runs. Rates that cannot be evaluated end the search.
-pub fn round_off(
+pub fn accumulated(
     rates: &mut Rates,
     names: &dyn Fn() -> Vec<String>,
     looked: &[Looked],
@@ -157,13 +148,13 @@ pub fn round_off(
             }
         }
     }
-    if over.contains(&true) { RoundOff::Counts(disturbance(rates, looked, looser, &over)) } else { RoundOff::Small }
+    if over.contains(&true) { RoundOff::Counts(offsets_of(rates, looked, looser, &over)) } else { RoundOff::Small }
 }
 
 /// `d`, then `η`: the mean round-off of rates up to some instant, where that is largest, in the direction of
 /// the way that a state goes by its rate, and as a part of the largest rate; of states whose round-off
 /// counts. All of one sign: that in which the looser run is apart from the kept one.
-fn disturbance(rates_at: &mut Rates, looked: &[Looked], looser: &[Vec<f64>], counts: &[bool]) -> Vec<f64> {
+fn offsets_of(rates_at: &mut Rates, looked: &[Looked], looser: &[Vec<f64>], counts: &[bool]) -> Vec<f64> {
     let zeros = vec![0.0_f64; counts.len()];
     let [mut sums, mut means, mut way, mut farthest] = [(); 4].map(|()| zeros.clone());
     let [mut largest, mut apart, mut rates] = [(); 3].map(|()| zeros.clone());
@@ -192,9 +183,4 @@ fn disturbance(rates_at: &mut Rates, looked: &[Looked], looser: &[Vec<f64>], cou
     let sign = 1.0_f64.copysign((0..counts.len()).map(likeness).sum());
     let part = |i: usize| if offsets[i] == 0.0 { 0.0 } else { (offsets[i] / largest[i]).abs().min(TOLD) };
     offsets.iter().map(|d| sign * d).chain((0..counts.len()).map(|i| sign * part(i))).collect()
-}
-
-/// The names of the states.
-pub(crate) fn names_of_states(equations: &Equations) -> Vec<String> {
-    equations.states.iter().map(|state| equations.graph.name(state.symbol)).collect()
 }

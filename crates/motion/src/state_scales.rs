@@ -3,7 +3,7 @@
 use equations::{Compiled, Outputs};
 
 use crate::Metric;
-use crate::last_digits::signs;
+use crate::band::ulp_perturbation::signs;
 use crate::metric::subtract;
 
 /// A state below this fraction of the size from the energy is round-off.

@@ -2,10 +2,8 @@
 
 use equations::Compiled;
 
+use super::limits::UNITS;
 use crate::metric::subtract;
-
-/// Units in the last place by which a start is moved.
-pub(crate) const UNITS: f64 = 4.0;
 
 /// Perturbation of each entry in units in the last place, with alternating sign.
 pub fn move_digits(y: &mut [f64], units: impl Fn(usize) -> f64) {
