@@ -82,7 +82,15 @@ impl Sweep {
         let (name, text, names) = (name.into(), text.into(), names.to_vec());
         let mut formulations = formulations.unwrap_or_else(usual);
         formulations.sort_by_key(|own| FORMULATIONS.iter().position(|entry| entry == own));
-        let sweep = Sweep { name, text, overrides, names, formulations, extent: Extent::Everything, settings: settings.clone() };
+        let sweep = Sweep {
+            name,
+            text,
+            overrides,
+            names,
+            formulations,
+            extent: Extent::Everything,
+            settings: settings.clone(),
+        };
         let scene = sweep.read(&[])?;
         let (costates, others): (Vec<&str>, Vec<&str>) =
             sweep.names.iter().map(String::as_str).partition(|name| is_costate(name));

@@ -181,7 +181,8 @@ impl Comparison {
 impl Comparison {
     fn label(&self, name: &str) -> PyResult<String> {
         let runs = || self.runs.iter().map(Py::get);
-        let found = runs().find(|r| r.label == name || r.title == name).or_else(|| runs().find(|r| r.formulation == name));
+        let found =
+            runs().find(|r| r.label == name || r.title == name).or_else(|| runs().find(|r| r.formulation == name));
         let known = || runs().map(|r| r.label.as_str()).collect::<Vec<_>>().join(", ");
         found.map(|r| r.label.clone()).ok_or_else(|| errors::unknown(format!("no run `{name}`; there are {}", known())))
     }

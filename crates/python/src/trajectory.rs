@@ -11,10 +11,10 @@ use pyo3::types::PyDict;
 
 use crate::arguments::Numbers;
 use crate::arrays::{Floats, fixed, list, times, within};
+use crate::ensemble::Instants;
 use crate::equations::Equations;
 use crate::kept::kept;
 use crate::motion::work;
-use crate::ensemble::Instants;
 use crate::{arguments, background, errors};
 
 /// One run of the time loop, without a second one: only its tolerance tells anything of its error.
