@@ -129,8 +129,8 @@ pub(crate) struct Motion {
     /// Name of the removal, None where the formulation needs none.
     #[pyo3(get)]
     removal: Option<String>,
-    /// Times, shape (k,), in the unit of time of the system. If one time was asked for as a number, all arrays
-    /// lack this axis.
+    /// Times, shape (k,), in the unit of time of the system. If one time was asked for as a number, all
+    /// arrays lack this axis.
     #[pyo3(get)]
     times: Py<PyArrayDyn<f64>>,
     /// How many of the times it reached.

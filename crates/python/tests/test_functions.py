@@ -13,12 +13,13 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
+HAS_JAX = importlib.util.find_spec("jax") is not None
 SCENES = [("sledge", "chetaev"), ("sledge", "vakonomic"), ("disc", "chetaev"), ("turntable", "vakonomic"), ("trailer", "chetaev")]
 
 
 @pytest.fixture(autouse=True)
 def modules(monkeypatch):
-    if importlib.util.find_spec("jax") is None:
+    if not HAS_JAX:
         monkeypatch.setitem(sys.modules, "jax", types.SimpleNamespace(numpy=np))
         monkeypatch.setitem(sys.modules, "jax.numpy", np)
     else:
@@ -71,7 +72,7 @@ def test_jax_differentiates():
     """JAX's own derivatives where it is installed; differences of what stands for it elsewhere."""
     equations = deltaq.built_in("sledge").equations("vakonomic")
     made, y, h = equations.functions("jax"), equations.initial_state(), 1e-6
-    if importlib.util.find_spec("jax") is None:
+    if not HAS_JAX:
         rates = lambda y: made.rates(0.0, y, made.parameters)
         found, tolerance = np.stack([(rates(y + h * e) - rates(y - h * e)) / (2 * h) for e in np.eye(len(y))], axis=1), 1e-7
     else:

@@ -1657,8 +1657,8 @@ class Motion:
     removal: Final[str | None]
     """Name of the removal, None where the formulation needs none."""
     times: Final[_Array]
-    """Times, shape (k,), in the unit of time of the system. If one time was asked for as a number, all arrays
-    lack this axis.
+    """Times, shape (k,), in the unit of time of the system. If one time was asked for as a number, all
+    arrays lack this axis.
     """
     reached: Final[int]
     """How many of the times it reached."""
