@@ -117,8 +117,8 @@ y'*cos(phi) = x'*sin(phi)`;
     const [, first] = /exactly the equations of: (.*)\./.exec(native) ?? [];
     must(first && words.includes(first), `${to}: the native program says ${first}, the page ${words}`);
   }
-  await yours(page, right.replace("sin(phi) +", "sin(phj) +"));
-  must((await said()).includes("cannot be read") && (await said()).includes("phj"), `an unknown name: ${await said()}`);
+  await yours(page, right.replace("sin(phi) +", "sin(phi +"));
+  must((await said()).includes("cannot be read") && (await page.$$("#under .bad")).length === 1, `a bracket that is not closed: ${await said()}`);
   await yours(page, right.replace("+ phi'^2*cos", "- phi'^2*cos"));
   await page.screenshot({ path: join(pictures, "review.png") });
   await choose(page, "sledge");

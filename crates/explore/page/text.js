@@ -13,18 +13,20 @@ export const button = (text, act) => {
   return made;
 };
 
-// Lines under a text, with numbers; where one of `found` is, its place is marked.
+// Lines under a text, with numbers; the places of what was found there are marked, unless one lies in another.
 export function mark(under, area, found) {
   under.replaceChildren(...area.value.split("\n").map((line, i) => {
     const row = document.createElement("div");
-    const one = found.find((one) => one.line === i + 1);
-    row.append(line || " ");
-    if (!one) return row;
-    row.className = one.kind;
-    const place = document.createElement("u");
-    const [from, to] = [one.column - 1, one.column - 1 + Math.max(1, one.length)];
-    place.textContent = line.slice(from, to);
-    row.replaceChildren(line.slice(0, from), place, line.slice(to) || " ");
+    let done = 0;
+    for (const { line: at, column, length, kind } of found) {
+      if (at !== i + 1 || column - 1 < done) continue;
+      row.className ||= kind;
+      const place = document.createElement("u");
+      place.textContent = line.slice(column - 1, column - 1 + Math.max(1, length));
+      row.append(line.slice(done, column - 1), place);
+      done = column - 1 + place.textContent.length;
+    }
+    row.append(line.slice(done) || " ");
     return row;
   }));
 }
@@ -118,7 +120,9 @@ export class Text {
     mark(this.marks, this.area, kinds.flatMap(([those, kind]) => those.map((one) => ({ ...one, kind }))));
     this.scroll();
     for (const [list, those] of [[this.faults, faults], [this.notes, notes]]) {
-      list.replaceChildren(...those.map((one) => this.fault(one)));
+      const items = document.createElement("ul");
+      items.append(...those.map((one) => this.fault(one)));
+      list.replaceChildren(items);
       list.hidden = !those.length;
     }
     this.faults.dataset.message = message;

@@ -39,11 +39,13 @@ export class Yours {
     if (cannot) return say(line(`They cannot be read: ${cannot}`, "bad"));
     say(line(VERDICTS[verdict], verdict === "wrong" ? "bad sentence" : "sentence"));
     for (const one of mends) {
-      say(button(`line ${one.line}: ${one.message}`, () => {
+      const item = line("");
+      item.append(button(`line ${one.line}: ${one.message}`, () => {
         const before = this.theirs.value.split("\n").slice(0, one.line - 1).reduce((sum, text) => sum + text.length + 1, 0);
         this.theirs.focus();
         this.theirs.setSelectionRange(before + one.column - 1, before + one.column - 1 + one.length);
       }));
+      say(item);
     }
     explanations.forEach((one, i) => say(line(`${i ? "The same equations come of" : "They are exactly the equations of"}: ${one.join(", ")}.`)));
     for (const one of broken) say(line(`The constraint ${one} is not that of the scene.`));

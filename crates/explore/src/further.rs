@@ -1,5 +1,5 @@
-//! What is said of one motion beside it: its integrals, its derivatives by the numbers that can be set, and whether
-//! equations are its.
+//! What is said of one motion beside it: its integrals, its derivatives by the numbers that can be set, and
+//! whether equations are its.
 
 use integrals::Integrals;
 use motion::{Choice, sensitivities, setting};
@@ -22,7 +22,8 @@ pub(crate) fn integrals(subject: &Subject, question: &Question) -> Result<Value,
     Ok(json!({ "label": choice.label, "near": near, "degree": question.degree, "lines": found.lines() }))
 }
 
-/// Whether somebody's equations are d'Alembert–Lagrange's; if not, whose they are, and the terms that make them wrong.
+/// Whether somebody's equations are d'Alembert–Lagrange's; if not, whose they are, and the terms that make
+/// them wrong.
 pub(crate) fn review(subject: &Subject, question: &Question) -> Result<Value, Refused> {
     let asked = Asked::default();
     let found = review::review(&subject.scene, "yours", &question.theirs, &asked)?;

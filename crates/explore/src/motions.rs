@@ -125,8 +125,8 @@ fn gaps(
     Ok(gaps)
 }
 
-/// `sqrt(Mᵢᵢ)` at the start, the length of a unit step along coordinate `i`, with the unit of `i`: of the coordinate
-/// in metres with the most inertia, or without metres of any. Gaps divided by it are in that unit.
+/// `sqrt(Mᵢᵢ)` at the start, the length of a unit step along coordinate `i`, with the unit of `i`: of the
+/// coordinate in metres with the most inertia, or without metres of any. Gaps divided by it are in that unit.
 pub(crate) fn yardstick<'s>(scene: &'s Scene, metric: &mut Metric) -> (f64, &'s str) {
     let (coordinates, start) = (&scene.system.coordinates, &scene.start);
     let in_metres = coordinates.iter().any(|c| c.unit == "m");

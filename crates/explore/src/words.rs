@@ -66,9 +66,9 @@ fn word(answer: &Answer) -> &'static str {
     }
 }
 
-/// A row of the table: the verdict with its reason if it is undecided; the first time at which a difference is
-/// certain and the one at which the gap passes [`SEEN`], in s; the largest gap in the unit of the yardstick; the
-/// largest difference of every coordinate in its unit.
+/// A row of the table: the verdict with its reason if it is undecided; the first time at which a difference
+/// is certain and the one at which the gap passes [`SEEN`], in s; the largest gap in the unit of the
+/// yardstick; the largest difference of every coordinate in its unit.
 fn pair(comparison: &Comparison, pair: &Pair, (yardstick, unit): (f64, &str)) -> Value {
     let label = |run: usize| comparison.runs[run].choice.label.as_str();
     let gap = &pair.gap;

@@ -1,5 +1,5 @@
-//! Which term of a text is wrong: one after the other is turned round, dropped, halved and doubled, and the review says
-//! which of these changes makes the equations right.
+//! Which term of a text is wrong: one after the other is turned round, dropped, halved and doubled, and the
+//! review says which of these changes makes the equations right.
 
 use std::ops::Range;
 
@@ -31,13 +31,16 @@ pub struct Mend {
     pub fault: &'static str,
 }
 
-/// The terms of `text`, each of which alone makes wrong equations of right ones; none in another notation than
-/// [`Notation::Text`].
+/// The terms of `text`, each of which alone makes wrong equations of right ones; none in another notation
+/// than [`Notation::Text`].
 ///
 /// ```
 /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
 /// let sledge = catalogue::find("sledge", &[])?;
-/// let theirs = "x'' = g*sin(alpha) - l*sin(phi)\ny'' = l*cos(phi)\nphi'' = 0*t\ny'*cos(phi) + x'*sin(phi) = 0";
+/// let theirs = "x'' = g*sin(alpha) - l*sin(phi)
+///               y'' = l*cos(phi)
+///               phi'' = 0*t
+///               y'*cos(phi) + x'*sin(phi) = 0";
 /// let mends = review::mends(&sledge, theirs, &review::Asked::default());
 /// assert!(mends.iter().any(|m| (m.line, &m.term[..], m.fault) == (4, "x'*sin(phi)", "has the wrong sign")));
 /// # Ok(())
