@@ -380,6 +380,6 @@ fn a_robot_of_bodies_is_checked_and_shown_in_formulas() {
     let text = std::fs::read_to_string(&robot).expect("a scene").replace("mass = 3\n", "mass = -3\n");
     std::fs::write(&odd, text).expect("written");
     let told = answer(&["check", &odd], 0).0;
-    assert!(told.contains("odd.toml:25:8: the mass of [body.robot] is -3, below zero"), "{told}");
+    assert!(told.contains("odd.toml:26:8: the mass of [body.robot] is -3, below zero"), "{told}");
     refused(&["check", "--strict", &odd], &["below zero", "and --strict takes them for faults"]);
 }

@@ -91,6 +91,7 @@ pub(crate) fn solve(error: impl Into<motion::SolveError>) -> PyErr {
         | Error::Interrupted { .. } => BoundaryError::new_err(text),
         Error::Broken(error) => broken(&error),
         Error::Call(_) | Error::Tolerance { .. } => CallError::new_err(text),
+        // constants, steps and members that make no sense, and what a later version refuses
         _ => SolveError::new_err(text),
     }
 }
