@@ -45,7 +45,7 @@ pub(super) fn values_on_the_constraint(case: &mut Case) -> Result<(), CheckError
     let shifted: Vec<f64> = given.iter().zip(&at_start).map(|(mu, phi)| mu - phi).collect();
     let mut motion = run(case, &other, equations(&other, VAKONOMIC, None)?, &shifted)?;
     case.same(15, "vakonomic: L + phi f with mu0 - phi", Which::Vakonomic, &mut motion);
-    for i in 0..case.removed.len().min(1) {
+    if let Some(i) = case.removed.iter().position(|removed| removed.removal.name == "coordinates") {
         let (removal, costates) = (case.removed[i].removal.clone(), case.removed[i].costates.clone());
         let equations = equations(&other, REMOVED_CONSTRAINT, Some(&removal))?;
         let constants = free_constants(&equations, &costates);
