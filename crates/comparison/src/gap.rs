@@ -291,7 +291,9 @@ fn unknown(motions: [&Motion; 2], bands: &[Band; 2], samples: &[Sample], metric:
     let imprecise = imprecise.filter(|(known, _)| !(known.error < SAME_ESTIMATE * known.reach || known.error == 0.0));
     if let Some((known, name)) = imprecise.max_by(|a, b| (a.0.error / a.0.reach).total_cmp(&(b.0.error / b.0.reach))) {
         let part = known.error / known.reach;
-        return Some(format!("relative error estimate of {name} {part:.1e} is over {SAME_ESTIMATE:.0e}, and no gap is certain"));
+        return Some(format!(
+            "relative error estimate of {name} {part:.1e} is over {SAME_ESTIMATE:.0e}, and no gap is certain"
+        ));
     }
     let each = samples.iter().flat_map(|sample| sample.coordinates.iter().zip(&metric.names));
     let (difference, name) = each.into_iter().find(|(d, _)| ask(d.by, d.bound) != Answer::Within)?;

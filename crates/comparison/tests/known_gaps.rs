@@ -3,7 +3,7 @@
 
 use comparison::{Gap, Sampling, Verdict, compare_motions_by};
 use equations::Formulation;
-use motion::{CHETAEV, Metric, Motion, REMOVED_CONSTRAINT, Settings, choices, solve_choice};
+use motion::{Metric, Motion, REMOVED_CONSTRAINT, Settings, choices, solve_choice};
 use scene::Scene;
 
 const EPS: f64 = f64::EPSILON;

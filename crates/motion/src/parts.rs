@@ -1,16 +1,16 @@
 //! Parts of the library that are tested by themselves: for `tests/` of this crate, and for nobody else.
 
-pub use crate::connect::{merge, samples, spread, times};
-pub use crate::constants::searched;
 pub use crate::band::accumulated_round_off::{Looked, RoundOff, accumulated as round_off, is_small, largest, look};
 pub use crate::band::limits::{STRETCHES, WATCHED};
 pub use crate::band::ulp_perturbation::{move_digits, signs};
+pub use crate::connect::{merge, samples, spread, times};
+pub use crate::constants::searched;
 pub use crate::ensemble::instants;
 pub use crate::state_scales::{sizes, unbounded_sizes};
 pub use crate::wanted::{HALVES, kept_before, wanted};
 
-use crate::band::limits::{FEW, LOOKS};
 use crate::Motion;
+use crate::band::limits::{FEW, LOOKS};
 
 /// In how many stretches a motion is looked at: in a first check, and closely.
 pub const LOOKED_AT: [usize; 2] = [FEW, LOOKS];

@@ -4,13 +4,13 @@ use equations::{Compiled, Equations, Plan, Role, Tangents};
 use integrate::{Method, Options, Start};
 use symbolic::Symbol;
 
-use crate::direction::{Chord, Direction};
 use crate::band::limits::UNITS;
 use crate::band::ulp_perturbation::move_digits;
+use crate::direction::{Chord, Direction};
 use crate::method::{Chosen, suited};
 use crate::single_run::{SingleRun, chart_size};
-use crate::state_scales::unbounded_sizes;
 use crate::start_values::StartValues;
+use crate::state_scales::unbounded_sizes;
 use crate::{Metric, Setting, Settings, SolveError};
 
 /// Equations compiled and started: what every run of the same motion shares.

@@ -65,9 +65,8 @@ fn closer(runs: &mut dyn TwoRuns, looked: &mut [Looked]) {
 
 fn rates_of(runs: &mut dyn TwoRuns, looked: &[Looked], looser: &[Vec<f64>], sizes: &[f64]) -> RoundOff {
     let names = runs.names();
-    let mut rates = |t: f64, y: &[f64], rates: &mut [f64]| {
-        runs.states(t).is_some() && runs.compiled().rates(t, y, rates).is_ok()
-    };
+    let mut rates =
+        |t: f64, y: &[f64], rates: &mut [f64]| runs.states(t).is_some() && runs.compiled().rates(t, y, rates).is_ok();
     accumulated(&mut rates, &|| names.clone(), looked, looser, sizes)
 }
 

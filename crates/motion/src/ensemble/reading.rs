@@ -62,7 +62,8 @@ impl Reader<'_> {
         self.metric.set_parameters(parameters);
         let Reader { compiled, metric, monitor, instants, states, multipliers } = self;
         let mut of_sizes = metric.clone();
-        let mut runs = Runs { compiled, metric: &mut of_sizes, member, run, instants, states, sizes: Vec::new(), place: 0 };
+        let mut runs =
+            Runs { compiled, metric: &mut of_sizes, member, run, instants, states, sizes: Vec::new(), place: 0 };
         let start = runs.kept(member.t)?;
         let mut band = Band::from(member.t, &start.coordinates);
         let mut kept = vec![(member.t, start)];
