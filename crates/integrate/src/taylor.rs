@@ -34,7 +34,9 @@ use crate::problem::Start;
 use crate::status::StopCause;
 use crate::stepper::{Attempt, Stepper, next_step};
 use crate::system::{Failure, System};
-use crate::taylor_step::{DEFECT, Ends, GOLDEN, MANY, LEAST_RELATIVE, UNLIMITED, first_powers, longest_step, once, order};
+use crate::taylor_step::{
+    DEFECT, Ends, GOLDEN, LEAST_RELATIVE, MANY, UNLIMITED, first_powers, longest_step, once, order,
+};
 
 /// Where coefficients overflow, the unit of time is shortened by this factor, this often.
 const SHORTER_UNIT: f64 = 1e-8;

@@ -3,7 +3,7 @@
 use std::array::from_fn;
 
 use super::{LANES, Lane, LaneProblem, Lanes};
-use crate::taylor_step::{DEFECT, GOLDEN, MANY, LEAST_RELATIVE, UNLIMITED};
+use crate::taylor_step::{DEFECT, GOLDEN, LEAST_RELATIVE, MANY, UNLIMITED};
 
 impl<P: LaneProblem> Lanes<'_, P> {
     /// As for a single motion: at many places where terms do not limit the step, which depend on the motion's
