@@ -11,7 +11,8 @@ pub(crate) trait TwoRuns {
     fn kept(&mut self, t: f64) -> Result<Outputs, SolveError>;
     /// Outputs of the looser run.
     fn looser(&mut self, t: f64) -> Result<Outputs, SolveError>;
-    /// States of the kept run in its first chart. [`TwoRuns::compiled`] then has the root of the motion there.
+    /// States of the kept run in its first chart. [`TwoRuns::compiled`] then has the root of the motion
+    /// there.
     fn states(&mut self, t: f64) -> Option<Vec<f64>>;
     /// States of the looser run.
     fn looser_states(&mut self, t: f64) -> Option<Vec<f64>>;
