@@ -45,6 +45,7 @@ pub(crate) mod limits;
 pub(crate) mod perturbed_rates;
 pub(crate) mod round_off;
 mod runs;
+mod single;
 pub(crate) mod ulp_perturbation;
 
 use equations::Outputs;
