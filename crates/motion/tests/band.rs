@@ -65,7 +65,7 @@ fn equal_steps_do_not_pass_a_place_where_rank_is_lost() {
     }
 }
 
-/// A quarter of the way to the place, nothing is said.
+/// An ellipse has no such place.
 #[test]
 fn equal_steps_go_where_rank_is_kept() {
     let text = "title = \"bead\"\n[coordinates]\nx = { start = 1 }\ny = { start = 0 }\n[system]\n\

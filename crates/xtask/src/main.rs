@@ -6,6 +6,7 @@ mod explore;
 mod identity;
 mod lint;
 mod numbers;
+mod pages;
 mod python;
 mod site;
 mod sources;

@@ -15,7 +15,7 @@ use std::path::{Component, Path, PathBuf};
 
 use anyhow::{Context, Result};
 
-use crate::words::{Page, prose};
+use crate::pages::{Page, prose};
 
 const LIST: &str = "docs/numbers.txt";
 /// Words before the number of a statement.
@@ -192,7 +192,7 @@ mod tests {
         let list = std::fs::read_to_string(LIST).expect("the list");
         let listed: Vec<Listed> = list.lines().filter_map(read).collect();
         let (mut tried, mut missed) = (0, Vec::new());
-        for name in crate::sources::names().expect("names").iter().filter(|name| crate::words::is_page(name)) {
+        for name in crate::sources::names().expect("names").iter().filter(|name| crate::pages::is_page(name)) {
             let page = Page::of(name, &std::fs::read_to_string(name).expect("a page"));
             for (line, part) in &page.parts {
                 for number in numbers(part) {

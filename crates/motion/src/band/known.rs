@@ -28,8 +28,6 @@ pub enum NoInformation {
     NotFinite,
     /// The difference of the runs is not an error ([`crate::Doubt`]).
     Doubted,
-    /// The motion ends before: at a singularity, or where its constraints lose rank.
-    Ended,
 }
 
 impl Display for NoInformation {
@@ -39,7 +37,6 @@ impl Display for NoInformation {
             NoInformation::AtRest => "at rest, as far as can be told",
             NoInformation::NotFinite => "NaN",
             NoInformation::Doubted => "the difference of the runs is not an error",
-            NoInformation::Ended => "the motion ends before",
         })
     }
 }

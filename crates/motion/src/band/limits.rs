@@ -4,16 +4,16 @@
 /// underestimate an error by a factor of 9 at most, on 2,352 runs with known errors.
 pub const CERTAINTY: f64 = 10.0;
 
-/// The difference of a single coordinate has to be this many times as large again, because the errors of single
-/// coordinates are estimated less well than the length of all.
+/// The difference of a single coordinate has to be this many times as large again, because the errors of
+/// single coordinates are estimated less well than the length of all.
 pub const ALONE: f64 = 10.0;
 
 /// Relative error above which neither a motion nor a coordinate nor a multiplier is trusted: three digits are
 /// the least that a reader of a table expects.
 pub const TRUSTED: f64 = 1e-3;
 
-/// Relative error below which two motions may be called the same: what the default tolerance leaves on motions
-/// that do not lose digits.
+/// Relative error below which two motions may be called the same: what the default tolerance leaves on
+/// motions that do not lose digits.
 pub const SAME_ESTIMATE: f64 = 1e-8;
 
 /// Round-off of any number of a motion, as a part of its size: some
@@ -62,12 +62,12 @@ pub(crate) const SAMPLES: usize = 200;
 pub(crate) const LOOKS: usize = 32;
 pub(crate) const FEW: usize = 4;
 
-/// So many ends of steps are looked at in addition, or all, a like number of steps apart: short steps are where
-/// rates are large.
+/// So many ends of steps are looked at in addition, or all, a like number of steps apart: short steps are
+/// where rates are large.
 pub(crate) const ENDS: usize = 64;
 
-/// Number of instants at which sums of terms behind multipliers, and in members behind rates, are computed: they
-/// are evaluated in numbers that carry their magnitude, which takes longer than rates.
+/// Number of instants at which sums of terms behind multipliers, and in members behind rates, are computed:
+/// they are evaluated in numbers that carry their magnitude, which takes longer than rates.
 pub(crate) const SUMS: usize = 16;
 
 /// Instants within the time of all members of an ensemble at which their constraints are looked at.

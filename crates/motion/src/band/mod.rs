@@ -1,9 +1,9 @@
 //! # The error of a motion
 //!
-//! A motion is integrated twice, at a tolerance and at a hundredth of it, from starts that differ in their last
-//! digits. The tighter run is kept. A [`Band`] is what both say together, at every instant at which they are
-//! read, of every quantity `x` of the motion (coordinates, velocities, multipliers, invariants, and the length
-//! of all coordinates in the kinetic metric):
+//! A motion is integrated twice, at a tolerance and at a hundredth of it, from starts that differ in their
+//! last digits. The tighter run is kept. A [`Band`] is what both say together, at every instant at which they
+//! are read, of every quantity `x` of the motion (coordinates, velocities, multipliers, invariants, and the
+//! length of all coordinates in the kinetic metric):
 //!
 //! ```text
 //! value  x_kept(t)
@@ -16,8 +16,8 @@
 //! state are found by summing terms (`accumulated_round_off`), and put into the rates of the looser
 //! run (`perturbed_rates`). What is left is less than `ρ S`.
 //!
-//! **Questions.** Every verdict is one of three answers to a difference `d` of two quantities, whose bounds are
-//! `b₁` and `b₂` ([`ask()`]; a constant is a quantity with `b = 0`):
+//! **Questions.** Every verdict is one of three answers to a difference `d` of two quantities, whose bounds
+//! are `b₁` and `b₂` ([`ask()`]; a constant is a quantity with `b = 0`):
 //!
 //! ```text
 //! apart      |d| > 10 (b₁ + b₂)
@@ -25,9 +25,9 @@
 //! undecided  where nothing is known, with the reason: [`NoInformation`]
 //! ```
 //!
-//! Two motions, a motion and what should be constant along it ([`Breach`]), and a
-//! motion and its own size ([`ErrorEstimate::complaint`]) are asked in this way. There is no division by a size
-//! that may be zero: a relative error is a [`Known::part`], or no information.
+//! Two motions, a motion and what should be constant along it ([`Breach`]), and a motion and its own size
+//! ([`ErrorEstimate::complaint`]) are asked in this way. There is no division by a size that may be zero: a
+//! relative error is a [`Known::part`], or no information.
 //!
 //! **When a difference of runs is no error.** Where the tolerance did not decide the steps
 //! (`estimate_failure`), where round-off is no small part of a state, or where a constraint is broken, a
@@ -45,6 +45,7 @@ pub(crate) mod limits;
 pub(crate) mod perturbed_rates;
 pub(crate) mod round_off;
 mod runs;
+mod single;
 pub(crate) mod ulp_perturbation;
 
 use equations::Outputs;
@@ -192,8 +193,8 @@ impl Band {
         self.multipliers().into_iter().any(is_doubtful)
     }
 
-    /// What is added up behind each multiplier: along the way, or in its evaluation at an instant, by adjoints
-    /// where magnitudes along paths are more than its last digits.
+    /// What is added up behind each multiplier: along the way, or in its evaluation at an instant, by
+    /// adjoints where magnitudes along paths are more than its last digits.
     fn add_sums(&mut self, runs: &mut dyn TwoRuns, t: f64, y: &[f64], [along, here]: [bool; 2]) {
         let compiled = runs.compiled();
         if along && let Ok(terms) = compiled.terms_of_multipliers(self.begin, t, y) {

@@ -47,7 +47,8 @@ pub(crate) fn round_off(runs: &mut dyn TwoRuns) -> RoundOff {
     if !matches!(found, RoundOff::Counts(_)) {
         return found;
     }
-    // what is large for the time of a few steps raises a doubt: in all of another run it would be far too much
+    // what is large for the time of a few steps raises a doubt: in all of another run it would be far too
+    // much
     let grid = runs.equidistant(LOOKS);
     let (looked, looser): (Vec<_>, Vec<_>) = zip(looked, looser).filter(|((t, ..), _)| grid.contains(t)).unzip();
     rates_of(runs, &looked, &looser, &sizes)
@@ -72,9 +73,9 @@ fn rates_of(runs: &mut dyn TwoRuns, looked: &[Looked], looser: &[Vec<f64>], size
 
 impl Motion {
     /// Round-off of the rates, which both runs share, as a part of their difference: if it is more than that,
-    /// the looser run is made again with as much of it in its rates as there may be. If that run does not come
-    /// as far, as it may not keep the constraint, the looser run stays. A doubt if round-off is no small part
-    /// of a state.
+    /// the looser run is made again with as much of it in its rates as there may be. If that run does not
+    /// come as far, as it may not keep the constraint, the looser run stays. A doubt if round-off is no small
+    /// part of a state.
     ///
     /// # Errors
     /// [`SolveError`] if the equations cannot be compiled again.

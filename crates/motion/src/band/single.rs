@@ -1,0 +1,57 @@
+//! A single motion as two runs.
+
+use equations::{Compiled, Outputs};
+
+use super::TwoRuns;
+use super::limits::{BEFORE_THE_END, ENDS};
+use crate::{Motion, SolveError};
+
+impl TwoRuns for Motion {
+    fn kept(&mut self, t: f64) -> Result<Outputs, SolveError> {
+        self.at(t)
+    }
+    fn looser(&mut self, t: f64) -> Result<Outputs, SolveError> {
+        self.looser.outputs(&mut self.compiled, t)
+    }
+    fn states(&mut self, t: f64) -> Option<Vec<f64>> {
+        self.states_at(t).ok()
+    }
+    fn looser_states(&mut self, t: f64) -> Option<Vec<f64>> {
+        self.looser.state(&mut self.compiled, t).ok()
+    }
+    fn compiled(&mut self) -> &mut Compiled {
+        &mut self.compiled
+    }
+    fn sizes(&mut self) -> Vec<f64> {
+        self.kept.sizes().to_vec()
+    }
+    fn names(&self) -> Vec<String> {
+        self.equations.states.iter().map(|state| self.equations.graph.name(state.symbol)).collect()
+    }
+    fn equidistant(&self, stretches: usize) -> Vec<f64> {
+        let (start, part) = (self.start(), self.judged());
+        let times = self.grid(stretches).into_iter().map(|t| self.kept_before(start + part * (t - start)));
+        times.filter(|t| self.is_in_first_chart(*t)).collect()
+    }
+    fn ends_of_steps(&self) -> Vec<f64> {
+        let (start, length) = (self.start(), self.judged() * (self.end() - self.start()).abs());
+        let ends = self.kept.step_times();
+        let number = ENDS.min(ends.len());
+        let some = (1..=number).map(|k| ends[k * ends.len() / number - 1]);
+        let judged = some.filter(|t| (t - start).abs() <= length).map(|t| self.kept_before(t));
+        judged.filter(|t| self.is_in_first_chart(*t)).collect()
+    }
+}
+
+impl Motion {
+    /// How much of the motion is judged.
+    fn judged(&self) -> f64 {
+        if self.is_complete() { 1.0 } else { BEFORE_THE_END }
+    }
+
+    /// Behind it, the pivots of the first chart are small.
+    fn is_in_first_chart(&self, t: f64) -> bool {
+        let start = self.start();
+        self.charts.first().is_none_or(|change| (t - start).abs() < (change.t - start).abs())
+    }
+}
