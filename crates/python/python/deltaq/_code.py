@@ -13,7 +13,6 @@ import numpy.typing as npt
 from ._native import Equations
 from ._needs import needed
 
-Module = Literal["numpy", "jax", "numba"]
 Array = npt.NDArray[np.float64]
 
 
@@ -25,7 +24,7 @@ class Functions:
     array in the order of `parameters`, such as `values`.
     """
 
-    module: Module
+    module: Literal["numpy", "jax", "numba"]
     """Whose arrays these are: "numpy", "jax" or "numba"."""
     rates: Callable[..., Any]
     """rates(t, y, parameters) is F(t, y)."""
@@ -53,7 +52,7 @@ class Functions:
         return f"<deltaq.Functions of {self.module}, states ({', '.join(self.states)})>"
 
 
-def functions(self: Equations, module: Module = "numpy") -> Functions:
+def functions(self: Equations, module: Literal["numpy", "jax", "numba"] = "numpy") -> Functions:
     """The equations as functions of Python, which other libraries can trace or compile.
 
     Parameters
