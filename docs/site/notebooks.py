@@ -18,7 +18,8 @@ def outputs(cell, name, write):
             page += f"![{data['text/plain'].strip('<>')}]({name}-{i}.svg)\n\n"
         elif "text/html" in data:
             rows = "\n".join(line for line in data["text/html"].splitlines() if line.strip())
-            page += f'<div class="table-wrapper">\n{rows.replace("<style scoped>", "<style>")}\n</div>\n\n'
+            # what scrolls is a stop of the tabulator
+            page += "<div>\n" + rows.replace("<style scoped>", "<style>").replace("<table", '<table tabindex="0"') + "\n</div>\n\n"
         elif "text/latex" in data:
             page += f"```{{math}}\n{data['text/latex'].strip('$').removeprefix(chr(92) + 'displaystyle ')}\n```\n\n"
         else:

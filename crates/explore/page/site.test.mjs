@@ -51,7 +51,7 @@ page.on("request", (request) => request.url().startsWith(root) || /^(data|blob):
 // and what was printed; the reference of Python has each class on a page.
 const HAVE = {
   "index.html": ['.doors a[href="docs/install.html"]', '.sidebar-tree .caption + ul > li:first-child > a[href="docs/install.html"]'],
-  "docs/tour.html": ["article math mtr + mtr", "article table td", 'article img[src$=".png"]', 'article img[src$=".svg"]', 'a[href="tour.ipynb"]'],
+  "docs/tour.html": ["article math mtr + mtr", "article table td", 'article img[src$=".png"]', 'article img[src$=".svg"]', 'a[href$="/tour.ipynb"]'],
   "docs/films.html": ['article img[src$=".png"]', ".highlight-text"],
   "python.html": ['a[href="python/System.html"]', 'a[href="python/functions.html"]', 'a[href="python/errors.html"]'],
   "python/System.html": ["#deltaq\\.System", "#deltaq\\.System\\.solve"],
