@@ -49,7 +49,8 @@ fn a_page_is_older_as_soon_as_its_code_changes() {
     assert!(before.starts_with("# A page\n\n1 of 3\n\nMeasured on 20"), "{before}");
     // another text, a file more, a file of another name; what is no source does not count
     let source = root.join("crates/symbolic/src");
-    let speaking = ["peers.md", "measured/error-vs-time.md", "measured/scaling.md", "measured/ivp.md", "measured/machine-code.md"];
+    let speaking =
+        ["peers.md", "measured/error-vs-time.md", "measured/scaling.md", "measured/ivp.md", "measured/machine-code.md"];
     fs::write(source.join("notes.txt"), "").expect("a file");
     assert_eq!(said("is older"), Vec::<String>::new());
     fs::write(source.join("deeper/a.rs"), "crates/symbolic/srd").expect("a file");
