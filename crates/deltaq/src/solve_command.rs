@@ -240,7 +240,7 @@ pub(crate) fn times(text: &str, scene: &Scene) -> Result<Vec<f64>> {
     let number = |x: &str| -> Result<f64> {
         x.trim().parse().with_context(|| format!("`{x}` in --times {text} is not a number"))
     };
-    let times = match text.split(':').collect::<Vec<_>>()[..] {
+    let times: Vec<f64> = match text.split(':').collect::<Vec<_>>()[..] {
         [from, to, count] => {
             let count: usize = count.parse().with_context(|| format!("`{count}` in --times {text} is not a count"))?;
             if !(1..=1_000_000).contains(&count) {

@@ -51,7 +51,7 @@ pub(crate) fn all() -> Vec<Check> {
             sources::copies,
         ),
         check(
-            "address",
+            "identity",
             "authors and address are those of Cargo.toml everywhere, and nothing pretends to have an address",
             "cargo xtask address; or name the folder of the project in the place of an index",
             identity::check,
