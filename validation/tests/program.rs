@@ -16,15 +16,19 @@ const TABLES: &str = concat!(env!("CARGO_TARGET_TMPDIR"), "/benchmark");
 /// A page on integrals.
 const INTEGRALS: &str = concat!(env!("CARGO_TARGET_TMPDIR"), "/integrals");
 
+/// A page on test problems.
+const IVP: &str = concat!(env!("CARGO_TARGET_TMPDIR"), "/ivp");
+
 /// A page on films.
 const FILMS: &str = concat!(env!("CARGO_TARGET_TMPDIR"), "/films");
 
 /// One call of every command, and of none, but of `reports`, which is the whole main job.
-const ANSWERS: [&[&str]; 8] = [
+const ANSWERS: [&[&str]; 9] = [
     &["--scenes", "bowl", "--quiet", "--out", REPORTS],
     &["random", "--count", "1", "--quiet"],
     &["benchmark", "--systems", "particle", "--starts", "1", "--quiet", "--out", TABLES],
     &["films", "--scenes", "appell-hamel", "--quiet", "--out", FILMS],
+    &["ivp", "--quiet", "--out", IVP],
     &["integrals", "--scenes", "particle", "--parts", "scenes", "--quiet", "--out", INTEGRALS],
     &["scaling", "--longest", "1", "--repeats", "1", "--quiet"],
     &["stability", "--case", "blow-up", "--quiet"],
