@@ -4,7 +4,7 @@ use equations::Formulation;
 use mechanics::Integrability;
 use scene::Scene;
 
-use crate::fits::{Fit, Fits, fits};
+use crate::fits::{Fit, Fits, Witness, fits};
 use crate::gap::{Verdict, compare_motions};
 use crate::growth::growth;
 use crate::runs::{Decided, Pair, Run, decide, predicted, questions};
@@ -155,6 +155,20 @@ impl Comparison {
             _ => fits(&self.scene, &mut self.runs, &self.pairs, &self.decided, wanted, &mut metric, settings)?,
         };
         self.keep_closer();
+        self.try_constants(&mut metric, settings)
+    }
+
+    /// Solves with the constants that were decided to give a motion, where the family's run had others.
+    fn try_constants(&mut self, metric: &mut Metric, settings: &Settings) -> Result<(), SolveError> {
+        for decided in &mut self.decided {
+            let (Ok(found), asked) = (&decided.outcome, (decided.family, decided.curve)) else { continue };
+            let own =
+                self.runs[decided.family].outcome.as_ref().is_ok_and(|run| run.constants == found.decision.set.point);
+            if !own && matches!(found.answer(), Answer::SomeProved | Answer::Some { .. }) {
+                let point = found.decision.set.point.clone();
+                decided.witness = Witness::of(&self.scene, &mut self.runs, asked, &point, metric, settings)?;
+            }
+        }
         Ok(())
     }
 

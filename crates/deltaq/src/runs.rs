@@ -4,6 +4,7 @@ use equations::Formulation;
 use mechanics::ConstantsRule;
 use scene::Scene;
 
+use crate::fits::Witness;
 use crate::gap::Gap;
 use crate::growth::{Growth, LeadingTerm};
 use crate::table::is_in_table;
@@ -39,6 +40,8 @@ pub struct Decided {
     pub curve: usize,
     /// The decision, or why it is impossible.
     pub outcome: Result<Membership, SolveError>,
+    /// The family's motion with the constants that were found, where it had others.
+    pub witness: Option<Witness>,
 }
 
 /// The leading term of the difference of two runs.
@@ -80,5 +83,5 @@ pub(crate) fn questions(scene: &Scene, runs: &[Run]) -> Vec<(usize, usize)> {
 pub(crate) fn decide(scene: &Scene, runs: &[Run], (family, curve): (usize, usize)) -> Decided {
     let end = runs[curve].outcome.as_ref().map_or(0.0, Motion::end);
     let pairing = Pairing::new(scene, &runs[curve].choice, &runs[family].choice);
-    Decided { family, curve, outcome: pairing.and_then(|pairing| pairing.decide(end)) }
+    Decided { family, curve, outcome: pairing.and_then(|pairing| pairing.decide(end)), witness: None }
 }

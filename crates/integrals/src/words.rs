@@ -5,7 +5,6 @@ use std::fmt::{self, Display, Formatter};
 use mechanics::{Domain, System};
 use serde_json::{Value, json};
 
-use crate::answer::CHANGED;
 use crate::{Cyclic, Density, Found, Integrals, Measure, Multiplier, Open, Printed, Reduction, Reversed};
 
 /// What integrals of degree `below + 1` are called.
@@ -58,10 +57,11 @@ impl Integrals {
                 lines.push(("ansatz", words));
                 for (i, integral) in found.printed.iter().enumerate() {
                     let (part, drift) = match &self.drifts {
-                        Ok(drifts) if drifts[i] > CHANGED => {
-                            (" on the branch of this start", format!("drift {:.0e}: the motion leaves it", drifts[i]))
-                        }
-                        Ok(drifts) => ("", format!("drift {:.0e}", drifts[i])),
+                        Ok(drifts) if drifts[i].is_certain() => (
+                            " on the branch of this start",
+                            format!("drift {:.0e}: the motion leaves it", drifts[i].largest),
+                        ),
+                        Ok(drifts) => ("", format!("drift {:.0e}", drifts[i].largest)),
                         Err(why) => ("", format!("no motion to try it on: {why}")),
                     };
                     lines.push((kind(integral), format!("{} = const{part} ({drift})", integral.text)));
@@ -273,7 +273,7 @@ impl Integrals {
                         "kind": kind(integral), "degree": integral.degree, "expression": integral.text,
                     });
                     match &self.drifts {
-                        Ok(drifts) => value["drift"] = json!(drifts[i]),
+                        Ok(drifts) => value["drift"] = json!(drifts[i].largest),
                         Err(why) => value["no_motion"] = json!(why),
                     }
                     value
