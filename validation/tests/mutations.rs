@@ -4,16 +4,12 @@
 //! motions of the scene it is made from, possibly on one leaf or branch of a larger system. What is said of
 //! both must not differ, the numbers that are measured must agree, and nothing may contradict anything else.
 
-mod sentences;
-mod writings;
-
 use std::collections::BTreeMap;
 
 use deltaq::over_threads;
+use random::writings::{WRITINGS, plain, written};
+use random::{Said, sentences};
 use scene::Scene;
-
-use sentences::{Said, sentences};
-use writings::WRITINGS;
 
 /// Scenes and writings of the quick sample.
 const QUICK: [(&str, &[&str]); 7] = [
@@ -50,9 +46,9 @@ fn other_writings_of_a_scene_have_its_sentences() {
 fn of_scene(name: &str, text: &str) -> (Vec<String>, Vec<String>) {
     let (mut lines, mut wrong) = (Vec::new(), Vec::new());
     let value: toml::Table = text.parse().unwrap_or_else(|fault| panic!("{name}: {fault}"));
-    let read = |value: &toml::Table| Scene::parse(name, &writings::written(value));
-    let plain = writings::plain(&value);
-    let own = match read(&plain).map_err(|fault| fault.to_string()).and_then(|scene| sentences(&scene)) {
+    let read = |value: &toml::Table| Scene::parse(name, &written(value));
+    let plain = plain(&value);
+    let own = match read(&plain).map_err(|fault| fault.to_string()).and_then(|scene| sentences(&scene, true)) {
         Ok(own) => own,
         Err(fault) => return (lines, vec![format!("{name}: {fault}")]),
     };
@@ -61,17 +57,15 @@ fn of_scene(name: &str, text: &str) -> (Vec<String>, Vec<String>) {
             lines.push(format!("{}: not possible", writing.name));
             continue;
         };
-        let of =
-            |fault: &dyn std::fmt::Display| format!("{name}, {}: {fault}\n{}", writing.name, writings::written(&other));
-        let found = match read(&other).map_err(|fault| fault.to_string()).and_then(|scene| sentences(&scene)) {
+        let of = |fault: &dyn std::fmt::Display| format!("{name}, {}: {fault}\n{}", writing.name, written(&other));
+        let found = match read(&other).map_err(|fault| fault.to_string()).and_then(|scene| sentences(&scene, true)) {
             Ok(found) => found,
             Err(fault) => {
                 wrong.push(of(&fault));
                 continue;
             }
         };
-        let is_kept = |about: &str| writing.keeps_gaps || !["gap", "verdict"].contains(&about);
-        for (about, said) in own.iter().filter(|(about, _)| is_kept(about)) {
+        for (about, said) in own.iter().filter(|(about, _)| writing.keeps(about)) {
             let now = found.get(about).unwrap_or(&Said::Open);
             let verdict = said.beside(now, writing.adds);
             lines.push(format!("{}: {}", writing.name, verdict.unwrap_or("another")));

@@ -184,7 +184,8 @@ fn constants_that_are_printed_beside_their_motion() {
 #[test]
 fn constants_that_are_decided_are_tried() {
     let scene = Scene::parse("disc", include_str!("../../catalogue/scenes/disc.toml")).expect("a scene");
-    let disc = compare(scene, choices(&disc().scene), Vec::new(), &Settings::default()).expect("a comparison");
+    let choices = choices(&scene);
+    let disc = compare(scene, choices, Vec::new(), &Settings::default()).expect("a comparison");
     let witness = disc.decided.iter().find_map(|d| d.witness.as_ref()).expect("a motion");
     assert!(witness.gap.as_ref().is_ok_and(|[gap, _]| *gap < 1e-9), "{witness:?}");
     assert_eq!(disc.contradictions(), Vec::new());

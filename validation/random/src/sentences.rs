@@ -1,4 +1,4 @@
-//! What is said of a scene.
+//! What is said of a scene, for two writings of it.
 
 use std::collections::BTreeMap;
 
@@ -9,7 +9,7 @@ use scene::Scene;
 
 /// A sentence, as far as it can be compared.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) enum Said {
+pub enum Said {
     /// It is open, in doubt, or not asked.
     Open,
     /// Words that do not depend on how the scene is written.
@@ -25,7 +25,7 @@ pub(super) enum Said {
 impl Said {
     /// `same`, `open`, or nothing where the other says something else; a writing adds that many constraints
     /// that are integrable.
-    pub(super) fn beside(&self, other: &Said, adds: usize) -> Option<&'static str> {
+    pub fn beside(&self, other: &Said, adds: usize) -> Option<&'static str> {
         let is_same = match (self, other) {
             (Said::Open, _) | (_, Said::Open) => return Some("open"),
             (Said::Dimension(Some(one)), Said::Dimension(Some(two))) => one + adds == *two,
@@ -43,8 +43,11 @@ fn word(word: impl ToString) -> Said {
     Said::Word(word.to_string())
 }
 
-/// All of them by what they are about.
-pub(super) fn sentences(scene: &Scene) -> Result<BTreeMap<String, Said>, String> {
+/// All of them by what they are about; about measures and integrals as well, or not.
+///
+/// # Errors
+/// In words: what contradicts something else, or why there is no comparison.
+pub fn sentences(scene: &Scene, with_integrals: bool) -> Result<BTreeMap<String, Said>, String> {
     let mut all = BTreeMap::new();
     let choices = choices_among(scene, |own| own == CHETAEV || own == VAKONOMIC);
     let settings = Settings { max_steps: 20_000, ..Settings::default() };
@@ -88,7 +91,8 @@ pub(super) fn sentences(scene: &Scene) -> Result<BTreeMap<String, Said>, String>
         }
         all.insert("verdict".into(), verdict);
     }
-    let Some(chetaev) = choices.iter().find(|choice| choice.formulation == CHETAEV) else { return Ok(all) };
+    let chetaev = choices.iter().filter(|_| with_integrals).find(|choice| choice.formulation == CHETAEV);
+    let Some(chetaev) = chetaev else { return Ok(all) };
     let found = match Integrals::find(scene, chetaev, 1, &[]) {
         Ok(found) => found,
         Err(NoAnswer::Contradicted(fault)) => return Err(fault.to_string()),

@@ -1,25 +1,28 @@
-//! Other writings of a scene file.
+//! Other writings of a scene file: the motions are the same, or are those on one leaf or branch.
 
 use deltaq::{CHETAEV, choices_among};
 use scene::Scene;
 use toml::{Table, Value};
 
 /// A writing.
-pub(super) struct Writing {
-    pub(super) name: &'static str,
+#[derive(Clone, Copy, Debug)]
+pub struct Writing {
+    /// Its name.
+    pub name: &'static str,
     /// How many integrable constraints it adds.
-    pub(super) adds: usize,
+    pub adds: usize,
     /// Whether gaps are the same: up to the end, and in the same metric.
-    pub(super) keeps_gaps: bool,
+    pub keeps_gaps: bool,
     /// `None` where the scene cannot be written so.
-    pub(super) of: fn(&Table) -> Option<Table>,
+    pub of: fn(&Table) -> Option<Table>,
 }
 
 const fn writing(name: &'static str, adds: usize, keeps_gaps: bool, of: fn(&Table) -> Option<Table>) -> Writing {
     Writing { name, adds, keeps_gaps, of }
 }
 
-pub(super) const WRITINGS: [Writing; 8] = [
+/// All of them.
+pub const WRITINGS: [Writing; 8] = [
     writing("signs", 0, true, signs),
     writing("roots", 0, false, roots),
     writing("slave", 1, true, slave),
@@ -31,14 +34,14 @@ pub(super) const WRITINGS: [Writing; 8] = [
 ];
 
 /// Without what no sentence is about.
-pub(super) fn plain(scene: &Table) -> Table {
+pub fn plain(scene: &Table) -> Table {
     let mut scene = scene.clone();
     ["view", "observables", "removal", "bodies"].into_iter().for_each(|key| _ = scene.remove(key));
     scene
 }
 
 /// As a file, a line for each section.
-pub(super) fn written(scene: &Table) -> String {
+pub fn written(scene: &Table) -> String {
     fn inline(value: &Value) -> String {
         let joined = |parts: Vec<String>| parts.join(", ");
         match value {
@@ -57,6 +60,13 @@ pub(super) fn written(scene: &Table) -> String {
         }
     }
     scene.iter().map(|(key, value)| format!("{key:?} = {}\n", inline(value))).collect()
+}
+
+impl Writing {
+    /// Whether a sentence about this does not depend on the writing.
+    pub fn keeps(&self, about: &str) -> bool {
+        self.keeps_gaps || !["gap", "verdict"].contains(&about)
+    }
 }
 
 /// Names with their primes in `text`, replaced; parts of vectors are none.
@@ -104,10 +114,12 @@ fn coordinates(scene: &Table) -> Vec<String> {
 }
 
 fn formula(value: &Value) -> String {
-    value.as_str().map_or_else(
-        || value.as_float().map_or_else(|| value.as_integer().unwrap_or(0).to_string(), |x| format!("{x:?}")),
-        |text| format!("({text})"),
-    )
+    match value {
+        Value::String(text) => format!("({text})"),
+        Value::Integer(x) => format!("({x})"),
+        Value::Float(x) => format!("({x:?})"),
+        _ => String::new(),
+    }
 }
 
 fn start(scene: &Table, name: &str) -> Option<String> {
@@ -203,6 +215,9 @@ fn unit_vector(scene: &Table, angle: &str) -> Option<Table> {
     };
     map(&mut other.clone(), &|text| renamed(text, &look));
     let at = start(scene, angle)?;
+    if other["system"].get("forces").is_some_and(|forces| forces.get(angle).is_some()) {
+        return None;
+    }
     let text = written(&other);
     if left.get() || !text.contains(&format!("{c}*{s}'")) || !written(scene).contains(&format!("({angle})")) {
         return None;
@@ -311,22 +326,29 @@ fn invariants(scene: &Table) -> Option<Table> {
     (!found.is_empty()).then_some(other)
 }
 
-/// `p` as `2 p cos(π/3)` and as fractions.
+/// Numbers of parameters as formulas of the same value; of a scene without parameters, the factor 1 of `L` and
+/// of the first velocity in the constraints.
 fn formulas(scene: &Table) -> Option<Table> {
-    let mut scene = scene.clone();
-    let parameters = scene.get_mut("parameters")?.as_table_mut()?;
-    let mut changed = false;
-    for (i, (_, value)) in parameters.iter_mut().enumerate() {
-        let text = match value {
-            Value::Integer(x) => x.to_string(),
-            Value::Float(x) => format!("{x:?}"),
-            _ => continue,
-        };
-        let written = ["2*({})*cos(pi/3)", "({})*sqrt(2)*sqrt(8)/4", "({})*3/3", "({})*(sin(1)^2 + cos(1)^2)"];
-        *value = written[i % written.len()].replace("{}", &text).into();
-        changed = true;
+    const ONE: [&str; 4] = ["2*cos(pi/3)", "sqrt(2)*sqrt(8)/4", "3/3", "(sin(1)^2 + cos(1)^2)"];
+    let (names, mut scene) = (coordinates(scene), scene.clone());
+    let numbers = scene.get_mut("parameters").and_then(Value::as_table_mut).into_iter().flatten();
+    let numbers = numbers.filter(|(_, value)| !value.is_str());
+    let count =
+        numbers.zip(ONE.iter().cycle()).map(|((_, x), one)| *x = format!("{}*{one}", formula(x)).into()).count();
+    if count == 0 {
+        let first = |name: &str, primes: usize| (name == names[0] && primes == 1).then(|| format!("(one*{name}')"));
+        let written: Vec<Value> = scene["system"]
+            .get("constraints")?
+            .as_array()?
+            .iter()
+            .map(|f| renamed(f.as_str().unwrap_or(""), &first).into())
+            .collect();
+        *list(&mut scene, "constraints")? = written;
+        let lagrangian = format!("one*({})", scene["system"]["lagrangian"].as_str()?);
+        put(&mut scene, ["system", "lagrangian"], lagrangian);
+        put(&mut scene, ["parameters", "one"], ONE[0].into());
     }
-    changed.then_some(scene)
+    Some(scene)
 }
 
 /// 100 s later.
