@@ -27,7 +27,7 @@ pub struct Beyond {
 
 /// The generalized reaction of a motion is `R = d/dt ∂L/∂v − ∂L/∂q − Q`. Forces `F` at contacts, where `s` is
 /// the slip, give `(∂s/∂v)ᵀ F`: `R` is of this form iff `R·w = 0` for all `w` with `∂s/∂v w = 0`. The largest
-/// `R·w` for `w` with one free coordinate of rate 1, at instants of the motion; `None` if it vanishes
+/// `R·w` for the shortest `w` with one coordinate of rate 1, at instants of the motion; `None` if it vanishes
 /// everywhere.
 ///
 /// # Errors

@@ -249,65 +249,6 @@ pub fn fit_run(
     Ok(Some(Some(FittedMotion { constants, gap, starts, by_half })))
 }
 
-/// A motion with constants that are said to give it another's.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Witness {
-    /// The constants.
-    pub constants: Vec<f64>,
-    /// The largest gap, and the gap that digits of the constants make which nobody knows; or why there is no
-    /// motion.
-    pub gap: Result<[f64; 2], String>,
-}
-
-impl Witness {
-    /// Of run `family` for that of run `curve`; `None` where it stops before the end.
-    pub(crate) fn of(
-        scene: &Scene,
-        runs: &mut [Run],
-        (family, curve): (usize, usize),
-        constants: &[f64],
-        metric: &mut Metric,
-        settings: &Settings,
-    ) -> Result<Option<Witness>, SolveError> {
-        let witness = |gap| Ok(Some(Witness { constants: constants.to_vec(), gap }));
-        let derived = derive_at(
-            &scene.system,
-            &scene.start,
-            &Choice { constants: ConstantsRule::Given(constants.to_vec()), ..runs[family].choice.clone() },
-        )?;
-        if derived.free_constants.len() != constants.len() {
-            return Ok(None);
-        }
-        let Ok(goal) = &mut runs[curve].outcome else { return Ok(None) };
-        let within = Setting { end: goal.end(), ..setting(scene) };
-        let mut motion = match solve(within, derived, &ConstantsRule::Given(constants.to_vec()), settings) {
-            Ok(motion) => motion,
-            Err(refused) => return witness(Err(refused.to_string())),
-        };
-        let gap = compare_motions(goal, &mut motion, metric)?;
-        if gap.end != goal.end() {
-            return Ok(None);
-        }
-        let unknown = if gap.verdict == Verdict::Different {
-            unknown(scene, &mut motion, metric, settings)?
-        } else {
-            gap.largest
-        };
-        witness(Ok([gap.largest, unknown]))
-    }
-
-    /// Why the constants do not.
-    pub(crate) fn fault(&self) -> Option<String> {
-        /// A gap this many times what unknown digits make is another one.
-        const ANOTHER: f64 = 10.0;
-        let with = || format!("with ({})", self.constants.iter().map(f64::to_string).collect::<Vec<_>>().join(", "));
-        match &self.gap {
-            Err(refused) => Some(format!("{} there is no motion: {refused}", with())),
-            Ok([gap, unknown]) => (*gap > ANOTHER * unknown).then(|| format!("{} there is a gap of {gap:.1e}", with())),
-        }
-    }
-}
-
 /// The part of the constants to which a search knows them.
 const KNOWN: f64 = 1e-10;
 

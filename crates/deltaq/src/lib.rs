@@ -150,7 +150,7 @@ pub use error::SolveError;
 pub use error_estimate::{ErrorEstimate, TRUSTED, error_estimate, error_estimates};
 pub use first_trace::{FirstTrace, first_trace};
 pub use fit::best_fit;
-pub use fits::{Fit, Fits, FittedMotion, Witness};
+pub use fits::{Fit, Fits, FittedMotion};
 pub use form::{ChosenForm, FORM_WORDS, Form, derive_in_form, formulation_in};
 pub use gap::{Gap, GapPoint, SAME_ESTIMATE, Sampling, THRESHOLDS, Verdict, compare_motions, compare_motions_by};
 pub use growth::{Growth, LeadingTerm, growth};

@@ -4,7 +4,7 @@ use equations::Formulation;
 use mechanics::ConstantsRule;
 use scene::Scene;
 
-use crate::fits::Witness;
+use crate::fits::FittedMotion;
 use crate::gap::Gap;
 use crate::growth::{Growth, LeadingTerm};
 use crate::table::is_in_table;
@@ -40,8 +40,8 @@ pub struct Decided {
     pub curve: usize,
     /// The decision, or why it is impossible.
     pub outcome: Result<Membership, SolveError>,
-    /// The family's motion with the constants that were found, where it had others.
-    pub witness: Option<Witness>,
+    /// The family's motion with the constants that were found, where it had others; or why it is refused.
+    pub witness: Option<Result<FittedMotion, String>>,
 }
 
 /// The leading term of the difference of two runs.

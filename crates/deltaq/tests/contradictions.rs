@@ -3,8 +3,7 @@
 use decision::{Finding, NoConstants};
 use deltaq::words::Headline;
 use deltaq::{
-    Beside, CHETAEV, Change, Comparison, REMOVED_CONSTRAINT, Settings, VAKONOMIC, Verdict, Witness, choices, compare,
-    hold,
+    Beside, CHETAEV, Change, Comparison, REMOVED_CONSTRAINT, Settings, VAKONOMIC, Verdict, choices, compare, hold,
 };
 use equations::Formulation;
 use mechanics::Integrability;
@@ -164,31 +163,26 @@ fn disc_section() -> decision::Section {
 }
 
 #[test]
-fn constants_that_are_printed_beside_their_motion() {
+fn constants_that_are_decided_beside_their_motion() {
     let mut disc = disc();
+    disc.fit(deltaq::Fits::None, &Settings::default()).expect("no fit");
     let asked = (disc.run(VAKONOMIC), disc.run(CHETAEV));
-    let mut plant = |gap: Result<[f64; 2], String>| {
-        let own = |d: &&mut deltaq::Decided| (Some(d.family), Some(d.curve)) == asked;
-        let decided = disc.decided.iter_mut().find(own).expect("a decision");
-        decided.witness = Some(Witness { constants: vec![-0.5, 0.25], gap });
-        disc.contradictions().iter().map(ToString::to_string).collect::<Vec<_>>()
-    };
-    let [refused] = &plant(Err("singular".into()))[..] else { panic!("one") };
-    assert!(refused.ends_with("but with (-0.5, 0.25) there is no motion: singular"), "{refused}");
-    let [apart] = &plant(Ok([1e-2, 1e-6]))[..] else { panic!("one") };
-    assert!(apart.ends_with("but with (-0.5, 0.25) there is a gap of 1.0e-2"), "{apart}");
-    // what the digits of the constants leave open is no contradiction
-    assert_eq!(plant(Ok([1e-2, 1e-2])), Vec::<String>::new());
-}
-
-#[test]
-fn constants_that_are_decided_are_tried() {
-    let scene = Scene::parse("disc", include_str!("../../catalogue/scenes/disc.toml")).expect("a scene");
-    let choices = choices(&scene);
-    let disc = compare(scene, choices, Vec::new(), &Settings::default()).expect("a comparison");
-    let witness = disc.decided.iter().find_map(|d| d.witness.as_ref()).expect("a motion");
-    assert!(witness.gap.as_ref().is_ok_and(|[gap, _]| *gap < 1e-9), "{witness:?}");
+    let is = |d: &deltaq::Decided| (Some(d.family), Some(d.curve)) == asked;
+    let place = disc.decided.iter().position(is).expect("a decision");
+    let fitted = disc.decided[place].witness.as_ref().expect("a motion").as_ref().expect("a motion");
+    assert!(fitted.gap.largest < 1e-9, "{:?}", fitted.constants);
     assert_eq!(disc.contradictions(), Vec::new());
+    // what the digits of the constants leave open is no contradiction
+    let points = |disc: &mut Comparison, factor: f64| {
+        let fitted = disc.decided[place].witness.as_mut().expect("a motion").as_mut().expect("a motion");
+        fitted.gap.points.iter_mut().for_each(|point| point.gap = factor * point.limit);
+    };
+    points(&mut disc, 1e3);
+    assert_eq!(disc.contradictions(), Vec::new());
+    points(&mut disc, 1e6);
+    assert!(found(&disc).contains("some constants give vakonomic the motion of Chetaev, but those found leave a gap"));
+    disc.decided[place].witness = Some(Err("singular".into()));
+    assert!(found(&disc).ends_with("but with those found there is no motion: singular"));
 }
 
 #[test]
