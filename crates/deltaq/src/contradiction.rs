@@ -62,7 +62,7 @@ pub enum Beside<'a> {
     AtMost(&'a str, usize, &'a [&'a str]),
     /// Frobenius' verdict; integrable combinations by ranks of brackets over a finite field.
     Brackets(&'a Integrability, usize),
-    /// Chetaev's motions are proved to be those of a family; its least χ² over theirs, above what tests allow.
+    /// Chetaev's motions are proved to be those of a family, whose least χ² is so much above theirs.
     Contained(&'a str, f64),
     /// Two methods of one question do not agree.
     Methods(&'a str),
@@ -286,6 +286,10 @@ impl Comparison {
         });
         if let Some(fault) = fault {
             return Some(contradiction(format!("some constants give {family} the motion of {curve}"), fault));
+        }
+        if none && self.agree_if_integrable(decided.family, decided.curve) {
+            let one = format!("the constraint is {}", self.integrability);
+            return Some(contradiction(one, format!("no constants of {family} give the motion of {curve}")));
         }
         let gap = &self.pair(decided.family, decided.curve)?.gap;
         let every = membership.decision.set.dimension() == membership.decision.constants.len();

@@ -121,8 +121,8 @@ impl Integrals {
         hold(&self.scene, all)
     }
 
-    /// Changes of invariants that are proved not to be constant, where the scene's own motion shows none: along
-    /// that and others.
+    /// Changes along several motions of invariants that are proved not to be constant, where the scene's own
+    /// motion shows none.
     fn changes_of_others(&self, choice: &Choice, invariants: &[Change]) -> Vec<(&str, Vec<Change>)> {
         let said = zip(self.invariants.iter().flatten(), invariants).enumerate();
         let said: Vec<_> = said.filter(|(_, ((_, held), change))| !*held && !change.is_certain()).collect();

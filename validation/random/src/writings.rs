@@ -326,8 +326,8 @@ fn invariants(scene: &Table) -> Option<Table> {
     (!found.is_empty()).then_some(other)
 }
 
-/// Numbers of parameters as formulas of the same value; of a scene without parameters, the factor 1 of `L` and
-/// of the first velocity in the constraints.
+/// Numbers of parameters as formulas of the same value; without parameters, a factor 1 of `L` and of the
+/// first velocity in the constraints.
 fn formulas(scene: &Table) -> Option<Table> {
     const ONE: [&str; 4] = ["2*cos(pi/3)", "sqrt(2)*sqrt(8)/4", "3/3", "(sin(1)^2 + cos(1)^2)"];
     let (names, mut scene) = (coordinates(scene), scene.clone());

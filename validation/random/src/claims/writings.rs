@@ -13,7 +13,7 @@ const CLAIM: &str = "other writings have the same sentences";
 /// Coordinates up to which measures and integrals are asked for: of more they take seconds.
 const FEW: usize = 3;
 
-/// Signs of coordinates, roots of squares, coordinates that follow, unit vectors, parameters as formulas, time.
+/// Signs of coordinates, roots of squares, coordinates that follow, unit vectors, formulas for numbers, time.
 pub(super) fn check(case: &mut Case) -> Result<(), CheckError> {
     let Some(writing) = case.recipe.features.writing() else { return Ok(()) };
     let text: Result<Table, _> = case.scene.to_toml().parse();
