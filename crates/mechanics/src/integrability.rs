@@ -218,6 +218,9 @@ fn by_brackets(system: &System, state: &State, end: f64) -> Result<Integrability
     while rank < space.len() {
         let mut added = Vec::new();
         for z in brackets(g, &space, &admissible, &newest, depth == 0) {
+            if rank == space.len() {
+                break;
+            }
             if g.size(&z) > LONGEST {
                 return undecided(Undecided::TooLong, depth, space.len() - rank);
             }
