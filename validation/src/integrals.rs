@@ -130,7 +130,7 @@ const MAPS: [Map; 5] = [
         set: &[],
         x: ("K", -0.05, 0.05),
         y: ("I1", 0.05, 0.15),
-        says: "Suslov's body: a measure where the axis is a principal one, K = 0, and nowhere else",
+        says: "Suslov's body: a measure where the axis is a principal one, K = 0, and nowhere else; three linear integrals where K² = I1 (I2 - I1), as λ = 0 there",
     },
     Map {
         name: "chaplygin-sphere",

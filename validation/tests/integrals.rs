@@ -74,7 +74,8 @@ fn integrals_of_random_systems_are_constant_along_motions() {
                 continue;
             };
             for (integral, drift) in ansatz.printed.iter().zip(drifts) {
-                assert!(*drift < 1e-9, "{} {}: {} drifts by {drift:.1e}", scene.name, formulation.name, integral.text);
+                let drift = drift.largest;
+                assert!(drift < 1e-9, "{} {}: {} drifts by {drift:.1e}", scene.name, formulation.name, integral.text);
                 tried += 1;
             }
             let words = || format!("{} {}: {found}", scene.name, formulation.name);

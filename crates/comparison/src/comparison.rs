@@ -4,7 +4,8 @@ use equations::Formulation;
 use mechanics::Integrability;
 use scene::Scene;
 
-use crate::fits::{Fit, Fits, fits};
+use crate::fit::search::Found;
+use crate::fits::{Fit, Fits, Start, fit_run, fits};
 use crate::gap::{Verdict, compare_motions};
 use crate::growth::growth;
 use crate::runs::{Decided, Pair, Run, decide, predicted, questions};
@@ -167,7 +168,22 @@ impl Comparison {
             _ => fits(&self.scene, &mut self.runs, &self.pairs, &self.decided, wanted, &mut metric, settings)?,
         };
         self.keep_closer();
+        self.try_constants(&mut metric, settings);
         Ok(())
+    }
+
+    /// Solves with the constants that were decided to give a motion, where the family's run had others.
+    fn try_constants(&mut self, metric: &mut Metric, settings: &Settings) {
+        for decided in &mut self.decided {
+            let (Ok(found), family) = (&decided.outcome, decided.family) else { continue };
+            let point = &found.decision.set.point;
+            let has_others = self.runs[family].outcome.as_ref().is_ok_and(|run| run.constants != *point);
+            if has_others && matches!(found.answer(), Answer::SomeProved | Answer::Some { .. }) {
+                let start = Start::Known(Found::given(point.clone()));
+                let fitted = fit_run(&self.scene, &mut self.runs, family, decided.curve, start, metric, settings);
+                decided.witness = fitted.map(Option::flatten).map_err(|refused| refused.to_string()).transpose();
+            }
+        }
     }
 
     /// Puts the constants that a run has instead of fitted ones that leave a larger gap: a search is no

@@ -1,13 +1,16 @@
-//! Two derivation paths, one answer: results that cannot both be true.
+//! Two derivation paths, one answer: results that cannot both be true, in one place for all commands.
 //!
 //! Motions, the decision in floating point, the proof over a finite field and Frobenius' test share little
-//! code. If two of them contradict each other, one is wrong, and no conclusion is drawn from either.
+//! code. If two of them contradict each other, one is wrong, and no conclusion is drawn from either. What
+//! other packages say of a scene is held against its own motion, or another derivation, as [`Beside`].
 
 use std::fmt::{self, Display, Formatter};
 
 use decision::{Finding, Verdict as Floating};
+use mechanics::{Domain, Integrability};
 use scene::Scene;
 
+use crate::fits::Fit;
 use crate::runs::{Decided, Pair};
 use crate::{Answer, Comparison, Growth, LeadingTerm, Membership, Run, Verdict, membership};
 use motion::is_in_table;
@@ -43,8 +46,109 @@ pub struct Contradicted(pub Vec<String>);
 /// [`Contradicted`], with the name of the scene.
 pub fn holds_beside_numbers(scene: &Scene) -> Result<(), Contradicted> {
     let numbers = membership(scene, scene.start.t + scene.duration).ok().flatten();
-    let found = numbers.and_then(|found| found.contradiction());
-    found.map_or(Ok(()), |found| Err(Contradicted(vec![format!("{}: {found}", scene.name)])))
+    contradicted(scene, numbers.and_then(|found| found.contradiction()).as_slice())
+}
+
+/// A sentence on a scene, and what is known of the same from its motion, another derivation or a search.
+#[derive(Clone, Copy, Debug)]
+pub enum Beside<'a> {
+    /// A quantity is constant; its change along a motion.
+    Constant(&'a str, Change),
+    /// A quantity is proved not to be constant on almost every motion; its changes along several.
+    NotConstant(&'a str, &'a [Change]),
+    /// There are at most so many of a kind; those that were found.
+    AtMost(&'a str, usize, &'a [&'a str]),
+    /// Frobenius' verdict; integrable combinations by ranks of brackets over a finite field.
+    Brackets(&'a Integrability, usize),
+    /// Chetaev's motions are proved to be those of a family, whose least χ² is so much above theirs.
+    Contained(&'a str, f64),
+    /// Two methods of one question do not agree.
+    Methods(&'a str),
+}
+
+/// The largest change of a quantity along a motion, and the least that is certain: in parts of the largest
+/// sum of its terms without signs.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Change {
+    /// The largest one.
+    pub largest: f64,
+    /// What errors of the motion and round-off explain, and ten times more.
+    pub certain: f64,
+}
+
+impl Change {
+    /// Whether the quantity has changed.
+    pub fn is_certain(self) -> bool {
+        self.largest > self.certain
+    }
+
+    /// Of a quantity that has these values in both runs of a motion, with terms of this size.
+    pub fn of(values: &[[f64; 2]], size: f64) -> Change {
+        /// Round-off of a quantity, in parts of its terms.
+        const ROUND_OFF: f64 = 1e-11;
+        let largest = |of: &dyn Fn(&[f64; 2]) -> f64| values.iter().map(|x| of(x).abs()).fold(0.0, f64::max);
+        let (change, error) = (largest(&|x| x[0] - values[0][0]), largest(&|x| x[0] - x[1]));
+        let part = |x: f64| if x == 0.0 { 0.0 } else { x / size };
+        Change { largest: part(change), certain: SEEN * CERTAINTY * (part(error) + ROUND_OFF) }
+    }
+}
+
+/// Holds sentences on a scene against what is known beside them.
+///
+/// # Errors
+/// [`Contradicted`], with the name of the scene.
+pub fn hold<'a>(scene: &Scene, sentences: impl IntoIterator<Item = Beside<'a>>) -> Result<(), Contradicted> {
+    let found: Vec<Contradiction> = sentences.into_iter().filter_map(|beside| beside.contradiction(scene)).collect();
+    contradicted(scene, &found)
+}
+
+fn contradicted(scene: &Scene, found: &[Contradiction]) -> Result<(), Contradicted> {
+    let lines: Vec<String> = found.iter().map(|found| format!("{}: {found}", scene.name)).collect();
+    if lines.is_empty() { Ok(()) } else { Err(Contradicted(lines)) }
+}
+
+impl Beside<'_> {
+    fn contradiction(self, scene: &Scene) -> Option<Contradiction> {
+        let largest = |changes: &[Change]| changes.iter().map(|change| change.largest).fold(0.0, f64::max);
+        let (is_wrong, one, other) = match self {
+            // a motion may leave the branch of its start
+            Beside::Constant(quantity, change) => (
+                change.is_certain() && !Domain::of(&scene.system).branch,
+                format!("{quantity} = const"),
+                format!("it changes by {:.0e} of its terms along the motion", change.largest),
+            ),
+            Beside::NotConstant(quantity, changes) => (
+                !changes.is_empty() && !changes.iter().any(|change| change.is_certain()),
+                format!("it is proved that {quantity} is not constant"),
+                format!("along {} motions it changes by {:.0e} of its terms", changes.len(), largest(changes)),
+            ),
+            Beside::AtMost(kind, bound, found) => (
+                found.len() > bound,
+                format!("at most {bound} {kind}"),
+                format!("{} were found: {}", found.len(), found.join(", ")),
+            ),
+            Beside::Brackets(verdict, found) => {
+                let count = match verdict {
+                    Integrability::Nonintegrable { .. } => Some(0),
+                    Integrability::PartlyIntegrable { integrals, .. } => Some(*integrals),
+                    Integrability::Integrable { .. } => Some(scene.system.constraints.len()),
+                    _ => None,
+                };
+                (
+                    count.is_some_and(|count| count != found),
+                    format!("the constraint is {verdict}"),
+                    format!("ranks of brackets leave {found} integrable combinations"),
+                )
+            }
+            Beside::Contained(family, above) => (
+                true,
+                format!("every motion of {} is one of {family}, which is proved", CHETAEV.title),
+                format!("its least χ² that was found is {above:.1} above"),
+            ),
+            Beside::Methods(fault) => (true, fault.into(), "another method does not agree".into()),
+        };
+        is_wrong.then(|| contradiction(one, other))
+    }
 }
 
 fn contradiction(one: impl Into<String>, other: impl Into<String>) -> Contradiction {
@@ -53,6 +157,12 @@ fn contradiction(one: impl Into<String>, other: impl Into<String>) -> Contradict
 
 /// A proved mismatch is at least this many times the noise before it has to be seen.
 const SEEN: f64 = 10.0;
+
+/// A mismatch of this part of a motion's accelerations is seen in its gaps.
+const VISIBLE: f64 = 1e-3;
+
+/// Constants are known to ten digits, motions to fifteen: a gap this many times its limit is another one.
+const UNKNOWN: f64 = 1e5;
 
 /// The growth of a gap is compared with its prediction if it was measured within this part of the time in
 /// which the predicted term leads, and to this accuracy; exponents are whole numbers.
@@ -118,9 +228,7 @@ impl Comparison {
     /// # Errors
     /// [`Contradicted`], with the name of the scene and [`Comparison::contradictions`].
     pub fn is_sound(&self) -> Result<(), Contradicted> {
-        let found = self.contradictions();
-        let lines = found.iter().map(|found| format!("{}: {found}", self.scene.name)).collect();
-        if found.is_empty() { Ok(()) } else { Err(Contradicted(lines)) }
+        contradicted(&self.scene, &self.contradictions())
     }
 
     /// Two forms of the vakonomic equations, one of which keeps clearly what the other changes.
@@ -148,6 +256,35 @@ impl Comparison {
         }
         let answer = membership.answer();
         let none = matches!(answer, Answer::NoneProved { .. } | Answer::None { .. });
+        // an identity in all multipliers is involutive constraints (theorem 3)
+        let all = membership.section.as_ref().is_some_and(|section| section.every && section.proved);
+        let several =
+            matches!(self.integrability, Integrability::Nonintegrable { .. } | Integrability::PartlyIntegrable { .. });
+        if all && several && self.is_chetaev(decided.curve) && self.runs[decided.family].choice.formulation == VAKONOMIC
+        {
+            let one = format!("the constraint is {}", self.integrability);
+            return Some(contradiction(one, format!("every μ₀ gives {family} the motion of {curve} from all starts")));
+        }
+        let clear = membership.decision.least > VISIBLE * membership.decision.acceleration;
+        let same = |fit: &&Fit| {
+            (fit.run, fit.target) == (decided.family, decided.curve)
+                && fit.fitted.as_ref().is_some_and(|fitted| fitted.gap.verdict == Verdict::Same)
+        };
+        if none && clear && self.fits.iter().any(|fit| same(&fit)) {
+            let one = format!("no constants give {family} the motion of {curve}");
+            return Some(contradiction(one, "a search found constants that do"));
+        }
+        let some = matches!(answer, Answer::SomeProved | Answer::Some { .. });
+        let fault = decided.witness.as_ref().filter(|_| some).and_then(|witness| match witness {
+            Err(refused) => Some(format!("with those found there is no motion: {refused}")),
+            Ok(fitted) => {
+                let apart = fitted.gap.points.iter().any(|point| point.gap > UNKNOWN * point.limit);
+                apart.then(|| format!("those found leave a gap of {:.1e}", fitted.gap.largest))
+            }
+        });
+        if let Some(fault) = fault {
+            return Some(contradiction(format!("some constants give {family} the motion of {curve}"), fault));
+        }
         if none && self.agree_if_integrable(decided.family, decided.curve) {
             let one = format!("the constraint is {}", self.integrability);
             return Some(contradiction(one, format!("no constants of {family} give the motion of {curve}")));

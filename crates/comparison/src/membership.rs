@@ -5,7 +5,7 @@ use decision::{
     Verdict, decide_flow,
 };
 use equations::{Derivation, Equations, Formulation};
-use mechanics::{ConstantsRule, Integrability, Removal, System};
+use mechanics::{ConstantsRule, Removal, System};
 use nalgebra::{DMatrix, DVector};
 use scene::Scene;
 use symbolic::Expr;
@@ -175,7 +175,7 @@ impl<'a> Pairing<'a> {
             Finding::NotApplicable(_) if all => question.every_constant(system),
             _ => question.section(system, &exact, start)?,
         };
-        let theorem = if all && section.is_none() { self.theorem(&exact, end) } else { None };
+        let theorem = if all && section.is_none() { self.theorem(&exact) } else { None };
         let unseen = refuted && decision.verdict == Verdict::Contained;
         let least = |until| question.least_by_series(system, start, until - start.t);
         let implied = unseen.then(|| least(decision.until.unwrap_or(end))).flatten();
@@ -185,16 +185,15 @@ impl<'a> Pairing<'a> {
     /// Vakonomic motions are Chetaev's for every `μ₀` where the constraints are integrable (theorem 3):
     /// `f = g dh/dt` with an invertible `g`, and for `dh/dt` the equations contain `μ` as a rate only, `−λ`.
     /// At rest they do so as well.
-    fn theorem(&self, start: &ExactStart, end: f64) -> Option<&'static str> {
+    fn theorem(&self, start: &ExactStart) -> Option<&'static str> {
         if self.curve.formulation != CHETAEV.name || self.family.formulation() != VAKONOMIC.name {
             return None;
         }
         if start.is_at_rest() {
             return Some("nothing moves, and the constraints are linear in the velocities");
         }
-        let integrability = mechanics::integrability(&self.scene.system.clone(), &self.scene.start, end).ok()?;
-        let is_exact = integrability == Integrability::Integrable { exact: true };
-        is_exact.then_some("the constraints are integrable")
+        let all = start.integrable_combinations() == self.scene.system.constraints.len();
+        all.then_some("the constraints are integrable")
     }
 
     /// The constants of least mismatch of accelerations up to `end`, in floating point: those that give the

@@ -4,6 +4,7 @@ use equations::Formulation;
 use mechanics::ConstantsRule;
 use scene::Scene;
 
+use crate::fits::FittedMotion;
 use crate::gap::Gap;
 use crate::growth::{Growth, LeadingTerm};
 use crate::{Membership, Pairing, costates_of};
@@ -40,6 +41,8 @@ pub struct Decided {
     pub curve: usize,
     /// The decision, or why it is impossible.
     pub outcome: Result<Membership, SolveError>,
+    /// The family's motion with the constants that were found, where it had others; or why it is refused.
+    pub witness: Option<Result<FittedMotion, String>>,
 }
 
 /// The leading term of the difference of two runs.
@@ -81,5 +84,5 @@ pub(crate) fn questions(scene: &Scene, runs: &[Run]) -> Vec<(usize, usize)> {
 pub(crate) fn decide(scene: &Scene, runs: &[Run], (family, curve): (usize, usize)) -> Decided {
     let end = runs[curve].outcome.as_ref().map_or(0.0, Motion::end);
     let pairing = Pairing::new(scene, &runs[curve].choice, &runs[family].choice);
-    Decided { family, curve, outcome: pairing.and_then(|pairing| pairing.decide(end)) }
+    Decided { family, curve, outcome: pairing.and_then(|pairing| pairing.decide(end)), witness: None }
 }

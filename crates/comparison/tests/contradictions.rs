@@ -1,7 +1,7 @@
 //! Results that exclude each other, forged one at a time: each is noticed, and there is no verdict.
 
 use comparison::words::Headline;
-use comparison::{Comparison, Verdict, compare};
+use comparison::{Beside, Change, Comparison, Verdict, compare, hold};
 use decision::{Finding, NoConstants};
 use equations::Formulation;
 use mechanics::Integrability;
@@ -146,4 +146,85 @@ fn one_family_whose_motions_differ() {
     let fit = heisenberg.fits.iter_mut().find(|fit| fit.by_identity && Some(fit.target) != chetaev).expect("a fit");
     fit.fitted.as_mut().expect("a motion").gap.verdict = Verdict::Different;
     assert!(found(&heisenberg).contains("are one family, but their motions differ"));
+}
+
+#[test]
+fn every_multiplier_at_all_starts_beside_a_constraint_that_is_not_integrable() {
+    let mut bowl = bowl();
+    let section = disc_section();
+    decided(&mut bowl).section = Some(decision::Section { every: true, proved: true, ..section });
+    bowl.integrability = Integrability::Nonintegrable { depth: 1, growth: None };
+    assert!(found(&bowl).ends_with("but every μ₀ gives vakonomic the motion of Chetaev from all starts"));
+}
+
+fn disc_section() -> decision::Section {
+    decided(&mut disc()).section.clone().expect("an identity")
+}
+
+#[test]
+fn constants_that_are_decided_beside_their_motion() {
+    let mut disc = disc();
+    disc.fit(crate::Fits::None, &Settings::default()).expect("no fit");
+    let asked = (disc.run(VAKONOMIC), disc.run(CHETAEV));
+    let is = |d: &crate::Decided| (Some(d.family), Some(d.curve)) == asked;
+    let place = disc.decided.iter().position(is).expect("a decision");
+    let fitted = disc.decided[place].witness.as_ref().expect("a motion").as_ref().expect("a motion");
+    assert!(fitted.gap.largest < 1e-9, "{:?}", fitted.constants);
+    assert_eq!(disc.contradictions(), Vec::new());
+    // what the digits of the constants leave open is no contradiction
+    let points = |disc: &mut Comparison, factor: f64| {
+        let fitted = disc.decided[place].witness.as_mut().expect("a motion").as_mut().expect("a motion");
+        fitted.gap.points.iter_mut().for_each(|point| point.gap = factor * point.limit);
+    };
+    points(&mut disc, 1e3);
+    assert_eq!(disc.contradictions(), Vec::new());
+    points(&mut disc, 1e6);
+    assert!(found(&disc).contains("some constants give vakonomic the motion of Chetaev, but those found leave a gap"));
+    disc.decided[place].witness = Some(Err("singular".into()));
+    assert!(found(&disc).ends_with("but with those found there is no motion: singular"));
+}
+
+#[test]
+fn none_beside_constants_that_a_search_found() {
+    let mut sledge = sledge();
+    sledge.fit(crate::Fits::All, &Settings::default()).expect("fits");
+    assert_eq!(sledge.contradictions(), Vec::new());
+    let asked = (sledge.run(VAKONOMIC), sledge.run(CHETAEV));
+    let fit = sledge.fits.iter_mut().find(|fit| (Some(fit.run), Some(fit.target)) == asked).expect("a fit");
+    fit.fitted.as_mut().expect("a motion").gap.verdict = Verdict::Same;
+    assert!(found(&sledge).ends_with("but a search found constants that do"));
+}
+
+#[test]
+fn sentences_of_other_commands() {
+    let [sledge, bowl] = [sledge().scene, bowl().scene];
+    let (still, moved) = (Change { largest: 1e-14, certain: 1e-9 }, Change { largest: 0.3, certain: 1e-9 });
+    let nonintegrable = Integrability::Nonintegrable { depth: 1, growth: None };
+    let partly = Integrability::PartlyIntegrable { integrals: 1, constraints: 2, exact: true };
+    let sound = [
+        Beside::Constant("E", still),
+        Beside::NotConstant("E", &[still, moved]),
+        Beside::NotConstant("E", &[]),
+        Beside::AtMost("linear integrals", 1, &["E"]),
+        Beside::Brackets(&nonintegrable, 0),
+        Beside::Brackets(&Integrability::NonlinearInVelocity, 3),
+    ];
+    assert!(hold(&sledge, sound).is_ok());
+    let planted = [
+        (Beside::Constant("E", moved), "sledge: E = const, but it changes by 3e-1 of its terms along the motion"),
+        (Beside::NotConstant("E", &[still, still]), "E is not constant, but along 2 motions it changes by 1e-14"),
+        (Beside::AtMost("linear integrals", 0, &["x'", "y'"]), "at most 0 linear integrals, but 2 were found: x', y'"),
+        (Beside::Brackets(&nonintegrable, 1), "but ranks of brackets leave 1 integrable combinations"),
+        (Beside::Brackets(&partly, 0), "but ranks of brackets leave 0 integrable combinations"),
+        (
+            Beside::Contained("vakonomic", 12.0),
+            "every motion of Chetaev is one of vakonomic, which is proved, but its least",
+        ),
+        (Beside::Methods("a product is none"), "a product is none, but another method does not agree"),
+    ];
+    for (beside, words) in planted {
+        let told = hold(&sledge, [beside]).unwrap_err().to_string();
+        assert!(told.contains(words), "{told}");
+    }
+    assert!(hold(&bowl, [Beside::Brackets(&Integrability::Integrable { exact: true }, 0)]).is_err());
 }

@@ -2,6 +2,7 @@
 
 use std::sync::Mutex;
 
+use comparison::{Beside, hold};
 use equations::Formulation;
 use motion::{CHETAEV, Choice, VAKONOMIC, choices_among, over_threads};
 use scene::Scene;
@@ -241,7 +242,7 @@ fn in_order(
             found.into_iter().for_each(|found| keep_less(fitted, found));
         }
         if let Some((_, found)) = fitted.as_ref().ok().filter(|(_, found)| is_excluded(found, fit)) {
-            return Err(known::contradicted(scene, choice, found.chi_squared - fit.chi_squared).into());
+            hold(scene, [Beside::Contained(&choice.label, found.chi_squared - fit.chi_squared)])?;
         }
     }
     Ok(ordered)

@@ -1,8 +1,8 @@
 //! What is known of a formulation before its fit: where its search may begin, and which family contains
 //! which.
 
-use comparison::{Answer, Contradicted, Pairing, costates_of, membership, multipliers_of};
-use motion::{CHETAEV, Choice, VAKONOMIC, costate_names};
+use comparison::{Answer, Pairing, costates_of, membership, multipliers_of};
+use motion::{Choice, VAKONOMIC, costate_names};
 use scene::Scene;
 
 use crate::question::is_constant;
@@ -130,10 +130,4 @@ pub(crate) fn contains_chetaev(scene: &Scene, family: &Choice) -> bool {
     let end = scene.start.t + scene.duration;
     *family.formulation == *VAKONOMIC
         && membership(scene, end).is_ok_and(|found| found.is_some_and(|found| found.answer() == Answer::SomeProved))
-}
-
-/// Proof and fits that exclude each other.
-pub(crate) fn contradicted(scene: &Scene, family: &Choice, above: f64) -> Contradicted {
-    let one = format!("every motion of {} is one of {}, which is proved", CHETAEV.title, family.label);
-    Contradicted(vec![format!("{}: {one}, but its least χ² that was found is {above:.1} above", scene.name)])
 }

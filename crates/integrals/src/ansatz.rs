@@ -37,13 +37,6 @@ pub struct Printed {
     pub is_moving_energy: bool,
 }
 
-impl Printed {
-    /// The sum of its terms without their signs.
-    pub(crate) fn without_signs(&self) -> String {
-        self.terms.iter().map(|term| format!("sqrt(({term})^2)")).collect::<Vec<_>>().join(" + ")
-    }
-}
-
 /// The integrals found in an ansatz.
 #[derive(Clone, Debug)]
 pub struct Ansatz {

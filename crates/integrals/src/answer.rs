@@ -2,9 +2,10 @@
 
 use std::iter::zip;
 
-use comparison::Contradicted;
+use comparison::{Beside, Change, Contradicted, hold};
 use decision::{DecisionError, ExactStart};
-use mechanics::{Constancy, Domain, System, Watched};
+use equations::Outputs;
+use mechanics::{Constancy, System, Watched, project_velocity};
 use motion::{CHETAEV, Choice, Settings, SolveError, derive, solve_choice};
 use scene::Scene;
 use symbolic::{Expr, Graph, Symbol};
@@ -15,8 +16,6 @@ use crate::{Ansatz, Open, Printed, Reversed, constants, reversible};
 /// Tolerance of the motion along which what is printed is looked at, and times at which it is.
 const TOLERANCE: f64 = 1e-12;
 const TIMES: u32 = 50;
-/// An integral that changes by more than this part is none on the motion.
-pub(crate) const CHANGED: f64 = 1e-3;
 
 /// Measures and integrals of a scene's motions under one formulation.
 #[derive(Clone)]
@@ -29,9 +28,8 @@ pub struct Integrals {
     pub reversed: Option<Reversed>,
     /// In the ansatz.
     pub ansatz: Result<Ansatz, Open>,
-    /// Largest change of each integral that is printed along the scene's own motion, in parts of the sum of
-    /// its terms without signs; or why there is no such motion.
-    pub drifts: Result<Vec<f64>, String>,
+    /// The change of each integral that is printed along the scene's own motion; or why there is no such one.
+    pub drifts: Result<Vec<Change>, String>,
     /// Names of the scene's invariants, with whether they are constant on almost every motion.
     pub invariants: Result<Vec<(String, bool)>, Open>,
 }
@@ -73,39 +71,87 @@ impl Integrals {
         let held = Open::unless(|| constants(system, &equations, &start, &expressions));
         let invariants = held.map(|held| zip(own.iter().map(|watched| watched.name.clone()), held).collect());
         let printed = ansatz.as_ref().map_or(&[][..], |found| &found.printed);
-        let drifts = drifts(scene, choice, printed);
+        let (drifts, own) = match changes(scene, choice, printed) {
+            Ok((drifts, own)) => (Ok(drifts), own),
+            Err(why) => (Err(why), Vec::new()),
+        };
         let formulation = choice.formulation.name;
         let found = Integrals { scene: scene.clone(), formulation, reversed, ansatz, drifts, invariants };
-        let contradictions = found.contradictions();
-        if contradictions.is_empty() { Ok(found) } else { Err(Contradicted(contradictions).into()) }
+        found.hold(choice, &own)?;
+        Ok(found)
     }
 
-    /// What cannot be true beside each other.
-    fn contradictions(&self) -> Vec<String> {
-        let name = &self.scene.name;
-        let mut all: Vec<String> = Vec::new();
-        let linear = self.reversed.as_ref().and_then(|found| found.integrals.first()?.as_ref().ok());
-        if let (Some(linear), Ok(found)) = (linear, &self.ansatz) {
-            let printed = found.printed.iter().filter(|p| p.is_linear).count();
-            if printed > linear.count {
-                all.push(format!("{name}: at most {} linear integrals, but {printed} are printed", linear.count));
+    /// Holds what is said against the scene's own motion, Frobenius' test, and what else is said.
+    fn hold(&self, choice: &Choice, invariants: &[Change]) -> Result<(), Contradicted> {
+        let system = &self.scene.system;
+        let printed = self.ansatz.as_ref().map_or(&[][..], |found| &found.printed);
+        let own = || self.invariants.iter().flatten();
+        let mut all: Vec<Beside> = Vec::new();
+        all.extend(zip(printed, self.drifts.iter().flatten()).map(|(p, change)| Beside::Constant(&p.text, *change)));
+        let held = zip(own(), invariants).filter(|((_, held), _)| *held);
+        all.extend(held.map(|((name, _), change)| Beside::Constant(name, *change)));
+        let others = self.changes_of_others(choice, invariants);
+        all.extend(others.iter().map(|(name, changes)| Beside::NotConstant(name, changes)));
+        let linear = self.reversed.as_ref().and_then(|found| found.integrals.first());
+        let is_seen = |name: &str| is_linear(system, name);
+        let found: Vec<&str> = printed.iter().filter(|p| p.is_linear).map(|p| &p.text[..]).collect();
+        let known: Vec<&str> = own().filter(|(own, held)| *held && is_seen(own)).map(|(own, _)| &own[..]).collect();
+        if let Some(Ok(linear)) = linear {
+            all.push(Beside::AtMost("linear integrals", linear.count, &found));
+            if linear.count == 0 {
+                all.push(Beside::AtMost("linear integrals", 0, &known));
             }
         }
-        // a motion may leave the branch of its start
-        if let (Ok(found), Ok(drifts), false) = (&self.ansatz, &self.drifts, Domain::of(&self.scene.system).branch) {
-            let changed = zip(&found.printed, drifts).filter(|(_, drift)| **drift > CHANGED);
-            all.extend(changed.map(|(p, drift)| format!("{name}: {} = const, which changes by {drift:.0e}", p.text)));
+        let brackets = match linear {
+            Some(Ok(_)) => Some(0),
+            Some(Err(Open::Integrable { rank, dimension })) => Some(dimension - rank),
+            _ => None,
+        };
+        let until = self.scene.start.t + self.scene.duration;
+        let frobenius = brackets.map(|_| mechanics::integrability(&system.clone(), &self.scene.start, until));
+        if let (Some(left), Some(Ok(verdict))) = (brackets, &frobenius) {
+            all.push(Beside::Brackets(verdict, left + system.on_positions.len()));
         }
         let open = self.reversed.iter().flat_map(|found| &found.integrals).filter_map(|found| found.as_ref().err());
-        let faults = open.chain(self.ansatz.as_ref().err()).filter(|open| matches!(open, Open::Contradiction(_)));
-        all.extend(faults.map(|fault| format!("{name}: {fault}")));
-        if linear.is_some_and(|found| found.count == 0) {
-            let held =
-                self.invariants.iter().flatten().filter(|(own, held)| *held && is_linear(&self.scene.system, own));
-            all.extend(held.map(|(own, _)| format!("{name}: no linear integral, but `{own}` is one")));
-        }
-        all
+        let faults: Vec<String> = open
+            .chain(self.ansatz.as_ref().err())
+            .filter(|open| matches!(open, Open::Contradiction(_)))
+            .map(Open::to_string)
+            .collect();
+        all.extend(faults.iter().map(|fault| Beside::Methods(fault)));
+        hold(&self.scene, all)
     }
+
+    /// Changes along several motions of invariants that are proved not to be constant, where the scene's own
+    /// motion shows none.
+    fn changes_of_others(&self, choice: &Choice, invariants: &[Change]) -> Vec<(&str, Vec<Change>)> {
+        let said = zip(self.invariants.iter().flatten(), invariants).enumerate();
+        let said: Vec<_> = said.filter(|(_, ((_, held), change))| !*held && !change.is_certain()).collect();
+        if said.is_empty() {
+            return Vec::new();
+        }
+        let others: Vec<Vec<Change>> = (1..=OTHERS)
+            .filter_map(|number| changes(&other(&self.scene, number)?, choice, &[]).ok())
+            .map(|(_, invariants)| invariants)
+            .collect();
+        let along = |i: usize| others.iter().filter_map(move |of| of.get(i).copied());
+        said.into_iter().map(|(i, ((name, _), own))| (&name[..], along(i).chain([*own]).collect())).collect()
+    }
+}
+
+/// Other starts that a quantity is looked at from which the scene's own motion does not change.
+const OTHERS: u32 = 3;
+
+/// The scene with other start velocities, of the size of its own or 1; `None` where that fails.
+fn other(scene: &Scene, number: u32) -> Option<Scene> {
+    let mut start = scene.start.clone();
+    let size = match start.v.iter().fold(0.0, |size: f64, v| size.max(v.abs())) {
+        0.0 => 1.0,
+        size => size,
+    };
+    start.v.iter_mut().zip(1..).for_each(|(v, i)| *v += size * (f64::from(number) * 78.2 + f64::from(i) * 12.9).sin());
+    let (start, _) = project_velocity(&scene.system, &start).ok()?;
+    Some(Scene { start, ..scene.clone() })
 }
 
 /// What the ansatz writes down about the motion of `choice`, up to degree 2, as quantities that are watched
@@ -135,37 +181,47 @@ fn again(g: &Graph, text: &str) -> Result<Expr, String> {
     g.parse(text, &known, &[]).map_err(|fault| fault.to_string())
 }
 
-fn drifts(scene: &Scene, choice: &Choice, printed: &[Printed]) -> Result<Vec<f64>, String> {
-    if printed.is_empty() {
-        return Ok(Vec::new());
-    }
+/// Changes along the motion of `choice` of what is printed, and of the scene's invariants.
+fn changes(scene: &Scene, choice: &Choice, printed: &[Printed]) -> Result<(Vec<Change>, Vec<Change>), String> {
     let system = &scene.system;
+    let own: Vec<&Watched> = system.watched.iter().filter(|watched| watched.is_constant()).collect();
+    if printed.is_empty() && own.is_empty() {
+        return Ok(Default::default());
+    }
     let settings = Settings { tolerance: TOLERANCE, ..Settings::default() };
     let mut motion = solve_choice(scene, choice, &settings).map_err(|fault| fault.to_string())?;
     let g = motion.equations.graph.clone();
-    let both = |p: &Printed| Ok([again(&g, &p.text)?, again(&g, &p.without_signs())?]);
-    let pairs: Vec<[Expr; 2]> = printed.iter().map(both).collect::<Result<_, String>>()?;
+    let printed: Vec<Expr> = printed.iter().map(|p| again(&g, &p.text)).collect::<Result<_, _>>()?;
+    let count = printed.len();
+    let terms: Vec<Vec<Expr>> =
+        printed.into_iter().chain(own.iter().map(|own| own.expression)).map(|e| g.terms(e)).collect();
     let symbols: Vec<Symbol> = system.positions().into_iter().chain(system.velocities()).chain([system.time]).collect();
     let multipliers: Vec<Option<Symbol>> =
         motion.equations.multipliers.iter().map(|m| g.find_symbol(&m.name)).collect();
     let (from, to, mut values) = (motion.start(), motion.end(), system.parameter_values());
-    let mut at = |t: f64| -> Result<Vec<[f64; 2]>, String> {
-        let now = motion.at(t).map_err(|fault| fault.to_string())?;
+    // of each quantity its value and the sum of its terms without signs
+    let mut read = |t: f64, now: Outputs| -> Result<Vec<[f64; 2]>, String> {
         values.extend(zip(symbols.iter().copied(), now.coordinates.into_iter().chain(now.velocities).chain([t])));
         values.extend(zip(&multipliers, now.multipliers).filter_map(|(mu, x)| Some(((*mu)?, x))));
-        let value = |e: Expr| g.evaluate(e, &values).map_err(|fault| fault.to_string());
-        pairs.iter().map(|&[own, size]| Ok([value(own)?, value(size)?])).collect()
+        let value = |&e: &Expr| g.evaluate(e, &values).map_err(|fault| fault.to_string());
+        let sums = |terms: &Vec<Expr>| {
+            let terms: Vec<f64> = terms.iter().map(value).collect::<Result<_, _>>()?;
+            Ok([terms.iter().sum(), terms.iter().map(|x| x.abs()).sum()])
+        };
+        terms.iter().map(sums).collect()
     };
-    let larger = |a: f64, b: f64| if a >= b { a } else { b };
-    let start = at(from)?;
-    let mut largest = vec![(0.0, 0.0); printed.len()];
-    for i in 0..=TIMES {
-        let now = at(from + (to - from) * f64::from(i) / f64::from(TIMES))?;
-        for ((drift, size), (now, start)) in largest.iter_mut().zip(zip(now, &start)) {
-            (*drift, *size) = (larger(*drift, (now[0] - start[0]).abs()), larger(*size, now[1]));
+    let (mut runs, mut sizes) = (vec![Vec::new(); terms.len()], vec![0.0_f64; terms.len()]);
+    let times = (0..=TIMES).map(|i| from + (to - from) * f64::from(i) / f64::from(TIMES));
+    for t in times.filter(|&t| t == from || !motion.is_doubted(t)).collect::<Vec<_>>() {
+        let (kept, looser) = motion.at_in_both_runs(t).map_err(|fault| fault.to_string())?;
+        for (i, (kept, looser)) in zip(read(t, kept)?, read(t, looser)?).enumerate() {
+            runs[i].push([kept[0], looser[0]]);
+            sizes[i] = sizes[i].max(kept[1]);
         }
     }
-    Ok(largest.into_iter().map(|(drift, size)| if drift == 0.0 { 0.0 } else { drift / size }).collect())
+    let mut changes: Vec<Change> = zip(&runs, sizes).map(|(run, size)| Change::of(run, size)).collect();
+    let own = changes.split_off(count);
+    Ok((changes, own))
 }
 
 /// Whether an invariant of the scene is linear in the velocities, and not zero.

@@ -6,7 +6,6 @@ use mechanics::{Domain, System};
 use motion::numbers::at_most;
 use serde_json::{Value, json};
 
-use crate::answer::CHANGED;
 use crate::{Cyclic, Density, Found, Integrals, Measure, Multiplier, Open, Printed, Reduction, Reversed};
 
 /// A smaller drift is round-off, and has no digits.
@@ -62,10 +61,11 @@ impl Integrals {
                 lines.push(("ansatz", words));
                 for (i, integral) in found.printed.iter().enumerate() {
                     let (part, drift) = match &self.drifts {
-                        Ok(drifts) if drifts[i] > CHANGED => {
-                            (" on the branch of this start", format!("drift {:.0e}: the motion leaves it", drifts[i]))
-                        }
-                        Ok(drifts) => ("", format!("drift below {:.0e}", at_most(drifts[i].max(ROUND_OFF)))),
+                        Ok(drifts) if drifts[i].is_certain() => (
+                            " on the branch of this start",
+                            format!("drift {:.0e}: the motion leaves it", drifts[i].largest),
+                        ),
+                        Ok(drifts) => ("", format!("drift below {:.0e}", at_most(drifts[i].largest.max(ROUND_OFF)))),
                         Err(why) => ("", format!("no motion to try it on: {why}")),
                     };
                     lines.push((kind(integral), format!("{} = const{part} ({drift})", integral.text)));
@@ -277,7 +277,7 @@ impl Integrals {
                         "kind": kind(integral), "degree": integral.degree, "expression": integral.text,
                     });
                     match &self.drifts {
-                        Ok(drifts) => value["drift"] = json!(drifts[i]),
+                        Ok(drifts) => value["drift"] = json!(drifts[i].largest),
                         Err(why) => value["no_motion"] = json!(why),
                     }
                     value

@@ -57,7 +57,7 @@ const STEADY: f64 = 1e-9;
 /// [`LinearError::NotSteady`], [`LinearError::TimeDependent`]; [`LinearError::Solve`] where the formulation
 /// refuses the system.
 pub fn linearize(setting: Setting, choice: &Choice) -> Result<Linearization, LinearError> {
-    Linearization::steady(&mut Point::start(setting, choice)?)
+    Linearization::at(&mut Point::start(setting, choice)?, true)
 }
 
 /// The equations of `choice` to first order about its motion from the start of `setting`, at time `t`.
@@ -102,17 +102,11 @@ fn depends_on_time(point: &Point) -> bool {
 }
 
 impl Linearization {
-    /// About a point of a steady motion.
-    pub(crate) fn steady(point: &mut Point) -> Result<Linearization, LinearError> {
-        let form = point.equations.formulation;
-        if depends_on_time(point) {
-            return Err(LinearError::TimeDependent { formulation: form.into() });
-        }
-        Linearization::at(point, true)
-    }
-
     /// About a point, which has to be one of a steady motion where `is_steady` says so.
-    fn at(point: &mut Point, is_steady: bool) -> Result<Linearization, LinearError> {
+    pub(crate) fn at(point: &mut Point, is_steady: bool) -> Result<Linearization, LinearError> {
+        if is_steady && depends_on_time(point) {
+            return Err(LinearError::TimeDependent { formulation: point.equations.formulation.into() });
+        }
         let y = point.y.clone();
         let jacobian = point.jacobian(&y)?;
         let noise = point.noise(&y, &jacobian)?;

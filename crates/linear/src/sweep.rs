@@ -80,7 +80,7 @@ pub fn sweep(
         let mut found = || {
             let settled = finder.as_mut().map(|finder| finder.at(value, None)?.0.settle()).transpose()?;
             let (point, state) = family.at(value, settled)?;
-            let linearization = Linearization::steady(point)?;
+            let linearization = Linearization::at(point, true)?;
             let part = linearization.part(free)?;
             let there = in_state(scene, name, &state).unwrap_or(value);
             Ok(SweepPoint { value: there, asked: value, state, linearization, part })

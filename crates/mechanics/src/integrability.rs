@@ -1,6 +1,6 @@
 //! Is the constraint integrable? Frobenius' test by the Lie flag of the admissible directions.
 
-use symbolic::{Expr, Matrix, Stopped, Symbol, Vanishing, question};
+use symbolic::{Expr, Graph, Matrix, Stopped, Symbol, Vanishing, question};
 
 use crate::rank::{Surroundings, generic_rank};
 use crate::solved_constraints::SolvedConstraints;
@@ -209,11 +209,6 @@ fn by_brackets(system: &System, state: &State, end: f64) -> Result<Integrability
     }
     let rank_of =
         |fields: &[Vec<Expr>]| generic_rank(g, &Matrix::new(fields.len(), space.len(), fields.concat()), &surroundings);
-    let bracket = |x: &[Expr], y: &[Expr]| -> Vec<Expr> {
-        let along = |field: &[Expr], by: &[Expr], i: usize| g.dot(&g.gradient(field[i], &space), by);
-        (0..space.len()).map(|i| g.sub(along(y, x, i), along(x, y, i))).collect()
-    };
-
     let mut fields = admissible.clone();
     let (mut generic, mut at_start) = (vec![fields.len()], vec![surroundings.rank_at_centre(g, &fields)]);
     let mut newest = admissible.clone();
@@ -222,33 +217,31 @@ fn by_brackets(system: &System, state: &State, end: f64) -> Result<Integrability
     let mut open = (!g.are_exact(&system.constraints)).then_some(Undecided::AtPoints);
     while rank < space.len() {
         let mut added = Vec::new();
-        for (i, x) in admissible.iter().enumerate() {
-            // [Y, X] = −[X, Y]
-            let first = if depth == 0 { i + 1 } else { 0 };
-            for y in newest.iter().skip(first) {
-                let z = bracket(x, y);
-                if g.size(&z) > LONGEST {
-                    return undecided(Undecided::TooLong, depth, space.len() - rank);
-                }
-                if z.iter().all(|&e| g.is_zero(e)) {
-                    continue;
-                }
-                fields.push(z.clone());
-                let found = rank_of(&fields);
-                // as long as there are no others, what is not zero adds a direction
-                let alone = rank == admissible.len() && found <= Some(rank);
-                let verdicts: Vec<Vanishing> = z.iter().filter(|_| alone).map(|&e| system.vanishes(e)).collect();
-                // where pieces end, it may be another one on which it is not zero
-                let is_seen = verdicts.iter().any(|v| matches!(v, Vanishing::No { .. }));
-                if found > Some(rank) || is_seen && g.ends_of_pieces(&z).is_empty() {
-                    rank += 1;
-                    added.push(z);
-                    continue;
-                }
-                fields.pop();
-                if !alone || !verdicts.iter().all(|v| matches!(v, Vanishing::Exactly)) {
-                    open = open.max(Some(if found.is_none() { Undecided::NoPoint } else { Undecided::AtPoints }));
-                }
+        for z in brackets(g, &space, &admissible, &newest, depth == 0) {
+            if rank == space.len() {
+                break;
+            }
+            if g.size(&z) > LONGEST {
+                return undecided(Undecided::TooLong, depth, space.len() - rank);
+            }
+            if z.iter().all(|&e| g.is_zero(e)) {
+                continue;
+            }
+            fields.push(z.clone());
+            let found = rank_of(&fields);
+            // as long as there are no others, what is not zero adds a direction
+            let alone = rank == admissible.len() && found <= Some(rank);
+            let verdicts: Vec<Vanishing> = z.iter().filter(|_| alone).map(|&e| system.vanishes(e)).collect();
+            // where pieces end, it may be another one on which it is not zero
+            let is_seen = verdicts.iter().any(|v| matches!(v, Vanishing::No { .. }));
+            if found > Some(rank) || is_seen && g.ends_of_pieces(&z).is_empty() {
+                rank += 1;
+                added.push(z);
+                continue;
+            }
+            fields.pop();
+            if !alone || !verdicts.iter().all(|v| matches!(v, Vanishing::Exactly)) {
+                open = open.max(Some(if found.is_none() { Undecided::NoPoint } else { Undecided::AtPoints }));
             }
         }
         if added.is_empty() {
@@ -266,12 +259,7 @@ fn by_brackets(system: &System, state: &State, end: f64) -> Result<Integrability
             // fields that add a direction at almost every place need not be those that do at the start
             let start = match at_start == generic {
                 true => at_start,
-                false => growth_at_start(
-                    admissible,
-                    |x, y| bracket(x, y),
-                    |fields| surroundings.rank_at_centre(g, fields),
-                    |x| g.size(x),
-                ),
+                false => growth_at_start(g, &space, &admissible, &surroundings),
             };
             Integrability::Nonintegrable { depth, growth: Some(Growth { domain, generic, start }) }
         }
@@ -281,27 +269,33 @@ fn by_brackets(system: &System, state: &State, end: f64) -> Result<Integrability
     })
 }
 
+/// `[X, Y] = Y_x X − X_x Y` of the admissible fields with the newest ones; with one another, each pair once.
+fn brackets(
+    g: &Graph,
+    space: &[Symbol],
+    admissible: &[Vec<Expr>],
+    newest: &[Vec<Expr>],
+    are_the_first: bool,
+) -> impl Iterator<Item = Vec<Expr>> {
+    let along = |field: Expr, by: &[Expr]| g.dot(&g.gradient(field, space), by);
+    let first = move |i: usize| if are_the_first { i + 1 } else { 0 };
+    let pairs = admissible.iter().enumerate().flat_map(move |(i, x)| newest.iter().skip(first(i)).map(move |y| (x, y)));
+    pairs.map(move |(x, y)| (0..space.len()).map(|i| g.sub(along(y[i], x), along(x[i], y))).collect())
+}
+
 /// Ranks at the start of the fields and of all their brackets, until all directions are reached or there are
 /// too many.
-fn growth_at_start(
-    admissible: Vec<Vec<Expr>>,
-    bracket: impl Fn(&[Expr], &[Expr]) -> Vec<Expr>,
-    rank: impl Fn(&[Vec<Expr>]) -> usize,
-    size: impl Fn(&[Expr]) -> usize,
-) -> Vec<usize> {
-    let most = admissible.first().map_or(0, Vec::len);
-    let mut ranks = vec![rank(&admissible)];
-    let (mut all, mut newest) = (admissible.clone(), admissible.clone());
-    while ranks.last().is_some_and(|&rank| rank < most) && !newest.is_empty() {
-        let first = |i: usize| if ranks.len() == 1 { i + 1 } else { 0 };
-        let pairs = admissible.iter().enumerate().flat_map(|(i, x)| newest.iter().skip(first(i)).map(move |y| (x, y)));
-        let next: Vec<Vec<Expr>> = pairs.map(|(x, y)| bracket(x, y)).collect();
+fn growth_at_start(g: &Graph, space: &[Symbol], admissible: &[Vec<Expr>], surroundings: &Surroundings) -> Vec<usize> {
+    let mut ranks = vec![surroundings.rank_at_centre(g, admissible)];
+    let (mut all, mut newest) = (admissible.to_vec(), admissible.to_vec());
+    while ranks.last().is_some_and(|&rank| rank < space.len()) && !newest.is_empty() {
+        let next: Vec<Vec<Expr>> = brackets(g, space, admissible, &newest, ranks.len() == 1).collect();
         newest = next.into_iter().filter(|z| !all.contains(z)).collect();
         all.extend(newest.iter().cloned());
-        if all.len() > MANY || size(&all.concat()) > LONGEST {
+        if all.len() > MANY || g.size(&all.concat()) > LONGEST {
             break;
         }
-        ranks.push(rank(&all));
+        ranks.push(surroundings.rank_at_centre(g, &all));
     }
     ranks
 }

@@ -78,4 +78,11 @@ impl SingularValues {
         let scaled = along.zip_map(&self.values, |c, s| if s > limit { c / s } else { 0.0 });
         self.right.tr_mul(&scaled)
     }
+
+    /// The orthogonal projection on the kernel, where singular values up to `limit` count as zero.
+    pub fn on_kernel(&self, limit: f64) -> DMatrix<f64> {
+        let n = self.right.ncols();
+        let seen = (0..self.values.len()).filter(|&k| self.values[k] > limit).map(|k| self.right.row(k));
+        seen.fold(DMatrix::identity(n, n), |rest, row| rest - row.transpose() * row)
+    }
 }

@@ -105,18 +105,22 @@ impl Metric {
         self.length(t, q, v, &subtract(q, other))
     }
 
+    /// `M` at `(t, q, v)`.
+    pub fn matrix(&mut self, t: f64, q: &[f64], v: &[f64]) -> DMatrix<f64> {
+        let n = self.dimension;
+        DMatrix::from_row_slice(n, n, self.at(t, q, v).0)
+    }
+
     /// `R` with `RᵀR = |M|` at `(t, q, v)`, so that the length of `Δq` is that of `R Δq`.
     pub fn factor(&mut self, t: f64, q: &[f64], v: &[f64]) -> DMatrix<f64> {
-        let n = self.dimension;
-        let mass = DMatrix::from_row_slice(n, n, self.at(t, q, v).0);
+        let mass = self.matrix(t, q, v);
         let root = || absolute_root(&mass);
         mass.clone().cholesky().map_or_else(root, |c| c.l().transpose())
     }
 
     /// The length of each coordinate's unit at `(t, q, v)`, and whether `M` has a negative eigenvalue there.
     pub fn inertia(&mut self, t: f64, q: &[f64], v: &[f64]) -> (Vec<f64>, bool) {
-        let n = self.dimension;
-        let mass = DMatrix::from_row_slice(n, n, self.at(t, q, v).0);
+        let (n, mass) = (self.dimension, self.matrix(t, q, v));
         let factor = |root: &DMatrix<f64>| root.column_iter().map(|column| column.norm()).collect::<Vec<f64>>();
         match mass.clone().cholesky() {
             Some(c) => (factor(&c.l().transpose()), false),

@@ -7,6 +7,8 @@
 use proptest::prelude::*;
 use symbolic::{Expr, Function, Graph};
 
+use crate::writings::{WRITINGS, Writing};
+
 /// How a switch goes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Edge {
@@ -73,6 +75,8 @@ pub struct Features {
     pub root: Option<Root>,
     /// Where the start is, if it is far from the origin.
     pub far: Option<Far>,
+    /// Whether its sentences are held against those of another writing, and which.
+    pub writing: Option<usize>,
 }
 
 impl Features {
@@ -80,7 +84,13 @@ impl Features {
     pub fn names(&self) -> Vec<&'static str> {
         let names = ["a switch", "a root", "a start far from the origin"];
         let has = [self.switch.is_some(), self.root.is_some(), self.far.is_some()];
-        names.into_iter().zip(has).filter(|(_, has)| *has).map(|(name, _)| name).collect()
+        let own = names.into_iter().zip(has).filter(|(_, has)| *has).map(|(name, _)| name);
+        own.chain(self.writing().map(|_| "another writing")).collect()
+    }
+
+    /// The other writing.
+    pub fn writing(&self) -> Option<&'static Writing> {
+        self.writing.map(|i| &WRITINGS[i % WRITINGS.len()])
     }
 
     /// What is added to the start of coordinate `i`.
@@ -129,5 +139,5 @@ pub(crate) fn features(most: usize) -> impl Strategy<Value = Features> {
     let far = (prop::collection::vec(far, most), 16..=24_i64).prop_map(|(positions, time)| Far { positions, time });
     let (switch, root) = (prop::option::weighted(0.12, switch), prop::option::weighted(0.12, root));
     let all = (switch, root, prop::option::weighted(0.2, far));
-    all.prop_map(|(switch, root, far)| Features { switch, root, far })
+    all.prop_map(|(switch, root, far)| Features { switch, root, far, writing: None })
 }

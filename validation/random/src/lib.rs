@@ -18,7 +18,9 @@ mod kind;
 pub mod realization;
 mod recipe;
 mod record;
+mod sentences;
 mod transform;
+pub mod writings;
 
 pub use build::{DURATION, REMOVAL};
 pub use bulk::{Batch, first_failures, shrink};
@@ -35,6 +37,7 @@ pub use found_out::{FoundOut, Unjudged, found_out, referee};
 pub use kind::{Kind, Truth};
 pub use recipe::{LARGEST, MOST, Recipe, draw, draw_recipe, recipes, recipes_of};
 pub use record::{Count, Open, Record, Summary, THOROUGH, milliseconds};
+pub use sentences::{Said, sentences};
 pub use transform::{Rewritten, Scaling, augmented, recombined};
 
 /// The judgements behind the claims: when measured figures hold, when they fail, and when they say nothing.

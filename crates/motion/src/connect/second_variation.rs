@@ -1,10 +1,11 @@
 //! What the second variation says of a motion of stationary action.
 
-use mechanics::System;
+use mechanics::{SingularValues, System, fresh_symbol};
 use nalgebra::DMatrix;
+use symbolic::Symbol;
 
 use crate::connect::conjugate::ConjugateTime;
-use crate::{Motion, SolveError};
+use crate::{Metric, Motion, SolveError};
 
 /// Instants at which Legendre's condition is looked at.
 const INSTANTS: usize = 48;
@@ -93,39 +94,36 @@ pub(super) fn second_variation(
 /// Whether W has a negative eigenvalue at some time, and a positive one; neither where it is singular at one.
 fn signs(system: &System, motion: &mut Motion) -> Result<[bool; 2], SolveError> {
     let g = &system.graph;
-    let (n, h) = (system.dimension(), system.constraints.len());
-    let v = system.velocities();
-    let inputs = [system.positions(), v.clone(), vec![system.time]].concat();
-    let hessian = |e| g.jacobian(&g.gradient(e, &v), &v).entries().to_vec();
-    let mut outputs = hessian(system.lagrangian);
-    system.constraints.iter().for_each(|&f| outputs.extend(hessian(f)));
-    outputs.extend(system.constraint_jacobian().entries());
-    let mut program = system.evaluator::<f64>(&inputs, &outputs)?;
+    let weights: Vec<Symbol> =
+        (1..=system.constraints.len()).map(|i| fresh_symbol(g, &format!("weight_{i}"))).collect();
+    let lagrangian = g.add(system.lagrangian, g.dot(&g.variables(&weights), &system.constraints));
+    let mut metric = Metric::varying(&System { lagrangian, ..system.clone() }, &weights)?;
+    let jacobian = system.constraint_jacobian();
+    let inputs = [system.positions(), system.velocities(), vec![system.time]].concat();
+    let mut program = system.evaluator::<f64>(&inputs, jacobian.entries())?;
     let (start, end) = (motion.start(), motion.end());
     let mut found = [false; 2];
     for k in 0..=INSTANTS {
         let t = start + (end - start) * k as f64 / INSTANTS as f64;
         let at = motion.at(t)?;
-        let values = program.evaluate(&[&at.coordinates[..], &at.velocities, &[t]].concat());
-        let part = |i: usize| DMatrix::from_row_slice(n, n, &values[i * n * n..(i + 1) * n * n]);
-        let mut w = part(0);
-        for i in 0..h {
-            w += part(1 + i) * at.multipliers.get(i).copied().unwrap_or(0.0);
-        }
-        let a = DMatrix::from_row_slice(h, n, &values[(1 + h) * n * n..]);
-        // AᵀA has the kernel of A, and all its directions
-        let held = (a.transpose() * &a).symmetric_eigen();
-        let largest = held.eigenvalues.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
-        let free: Vec<usize> =
-            (0..n).filter(|&i| held.eigenvalues[i] <= NONE * largest.max(f64::MIN_POSITIVE)).collect();
-        let basis = held.eigenvectors.select_columns(&free);
-        let restricted = basis.transpose() * w * &basis;
-        let values = restricted.symmetric_eigenvalues();
-        let size = values.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
-        if values.iter().any(|x| x.is_nan() || x.abs() <= NONE * size) {
+        // constraints that follow from others have no multiplier
+        let mut multipliers = at.multipliers.clone();
+        multipliers.resize(weights.len(), 0.0);
+        metric.set_parameters(&multipliers);
+        let a = program.evaluate(&[&at.coordinates[..], &at.velocities, &[t]].concat());
+        let held = SingularValues::of(&DMatrix::from_row_slice(jacobian.rows(), jacobian.columns(), a));
+        let free = held.on_kernel(NONE * held.values.iter().fold(0.0, |m: f64, x| m.max(*x)));
+        let w = metric.matrix(t, &at.coordinates, &at.velocities);
+        if w.iter().any(|x| !x.is_finite()) {
             return Ok([false; 2]);
         }
-        found = [found[0] || values.iter().any(|x| *x < 0.0), found[1] || values.iter().any(|x| *x > 0.0)];
+        let values = (&free * w * &free).symmetric_eigenvalues();
+        let limit = NONE * values.amax();
+        // as many are zero as directions are held
+        if values.iter().filter(|x| x.abs() > limit).count() != free.trace().round() as usize {
+            return Ok([false; 2]);
+        }
+        found = [found[0] || values.min() < -limit, found[1] || values.max() > limit];
     }
     Ok(found)
 }

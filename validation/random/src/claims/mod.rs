@@ -11,6 +11,7 @@ mod natural;
 mod null_tests;
 mod realization;
 mod within;
+mod writings;
 
 use motion::SolveError;
 use symbolic::CompileError;
@@ -61,6 +62,7 @@ pub const CHECKS: &[Check] = &[
     check(2, "removed constraint is vakonomic motion of the augmented system", agreement::bridge),
     check(3, "coordinate removal and vakonomic are one family", agreement::bijection),
     check(4, "Chetaev and vakonomic do not depend on how constraints and coordinates are written", invariance::writing),
+    check(4, "Chetaev and vakonomic do not depend on how constraints and coordinates are written", writings::check),
     check(5, "the leading divergence of vakonomic from Chetaev is the predicted one", growth::check),
     check(6, "energy is constant where it should be", invariants::energy),
     check(7, "vakonomic momenta of cyclic coordinates are constant", invariants::momentum),
