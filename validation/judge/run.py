@@ -36,7 +36,7 @@ Again, in five lines:
 $ cargo build --release --package deltaq-cli
 $ python3 -m venv engines
 $ engines/bin/pip install -r validation/judge/requirements.txt
-$ engines/bin/python validation/judge/run.py target/release/deltaq reports/judge.md
+$ engines/bin/python validation/judge/run.py target/release/deltaq reports/evidence/judge.md
 $ cargo run --release -- reports --stamp judge.md
 ```
 """

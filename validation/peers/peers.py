@@ -1,4 +1,4 @@
-"""`cargo xtask peers`: times ours and the peers, writes `reports/peers.md` with its pictures, and everything
+"""`cargo xtask peers`: times ours and the peers, writes `reports/evidence/peers.md` with its pictures, and everything
 that was measured as JSON.
 """
 

@@ -10,26 +10,26 @@ use crate::table::Table;
 /// A folder of tables beside a page: one CSV each, and `datapackage.json`, which names files, columns and types.
 ///
 /// ```
-/// use pages::{Data, Table};
+/// use pages::{DataPackage, Table};
 /// let mut table = Table::new(["pair", ">gap, m"]);
 /// table.row(&[&"Chetaev – vakonomic", &0.5]);
-/// let mut data = Data::new("data/mine", "A comparison of mine");
+/// let mut data = DataPackage::new("data/mine", "A comparison of mine");
 /// data.table("gaps", "The largest gap of each pair", &table);
 /// let files = data.files();
 /// assert_eq!(files[0].path.to_str(), Some("data/mine/gaps.csv"));
 /// assert!(files[1].text.contains("\"type\": \"number\""));
 /// ```
-pub struct Data {
+pub struct DataPackage {
     folder: PathBuf,
     title: String,
     resources: Vec<serde_json::Value>,
     files: Vec<File>,
 }
 
-impl Data {
+impl DataPackage {
     /// No tables yet.
-    pub fn new(folder: impl Into<PathBuf>, title: impl Into<String>) -> Data {
-        Data { folder: folder.into(), title: title.into(), resources: Vec::new(), files: Vec::new() }
+    pub fn new(folder: impl Into<PathBuf>, title: impl Into<String>) -> DataPackage {
+        DataPackage { folder: folder.into(), title: title.into(), resources: Vec::new(), files: Vec::new() }
     }
 
     /// Adds a table, unless it has no rows: `name.csv`, about which one sentence is said.

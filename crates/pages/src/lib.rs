@@ -18,7 +18,7 @@ mod tex;
 mod verdicts;
 
 pub use bodies::bodies;
-pub use data::Data;
+pub use data::DataPackage;
 pub use deltaq::words::Headline;
 pub use deltaq::words::sentence as membership_sentence;
 pub use fill::fill;

@@ -13,7 +13,7 @@ use crate::bodies::bodies;
 use crate::markdown::{image, inert};
 use crate::pictures::pictures;
 use crate::table::Table;
-use crate::{Data, membership, tables, tex};
+use crate::{DataPackage, membership, tables, tex};
 
 /// Rows of the table of pairs, and equations, that a page shows.
 const PAIRS: usize = 5;
@@ -41,8 +41,8 @@ pub fn scene_files(comparison: &mut Comparison) -> Result<Vec<File>> {
 }
 
 /// The tables of a scene.
-fn data(comparison: &mut Comparison) -> Result<Data> {
-    let mut data = Data::new(format!("data/scenes/{}", comparison.scene.name), comparison.scene.title.clone());
+fn data(comparison: &mut Comparison) -> Result<DataPackage> {
+    let mut data = DataPackage::new(format!("data/scenes/{}", comparison.scene.name), comparison.scene.title.clone());
     let [residuals, constant] = tables::invariants(comparison)?;
     let trace = first_trace(comparison)?;
     let comparison = &*comparison;
@@ -59,7 +59,7 @@ fn data(comparison: &mut Comparison) -> Result<Data> {
 }
 
 /// The whole page, in Markdown.
-fn page(comparison: &Comparison, moving: Option<&File>, still: &[File], data: &Data) -> String {
+fn page(comparison: &Comparison, moving: Option<&File>, still: &[File], data: &DataPackage) -> String {
     let scene = &comparison.scene;
     let Headline { why, sure, .. } = Headline::of(comparison);
     let [title, message, why, sure] = [&scene.title, &message(comparison), &why, &sure].map(|text| inert(text));

@@ -5,7 +5,7 @@ use super::error::PictureError;
 use super::frame::{BOLD, Frame, Framed, LEGEND_ROW, TITLE_SIZE};
 use super::layout::{self, Entry, LABEL_SIZE, Measured, SWATCH, WIDTH};
 use super::plot::{Curve, Picture};
-use super::style::{INK, INKS, Stroke, Style};
+use super::style::{CROSS, INK, INKS, Stroke, Style};
 use super::text::{decimal, escape, fit, px, width};
 use super::trace::{Coarseness, Extent, Place, Trace};
 
@@ -111,8 +111,12 @@ pub(super) fn swatch(out: &mut String, place: &layout::Placed, (left, top): Plac
     let (x, y) = (left + place.x, top + (f64::from(place.row) + 0.5) * LEGEND_ROW);
     out.push_str(&format!("<g transform=\"translate({} {})\">", px(x), px(y)));
     let entry = place.entry;
-    let trace = Trace { lines: vec![vec![(0.0, 0.0), (SWATCH, 0.0)]], dots: Vec::new() };
-    strokes(out, entry.style, &trace);
+    if entry.style == Style::Stops {
+        crosses(out, &[(SWATCH / 2.0, 0.0)]);
+    } else {
+        let trace = Trace { lines: vec![vec![(0.0, 0.0), (SWATCH, 0.0)]], dots: Vec::new() };
+        strokes(out, entry.style, &trace);
+    }
     marks(out, entry, &[(SWATCH / 2.0, 0.0)]);
     out.push_str(&format!(
         "<text x=\"{}\" y=\"4.5\" font-size=\"{LABEL_SIZE}\" fill=\"{INK}\">{}</text></g>\n",
@@ -234,6 +238,10 @@ fn curves(out: &mut String, plot: &Framed, coarseness: Coarseness) {
             samples(out, &runs, plot.extent);
             continue;
         }
+        if curve.style == Style::Stops {
+            crosses(out, &runs.concat());
+            continue;
+        }
         let mut trace = Trace::new(&runs, plot.extent, coarseness);
         if plot.every > 0 {
             let Extent { width: w, height: h } = plot.extent;
@@ -334,6 +342,14 @@ fn strokes(out: &mut String, style: Style, trace: &Trace) {
             let radius = px(2.0 + width / 2.0);
             out.push_str(&format!("<circle cx=\"{}\" cy=\"{}\" r=\"{radius}\" fill=\"{colour}\"/>\n", px(x), px(y)));
         }
+    }
+}
+
+/// A cross per point.
+fn crosses(out: &mut String, places: &[Place]) {
+    let path: String = places.iter().map(|&(x, y)| format!("M{} {}{CROSS}", px(x), px(y))).collect();
+    for Stroke { colour, width, .. } in Style::Stops.strokes() {
+        out.push_str(&format!("<path d=\"{path}\" fill=\"none\" stroke=\"{colour}\" stroke-width=\"{width}\"/>\n"));
     }
 }
 

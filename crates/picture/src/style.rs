@@ -29,6 +29,10 @@ pub enum Style {
     Member(u8),
     /// A measurement: a dot per point (grey).
     Samples,
+    /// What everything else is compared with (ink, solid).
+    Ink,
+    /// Points at which something ends: a cross per point (ink).
+    Stops,
 }
 
 /// One pass of the pen along a curve.
@@ -53,6 +57,9 @@ pub(super) const MARKS: [&str; 4] = [
     "m0-6.2l5.8 10h-11.6z",
     "m0-6.4l6.4 6.4l-6.4 6.4l-6.4-6.4z",
 ];
+
+/// The same for [`Style::Stops`]: a cross.
+pub(super) const CROSS: &str = "m-5-5l10 10m0-10l-10 10";
 
 pub(super) const INK: &str = "currentColor";
 /// Chetaev.
@@ -118,6 +125,8 @@ impl Style {
                 vec![stroke(colour, 2.2, dash)]
             }
             Self::Threshold => vec![stroke(INK, 1.0, "7 4")],
+            Self::Ink => vec![stroke(INK, 2.8, "")],
+            Self::Stops => vec![stroke(INK, 1.8, "")],
             Self::Samples => vec![Stroke { round: true, ..stroke(INK, 2.6, "0.1 6") }],
         }
     }

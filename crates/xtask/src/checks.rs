@@ -258,7 +258,7 @@ pub(crate) fn chore(outcome: Result<Outcome>) -> ExitCode {
     }
 }
 
-/// Tests the physics engine's crate and writes `reports/engine.md`. No check: what it runs is another
+/// Tests the physics engine's crate and writes `reports/evidence/engine.md`. No check: what it runs is another
 /// program, at a length of its own.
 pub(crate) fn engine() -> Result<Outcome> {
     succeed(cargo().args(["test", "--release", "--package", "engine"]))?;

@@ -41,12 +41,12 @@ fn check(arguments: &ReportsArguments) -> Result<String> {
         bail!("{} is out of date at {difference}; {MEND}", folder.join("verdicts.json").display());
     }
     let mut compared = Compared::default();
-    for file in results.files().into_iter().chain([results.overview()]) {
-        let mut old = read(&file.path)?;
+    for file in results.files().into_iter().chain(results.overview()) {
+        let mut both = [read(&file.path)?, file.text];
         if left_out {
-            old = without_referees(&old);
+            both = both.map(|text| without_referees(&text));
         }
-        if let Err(difference) = compared.page(&old, &file.text) {
+        if let Err(difference) = compared.page(&both[0], &both[1]) {
             bail!("{} is out of date: {difference}; {MEND}", folder.join(&file.path).display());
         }
     }
