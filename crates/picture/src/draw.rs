@@ -167,20 +167,18 @@ fn axes(out: &mut String, plot: &Framed) {
         text(out, (w / 2.0, -7.0), "middle", &fit(&plot.plot.title, BOLD * TICK_SIZE, w));
         out.push_str("</g>\n");
     }
-    if let Some(label) = plot.x_label {
-        for tick in &plot.x_ticks.labelled {
-            text(out, (plot.across(tick.at), h + 18.0), "middle", &tick.label);
-        }
-        if let Some(factor) = &plot.x_ticks.factor {
-            text(out, (w, h + 37.0), "end", factor);
-        }
-        out.push_str(&format!(
-            "<text x=\"{}\" y=\"{}\" text-anchor=\"middle\" font-size=\"{LABEL_SIZE}\">{}</text>\n",
-            px(w / 2.0),
-            px(h + 38.0),
-            escape(&fit(label, LABEL_SIZE, w))
-        ));
+    for tick in &plot.x_ticks.labelled {
+        text(out, (plot.across(tick.at), h + 18.0), "middle", &tick.label);
     }
+    if let Some(factor) = &plot.x_ticks.factor {
+        text(out, (w, h + 37.0), "end", factor);
+    }
+    out.push_str(&format!(
+        "<text x=\"{}\" y=\"{}\" text-anchor=\"middle\" font-size=\"{LABEL_SIZE}\">{}</text>\n",
+        px(w / 2.0),
+        px(h + 38.0),
+        escape(&fit(plot.x_label, LABEL_SIZE, w))
+    ));
     let widest = plot.y_ticks.labelled.iter().map(|tick| width(&tick.label, TICK_SIZE));
     out.push_str(&format!("<text transform=\"translate(-{} {}) rotate(-90)\" text-anchor=\"middle\" font-size=\"{LABEL_SIZE}\">{}</text>\n",
         px(widest.fold(0.0, f64::max) + 18.0),
@@ -231,7 +229,7 @@ fn curves(out: &mut String, plot: &Framed, coarseness: Coarseness) {
         let runs = curves.iter().flat_map(|(_, measured)| &measured.runs);
         let runs: Vec<Vec<Place>> = runs.map(|run| run.iter().map(place).collect()).collect();
         if curve.style == Style::Family {
-            band(out, &runs, plot.extent);
+            fan(out, &runs, plot.extent);
             continue;
         }
         if curve.style == Style::Samples {
@@ -271,16 +269,15 @@ fn curves(out: &mut String, plot: &Framed, coarseness: Coarseness) {
     out.push_str("</svg>\n");
 }
 
-/// What lies between neighbours in a family, nowhere darker where it lies on itself.
-fn band(out: &mut String, runs: &[Vec<Place>], extent: Extent) {
-    let Extent { width: w, height: h } = extent;
-    for Stroke { colour, opacity, .. } in Style::Family.strokes() {
-        out.push_str(&format!("<g fill=\"{colour}\" stroke=\"{colour}\" opacity=\"{opacity}\">\n"));
-    }
-    for pair in runs.windows(2) {
-        let around = pair[0].iter().chain(pair[1].iter().rev());
-        let outline = around.map(|&(x, y)| (x.clamp(-w, 2.0 * w), y.clamp(-h, 2.0 * h))).collect();
-        out.push_str(&format!("<path d=\"{}z\"/>\n", Trace::new(&[outline], extent, Coarseness::steps()[3]).path()));
+/// The members of a family as thin lines, the later the stronger.
+fn fan(out: &mut String, runs: &[Vec<Place>], extent: Extent) {
+    for Stroke { colour, width, opacity, .. } in Style::Family.strokes() {
+        out.push_str(&format!("<g fill=\"none\" stroke=\"{colour}\" stroke-width=\"{width}\">\n"));
+        for (i, run) in runs.iter().enumerate() {
+            let path = Trace::new(std::slice::from_ref(run), extent, Coarseness::steps()[3]).path();
+            let shade = 0.15 + (opacity - 0.15) * i as f64 / runs.len() as f64;
+            out.push_str(&format!("<path d=\"{path}\" stroke-opacity=\"{shade:.2}\"/>\n"));
+        }
     }
     out.push_str("</g>\n");
 }

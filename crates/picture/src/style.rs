@@ -6,8 +6,7 @@
 /// colour. Narrow lines stand on wide ones. A gap between two formulations alternates their colours.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Style {
-    /// One of a row of motions of the vakonomic family: what lies between neighbours is a band (pale
-    /// vermilion).
+    /// One of a row of motions of the vakonomic family (vermilion, thin, the later in the row the stronger).
     Family,
     /// A limit or threshold (grey, thin, dashed; named at its right end).
     Threshold,
@@ -111,7 +110,7 @@ impl Style {
     /// The passes of the pen, lowest first.
     pub fn strokes(self) -> Vec<Stroke> {
         match self {
-            Self::Family => vec![Stroke { opacity: 0.2, ..stroke(VERMILION, 9.0, "") }],
+            Self::Family => vec![Stroke { opacity: 0.75, ..stroke(VERMILION, 1.1, "") }],
             Self::Chetaev => vec![stroke(BLUE, 5.4, "")],
             Self::Vakonomic => vec![stroke(VERMILION, 3.0, "12 7")],
             Self::Substituted => vec![stroke(PURPLE, 2.2, "9 4 2 4")],
