@@ -146,12 +146,13 @@ fn sample(comparison: &mut Comparison, times: &[f64]) -> Result<Vec<Drawn>> {
 /// Panels of coordinates, at most.
 const PANELS: usize = 4;
 
-/// Lengths first: angles of a rolling body say less.
+/// Lengths first; where there are two and many coordinates, no angles: those of a rolling body say little.
 fn most_telling(comparison: &Comparison) -> Vec<usize> {
     let coordinates = &comparison.scene.system.coordinates;
     let mut order: Vec<usize> = (0..coordinates.len()).collect();
     order.sort_by_key(|&i| coordinates[i].unit != "m");
-    order.truncate(PANELS);
+    let lengths = coordinates.iter().filter(|c| c.unit == "m").count();
+    order.truncate(if order.len() > PANELS && lengths > 1 { lengths.min(PANELS) } else { PANELS });
     order.sort_unstable();
     order
 }

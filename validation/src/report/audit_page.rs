@@ -111,12 +111,10 @@ impl AuditReport {
     }
 
     fn page(&self, data: &DataPackage) -> String {
-        let columns = ["equation", "about", "verdict", ">residual, printed", ">residual, corrected"];
-        let mut verdicts = Table::new(columns);
+        let mut verdicts = Table::new(["equation", "about", "verdict", ">residual, printed"]);
         for f in &self.findings {
             let word = if f.verdict == Verdict::Holds { "holds".into() } else { format!("**{}**", f.verdict.word()) };
-            let [printed, corrected] = [&f.printed, &f.corrected].map(form_residual);
-            verdicts.row(&[&f.number, &f.title, &word, &printed, &corrected]);
+            verdicts.row(&[&f.number, &f.title, &word, &form_residual(&f.printed)]);
         }
         let (c, s) = (&self.constants, &self.stationarity);
         let natural = c.natural.iter().map(|[t, x]| format!("$C = {}$ for $t_1 = {}$ s", short(*x), short(*t)));
