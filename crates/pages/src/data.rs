@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use program::File;
 use serde_json::json;
 
+use crate::markdown::link;
 use crate::table::Table;
 
 /// A folder of tables beside a page: one CSV each, and `datapackage.json`, which names files, columns and types.
@@ -55,7 +56,8 @@ impl DataPackage {
         let up = "../".repeat(depth);
         let line = |resource: &serde_json::Value| {
             let text = |key: &str| resource[key].as_str().unwrap_or_default().to_owned();
-            format!("- {}: [{}]({up}{}/{1})\n", text("title"), text("path"), self.folder.display())
+            let address = format!("{up}{}/{}", self.folder.display(), text("path"));
+            format!("- {}: {}\n", text("title"), link(&text("path"), &address))
         };
         self.resources.iter().map(line).collect()
     }
@@ -65,7 +67,8 @@ impl DataPackage {
         if self.files.is_empty() {
             return Vec::new();
         }
-        let name: String = self.folder.to_string_lossy().replace('/', "-").to_lowercase();
+        let plain = |c: char| if c.is_ascii_alphanumeric() { c.to_ascii_lowercase() } else { '-' };
+        let name: String = self.folder.to_string_lossy().chars().map(plain).collect();
         let package = json!({
             "profile": "tabular-data-package",
             "name": name.trim_start_matches("data-"),

@@ -10,7 +10,7 @@ use deltaq::{
 use program::File;
 
 use crate::bodies::bodies;
-use crate::markdown::{image, inert};
+use crate::markdown::{image, inert, link};
 use crate::pictures::pictures;
 use crate::table::Table;
 use crate::{DataPackage, membership, tables, tex};
@@ -91,11 +91,12 @@ fn page(comparison: &Comparison, moving: Option<&File>, still: &[File], data: &D
         let _ = writeln!(page, "\nSource: {}.", inert(scene.source.trim_end_matches('.')));
     }
     let name = &scene.name;
-    let _ = write!(page, "\n## More\n\n- Equations of every formulation: [{name}.tex](../equations/{name}.tex).\n");
+    let equations = link(&format!("{name}.tex"), &format!("../equations/{name}.tex"));
+    let _ = write!(page, "\n## More\n\n- Equations of every formulation: {equations}\n");
     for picture in still.iter().filter(|file| shown.is_none_or(|shown| shown.path != file.path)) {
         let path = picture.path.file_name().unwrap_or_default().to_string_lossy();
         let kind = path.trim_start_matches(name).trim_start_matches('-').trim_end_matches(".svg");
-        let _ = writeln!(page, "- Picture, {kind}: [{path}]({path}).");
+        let _ = writeln!(page, "- Picture, {kind}: {}", link(&path, &path));
     }
     page + &data.list(1)
 }

@@ -154,9 +154,8 @@ fn findings(comparisons: &[&Comparison], controls: &[Control]) -> Vec<String> {
         |wanted: fn(&Answer) -> bool| names(nonintegrable.iter().copied().filter(|c| membership::is(c, wanted)));
     findings.extend(constants_of_removal(&integrable));
     findings.push(format!(
-        "**From one start the vakonomic equations have a family of motions, Chetaev's equations one.** For nonholonomic \
-         constraints some $\\mu_0$ gives Chetaev's motion on {}. On {} scenes none does, which is proved for their start and \
-         for almost every other.",
+        "**The vakonomic equations have a family of motions, Chetaev's equations one.** If the constraint is nonholonomic, some \
+         $\\mu_0$ gives Chetaev's motion on {}; none does on {} scenes, proved for their start and almost every other.",
         enumerate(&decided(|answer| matches!(answer, Answer::SomeProved | Answer::Some { .. }))),
         decided(|answer| matches!(answer, Answer::NoneProved { .. })).len(),
     ));
