@@ -1,7 +1,8 @@
 //! A parameter is its formula: what is said of a scene does not depend on how its numbers are written.
 
-use deltaq::{Answer, CHETAEV, Pairing, VAKONOMIC, choices, integrability};
+use comparison::{Answer, Pairing, integrability};
 use mechanics::Integrability;
+use motion::{CHETAEV, VAKONOMIC, choices};
 use scene::{Number, Scene};
 
 /// Formulas that are `P`, each by another identity.

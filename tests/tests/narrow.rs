@@ -1,9 +1,9 @@
 //! Pulses and walls of any width at any place are resolved, or the run fails with a reason, by every method:
 //! compared with integrals.
 
-use deltaq::{CHETAEV, Ending, Settings, choices, error_estimate, setting, solve_choice};
 use diffsol_methods::{BDF, ESDIRK34, EVERY, TR_BDF2};
 use integrate::Method;
+use motion::{CHETAEV, Ending, Settings, choices, error_estimate, setting, solve_choice};
 use scene::Scene;
 use symbolic::SplitMix;
 

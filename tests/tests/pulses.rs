@@ -1,13 +1,13 @@
 //! What is switched on and off is found: forces and potentials of any width at any time, by every method and
 //! in ensembles. The referee takes small steps where something is switched.
 
-use deltaq::{
-    Choice, Ending, Ensemble, EnsembleOptions, Motion, Prepared, Settings, SolveError, Steps, choices, error_estimate,
-    setting, solve_by_steps, solve_choice,
-};
 use diffsol_methods::{BDF, ESDIRK34, EVERY, TR_BDF2};
 use discrete::Composition;
 use integrate::Method;
+use motion::{
+    Choice, Ending, Ensemble, EnsembleOptions, Motion, Prepared, Settings, SolveError, Steps, choices, error_estimate,
+    setting, solve_by_steps, solve_choice,
+};
 use scene::Scene;
 use symbolic::SplitMix;
 
@@ -108,8 +108,8 @@ impl Pulse {
 
     /// Coordinates at the end by the classical Runge–Kutta method, in steps that see the pulse.
     fn end(&self, scene: &Scene, choice: &Choice) -> Vec<f64> {
-        let equations = deltaq::derive_at(&scene.system, &scene.start, choice).expect("equations");
-        let ready = deltaq::prepare(setting(scene), equations, &choice.constants, &Settings::default());
+        let equations = motion::derive_at(&scene.system, &scene.start, choice).expect("equations");
+        let ready = motion::prepare(setting(scene), equations, &choice.constants, &Settings::default());
         let mut ready: Prepared = ready.expect("a start");
         let (mut t, mut y) = (ready.t, ready.start.clone());
         let mut rates = |t: f64, y: &[f64]| {

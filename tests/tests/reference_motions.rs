@@ -1,9 +1,9 @@
 //! References with a known error: two methods agree, forms agree, closed and 42-digit solutions are met.
 
 use crate::references::{Motion, REFERENCES};
-use deltaq::{Choice, Settings, choices, derive, prepare, setting};
 use equations::Equations;
 use mechanics::StartError;
+use motion::{Choice, Settings, choices, derive, prepare, setting};
 use reference::{DoubleDouble, Entry, Question, Reference, ReferenceError, reference, reference_in};
 use scene::Scene;
 use symbolic::Scalar;
@@ -174,7 +174,7 @@ fn what_a_run_is_wrong_by_is_read_off() {
     let mut errors = Vec::new();
     for tolerance in [1e-6, 1e-9] {
         let settings = Settings { tolerance, ..Settings::default() };
-        let mut motion = deltaq::solve_choice(&scene, &choice(&scene, "vakonomic"), &settings).unwrap();
+        let mut motion = motion::solve_choice(&scene, &choice(&scene, "vakonomic"), &settings).unwrap();
         let at = |i: usize| found.distance(i, &motion.at(found.times[i]).unwrap().coordinates);
         errors.push((0..10).map(at).fold(0.0, f64::max));
     }

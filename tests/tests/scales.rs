@@ -7,11 +7,11 @@
 use std::collections::BTreeMap;
 use std::time::Instant;
 
-use deltaq::{
-    Choice, Ensemble, EnsembleOptions, ErrorEstimate, Settings, choices, error_estimate, setting, solve_choice,
-};
 use linear::{LinearError, linearize, linearize_at};
 use mechanics::ConstantsRule;
+use motion::{
+    Choice, Ensemble, EnsembleOptions, ErrorEstimate, Settings, choices, error_estimate, setting, solve_choice,
+};
 use random::Scaling;
 use scene::Scene;
 use symbolic::SplitMix;

@@ -1,13 +1,13 @@
 //! Stiff and extreme cases: no method returns a wrong trajectory in silence; what was mended stays so.
 
-use deltaq::{
-    CHETAEV, Choice, Ending, Motion, Setting, Settings, Stepping, VAKONOMIC, VAKONOMIC_COSTATE, default_constants,
-    derive, derive_at, setting, solve,
-};
 use diffsol_methods::{ESDIRK34, EVERY, TR_BDF2};
 use equations::{Equations, Formulation};
 use integrate::Method;
 use mechanics::{ConstantsRule, Recombination};
+use motion::{
+    CHETAEV, Choice, Ending, Motion, Setting, Settings, Stepping, VAKONOMIC, VAKONOMIC_COSTATE, default_constants,
+    derive, derive_at, setting, solve,
+};
 use scene::Scene;
 use serde_json::Value;
 use validation::stability::{
@@ -107,7 +107,7 @@ forces = { x = "-x - sqrt(x^2)" }
 duration = 5
 "#;
     let scene = scene::Scene::parse("kink", text).expect("a scene");
-    let motion = deltaq::solve_choice(&scene, &deltaq::choices(&scene)[0], &Settings::default()).expect("starts");
+    let motion = motion::solve_choice(&scene, &motion::choices(&scene)[0], &Settings::default()).expect("starts");
     let chosen = motion.method.as_ref().expect("a method");
     assert!(chosen.method == Method::Dop853 && chosen.why.contains("where x is zero"), "{chosen:?}");
 }

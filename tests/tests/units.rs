@@ -2,8 +2,9 @@
 
 use std::collections::BTreeMap;
 
-use deltaq::{Answer, Comparison, Extent, Finding, Settings, SolveError, Verdict, choices, membership};
+use comparison::{Answer, Comparison, Extent, Finding, Verdict, membership};
 use mechanics::Integrability;
+use motion::{Settings, SolveError, choices};
 use random::Scaling;
 use scene::Scene;
 use symbolic::SplitMix;
@@ -30,7 +31,7 @@ fn in_units(scene: &Scene, [length, mass, time]: [i32; 3]) -> Scene {
 /// What is said of a scene: kind of words and words.
 fn words(scene: &Scene) -> Vec<(String, String)> {
     let text = |e: SolveError| format!("undecided: {e}");
-    let integrability = deltaq::integrability(scene).map_or_else(text, |found| found.to_string());
+    let integrability = comparison::integrability(scene).map_or_else(text, |found| found.to_string());
     let mut said = vec![("integrability".into(), integrability)];
     match membership(scene, scene.start.t + scene.duration) {
         Ok(None) => {}
@@ -208,7 +209,7 @@ fn a_large_disc_and_a_short_hitch() {
     for (name, key, values, depth) in [("disc", "R", [5e8, 5e-8], 2), ("trailer", "d", [1e-7, 1e7], 4)] {
         for value in values {
             let scene = set(name, key, value);
-            let found = deltaq::integrability(&scene).expect("linear");
+            let found = comparison::integrability(&scene).expect("linear");
             let as_deep = matches!(found, Integrability::Nonintegrable { depth: found, .. } if found == depth);
             assert!(as_deep, "{name}, {key} = {value}: {found}");
             let usual = decided(&catalogue::find(name, &[]).expect("a scene"));

@@ -2,13 +2,14 @@
 //! time or a place on the way, in every form, removal and ensemble. And where it is lost, the motion says so.
 
 use catalogue::built_in;
-use deltaq::{
-    CHETAEV, Choice, Ensemble, EnsembleOptions, EnsembleStart, Form, Metric, Motion, REMOVED_CONSTRAINT, Setting,
-    Settings, VAKONOMIC, VAKONOMIC_COSTATE, Verdict, choices_among, compare_motions, derive_in_form, error_estimate,
-    forms, multipliers_of, setting, solve, solve_choice,
-};
+use comparison::{Verdict, compare_motions, multipliers_of};
 use equations::Formulation;
 use mechanics::{ConstantsRule, Coordinate, Parameter, fresh_symbol};
+use motion::{
+    CHETAEV, Choice, Ensemble, EnsembleOptions, EnsembleStart, Form, Metric, Motion, REMOVED_CONSTRAINT, Setting,
+    Settings, VAKONOMIC, VAKONOMIC_COSTATE, choices_among, derive_in_form, error_estimate, forms, setting, solve,
+    solve_choice,
+};
 use scene::Scene;
 use symbolic::{Expr, SplitMix};
 

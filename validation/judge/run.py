@@ -33,7 +33,7 @@ TAIL = """
 Again, in five lines:
 
 ```console
-$ cargo build --release --package deltaq-cli
+$ cargo build --release --package deltaq
 $ python3 -m venv engines
 $ engines/bin/pip install -r validation/judge/requirements.txt
 $ engines/bin/python validation/judge/run.py target/release/deltaq reports/evidence/judge.md

@@ -5,11 +5,11 @@ use std::fmt::Write;
 
 use anyhow::{Context, Result, bail};
 use catalogue::find;
-use deltaq::{
-    CHETAEV, Choice, REMOVED_CONSTRAINT, Settings, VAKONOMIC, choices, constant_names, derive, prepare, setting,
-};
 use equations::Formulation;
 use mechanics::{ConstantsRule, project_velocity};
+use motion::{
+    CHETAEV, Choice, REMOVED_CONSTRAINT, Settings, VAKONOMIC, choices, constant_names, derive, prepare, setting,
+};
 use program::File;
 use reference::{DoubleDouble, Point, Question, Wide, reference};
 use scene::Scene;

@@ -3,9 +3,9 @@
 use std::fmt::Write;
 
 use anyhow::Result;
-use deltaq::{CHETAEV, Settings, VAKONOMIC, choices_among};
 use equations::Formulation;
 use fit::{Aim, Design, Deviations, EXCLUDED, Film, Point, Question, Sampling, Unknown};
+use motion::{CHETAEV, Settings, VAKONOMIC, choices_among};
 use pages::Table;
 use program::{File, parallel};
 use scene::Scene;

@@ -6,9 +6,9 @@ use std::path::Path;
 use std::time::Instant;
 
 use anyhow::{Context, Result};
-use deltaq::{CHETAEV, Choice, VAKONOMIC, default_constants};
 use equations::Formulation;
 use integrals::{Found, Integrals, Measure, Multiplier, Open, Reduction, Reversed, reversible_scene};
+use motion::{CHETAEV, Choice, VAKONOMIC, default_constants};
 use pages::{DataPackage, Table};
 use picture::{Axis, HeatMap};
 use program::{File, parallel};

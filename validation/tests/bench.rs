@@ -14,7 +14,7 @@ fn effort(max_steps: usize) -> Effort {
 fn every_formulation_is_measured_by_every_method() {
     let bench = measure(prepare("sledge", &[], &KeptReferences::default()).unwrap(), &effort(20_000), |_| ()).unwrap();
     assert!(bench.entries.len() >= 6);
-    for form in deltaq::FORMS {
+    for form in motion::FORMS {
         assert!(bench.entries.iter().any(|e| e.formulation == form.name), "{} is not measured", form.name);
     }
     for entry in &bench.entries {

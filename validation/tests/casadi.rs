@@ -1,6 +1,6 @@
 //! The referee in Python: it must run, agree where we are right, and disagree where we are not.
 
-use deltaq::{CHETAEV, VAKONOMIC};
+use motion::{CHETAEV, VAKONOMIC};
 use random::{Batch, Kind, draw_recipe};
 use scene::Scene;
 use validation::casadi_job::{Amount, Outcome, Question, Row, Word, ask, built_in, forced, pushed, random};

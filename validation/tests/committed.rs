@@ -13,7 +13,13 @@ fn files(folder: &Path, ending: &str) -> Vec<PathBuf> {
     let entries = folder.read_dir().expect("a folder").map(|entry| entry.expect("an entry").path());
     let of = |path: PathBuf| match path.is_dir() {
         true => files(&path, ending),
-        false => if path.to_string_lossy().ends_with(ending) { vec![path] } else { Vec::new() },
+        false => {
+            if path.to_string_lossy().ends_with(ending) {
+                vec![path]
+            } else {
+                Vec::new()
+            }
+        }
     };
     entries.flat_map(of).collect()
 }

@@ -1,6 +1,7 @@
 //! The control is flagged on scenes where Maggi's equations say that it is wrong, and nowhere else.
 
-use deltaq::{Comparison, Extent, Run, Settings, choices, solve_choice};
+use comparison::{Comparison, Extent, Run};
+use motion::{Settings, choices, solve_choice};
 use random::{FoundOut, Word};
 use scene::Scene;
 use validation::report::control::{Control, sentence};
@@ -21,7 +22,7 @@ fn compared(name: &str, forged: fn(&mut Run, &mut Run)) -> Comparison {
     comparison
 }
 
-fn motion(run: &Run) -> deltaq::Motion {
+fn motion(run: &Run) -> motion::Motion {
     run.outcome.clone().expect("a motion")
 }
 

@@ -1,10 +1,9 @@
 //! What is said first says no more than the table below it.
 
-use deltaq::{
-    Comparison, Metric, Settings, SolveError, Verdict, choices, compare_motions, compare_unfitted, setting, solve,
-};
+use comparison::{Comparison, Verdict, compare_motions, compare_unfitted};
 use equations::DerivationError;
 use mechanics::ConstantsRule;
+use motion::{Metric, Settings, SolveError, choices, setting, solve};
 use pages::Headline;
 use scene::Scene;
 

@@ -2,9 +2,9 @@
 
 use std::collections::BTreeSet;
 
-use deltaq::{CHETAEV, Choice, VAKONOMIC, default_constants};
 use integrals::{Integrals, Measure};
 use mechanics::Watched;
+use motion::{CHETAEV, Choice, VAKONOMIC, default_constants};
 use validation::integrals::literature;
 
 /// Entries whose answer takes a second or less.

@@ -13,7 +13,7 @@ mod equivalence;
 mod hamilton;
 mod headlines;
 mod integrals;
-#[path = "../../crates/command/tests/killed.rs"]
+#[path = "../../crates/deltaq/tests/killed.rs"]
 mod killed;
 mod literature;
 mod markdown;
@@ -26,7 +26,7 @@ mod scaling;
 mod scenery;
 mod stability;
 mod stamps;
-#[path = "../../crates/command/tests/support.rs"]
+#[path = "../../crates/deltaq/tests/support.rs"]
 mod support;
 mod trains;
 mod widths;

@@ -2,10 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use deltaq::{
-    CHETAEV, Comparison, Ending, Finding, Fit, Fits, FittedMotion, Form, Membership, Metric, Settings, SolveError,
-    VAKONOMIC, Verdict, choices, compare_unfitted, solve_choice,
-};
+use comparison::{Comparison, Finding, Fit, Fits, FittedMotion, Membership, Verdict, compare_unfitted};
 use integrate::{Method, Projection};
 use pages::{membership::value as membership_value, scene_files, summary, verdicts};
 use program::File;
@@ -60,7 +57,10 @@ fn csv(files: &[File], name: &str) -> Vec<BTreeMap<String, String>> {
 fn says(cell: &str, value: Option<f64>) {
     let told = cell.parse::<f64>().ok();
     let near = |(told, value): (f64, f64)| (told - value).abs() <= 0.06 * value.abs();
-    assert!(if ["–", ""].contains(&cell) { value.is_none() } else { told.zip(value).is_some_and(near) }, "`{cell}` for {value:?}");
+    assert!(
+        if ["–", ""].contains(&cell) { value.is_none() } else { told.zip(value).is_some_and(near) },
+        "`{cell}` for {value:?}"
+    );
 }
 
 #[test]
@@ -77,7 +77,7 @@ fn the_tables_of_a_scene_say_what_its_rows_are() {
     let gap = sledge.pairs[0].gap.clone();
     let fitted = FittedMotion {
         constants: vec![("mu0_1".into(), 0.25)],
-        gap: deltaq::Gap { largest: 0.125, ..gap },
+        gap: comparison::Gap { largest: 0.125, ..gap },
         starts: 7,
         by_half: 0.126,
     };
@@ -185,7 +185,7 @@ fn the_summary_and_the_verdicts_say_what_the_rows_are() {
     says(cells[5], Some(gap.largest));
     // pairs that are not shown are counted by their verdicts
     let principal = |i: usize| [CHETAEV, VAKONOMIC].contains(&sledge.runs[i].choice.formulation);
-    let others = deltaq::words::rows(&sledge).filter(|p| !principal(p.first));
+    let others = comparison::words::rows(&sledge).filter(|p| !principal(p.first));
     let mut counts = BTreeMap::new();
     others.for_each(|p| *counts.entry(p.gap.verdict.word()).or_insert(0) += 1);
     let counted = ["different", "undecided"].map(|word| {
@@ -236,7 +236,7 @@ fn the_overview_counts_its_own_table() {
     let control = format!(
         " and is flagged on {}. It is called right on {}, with",
         named("flagged").len(),
-        deltaq::words::enumerate(&named("right here"))
+        comparison::words::enumerate(&named("right here"))
     );
     assert!(page.contains(&control), "{control}\n{page}");
     for (row, scene) in rows.iter().zip(&scenes) {
@@ -283,9 +283,14 @@ fn the_overview_names_the_removals_that_lack_the_vakonomic_motion() {
         let all: Vec<(String, bool)> = scenes.iter().flat_map(asked).collect();
         let lacks: Vec<String> = all.iter().filter(|(_, has)| !has).map(|(name, _)| name.clone()).collect();
         let (has, count) = (all.len() - lacks.len(), all.len());
-        let not =
-            if lacks.is_empty() { String::new() } else { format!(" (not those of {})", deltaq::words::enumerate(&lacks)) };
-        let said = format!("{has} of {count} removals with variables of their own and all costates contain the vakonomic motion{not}. ");
+        let not = if lacks.is_empty() {
+            String::new()
+        } else {
+            format!(" (not those of {})", comparison::words::enumerate(&lacks))
+        };
+        let said = format!(
+            "{has} of {count} removals with variables of their own and all costates contain the vakonomic motion{not}. "
+        );
         assert!(page.contains(&said), "{said}\n{page}");
         (lacks, said)
     };
@@ -333,7 +338,8 @@ fn maggis_equations_agree_with_a_motion_that_is_right_and_with_no_other() {
     let mut sledge = compared("sledge", duration, &Settings::default());
     let verdict = |sledge: &mut Comparison| {
         let files = referees_files([sledge].into_iter(), &Outcome::Ran(Vec::new())).expect("files");
-        csv(&files, "comparisons").into_iter().find(|row| row["who"].contains("Maggi")).expect("a row")["verdict"].clone()
+        csv(&files, "comparisons").into_iter().find(|row| row["who"].contains("Maggi")).expect("a row")["verdict"]
+            .clone()
     };
     assert_eq!(verdict(&mut sledge), "agrees");
     // gravity off by a millionth

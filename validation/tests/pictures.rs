@@ -1,6 +1,7 @@
 //! What the pictures of a scene show, and what they leave out.
 
-use deltaq::{Settings, choices, compare};
+use comparison::compare;
+use motion::{Settings, choices};
 use pages::pictures;
 
 /// The picture of a kind of a built-in scene, if it is drawn.

@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 use std::fs;
 
-use deltaq::Settings;
+use motion::Settings;
 use random::Count;
 use serde_json::Value;
 use validation::report::{random_complaint, theorem_word};
@@ -100,8 +100,8 @@ fn one_system_is_shown_and_written() {
     assert!(shown.contains("random-3-15: Random system, linear") && shown.contains("T12"), "{shown}");
     let scene = folder.path().join("random-3-15.toml");
     let scene = catalogue::find(&scene.display().to_string(), &[]).expect("a scene");
-    let choices = deltaq::choices(&scene);
-    let compared = deltaq::compare_unfitted(scene, choices, Vec::new(), &Settings::protocol()).expect("compared");
+    let choices = motion::choices(&scene);
+    let compared = comparison::compare_unfitted(scene, choices, Vec::new(), &Settings::protocol()).expect("compared");
     assert!(!compared.pairs.is_empty());
     // the same as in a bulk run
     let one = json(&["--seed", "3", "--index", "15"]);

@@ -2,8 +2,8 @@
 
 use bench::exponent;
 use catalogue::trailer::Coordinates;
-use deltaq::{CHETAEV, REDUCED_CHETAEV, REDUCED_VAKONOMIC};
 use equations::Formulation;
+use motion::{CHETAEV, REDUCED_CHETAEV, REDUCED_VAKONOMIC};
 use validation::scaling::{FROM, Limits, TRAILERS, counts, line};
 
 #[test]

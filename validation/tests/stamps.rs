@@ -44,7 +44,8 @@ fn a_page_is_older_as_soon_as_its_code_changes() {
     assert!(before.starts_with("# A page\n\n1 of 3\n\nMeasured on 20"), "{before}");
     // another text, a file more, a file of another name; what is no source does not count
     let source = root.join("crates/symbolic/src");
-    let speaking = ["evidence/peers.md", "measured/error-vs-time.md", "measured/scaling.md", "measured/machine-code.md"];
+    let speaking =
+        ["evidence/peers.md", "measured/error-vs-time.md", "measured/scaling.md", "measured/machine-code.md"];
     fs::write(source.join("notes.txt"), "").expect("a file");
     assert_eq!(older(), Vec::<&str>::new());
     fs::write(source.join("deeper/a.rs"), "crates/symbolic/srd").expect("a file");
@@ -55,5 +56,8 @@ fn a_page_is_older_as_soon_as_its_code_changes() {
     assert_eq!(older(), speaking);
     fs::write(root.join("crates/decision/src/b.rs"), "").expect("a file");
     assert_eq!(older().len(), 6);
-    assert!(write(root, &reports, "evidence/random.md").is_err_and(|error| error.to_string().contains("evidence/engine.md")));
+    assert!(
+        write(root, &reports, "evidence/random.md")
+            .is_err_and(|error| error.to_string().contains("evidence/engine.md"))
+    );
 }

@@ -7,12 +7,12 @@ use equations::Formulation;
 use std::time::Instant;
 
 use anyhow::{Result, bail, ensure};
-use deltaq::{
+use integrate::{Dense, Method, Options, Status};
+use mechanics::{ConstantsRule, State};
+use motion::{
     CHETAEV, Choice, Ensemble, EnsembleMember, EnsembleOptions, EnsembleStart, Prepared, REMOVED_CONSTRAINT, Settings,
     VAKONOMIC, choices, prepare, setting,
 };
-use integrate::{Dense, Method, Options, Status};
-use mechanics::{ConstantsRule, State};
 use scene::Scene;
 use symbolic::Xorshift;
 
@@ -144,7 +144,7 @@ fn throughput(scene: &Scene, choice: Choice, starts: &[State], tolerance: f64, r
     let settings = Settings { method: Some(Method::Taylor), tolerance, ..Settings::default() };
     let end = setting(scene).end;
     // Natural constants belong to horizon and parameters, not to the start: the scene's serve for all.
-    let (equations, _) = deltaq::derive_in_form(&scene.system, &scene.start, &choice, settings.form)?;
+    let (equations, _) = motion::derive_in_form(&scene.system, &scene.start, &choice, settings.form)?;
     let mut ready = prepare(setting(scene), equations, &choice.constants, &settings)?;
     let choice = Choice { constants: ConstantsRule::Given(ready.constants.clone()), ..choice };
     let mut ensemble = Ensemble::new(scene, &choice, &[], &settings)?;

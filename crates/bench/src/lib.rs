@@ -1,6 +1,6 @@
 //! Error against run time: every formulation of a scene, method and tolerance, against a reference.
 //!
-//! A measurement is one run of the time loop (not the two of [`deltaq::solve`]) with dense output, from
+//! A measurement is one run of the time loop (not the two of [`motion::solve`]) with dense output, from
 //! compiled equations. Its time is the least of several; its error is the largest kinetic distance from the
 //! reference over [`SAMPLES`] times. A run that fails is listed with its cause.
 

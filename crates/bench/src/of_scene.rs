@@ -13,12 +13,12 @@ pub use usual::Usual;
 use std::time::Instant;
 
 use anyhow::{Context, Result};
-use deltaq::{
+use integrate::{Method, Work};
+use mechanics::ConstantsRule;
+use motion::{
     CHETAEV, Choice, REDUCED_CHETAEV, REDUCED_VAKONOMIC, Settings, VAKONOMIC, VAKONOMIC_COSTATE, choices, derive_at,
     forms, setting,
 };
-use integrate::{Method, Work};
-use mechanics::ConstantsRule;
 use program::parallel;
 use scene::{Number, Scene};
 
@@ -187,7 +187,7 @@ pub fn prepare(name: &str, overrides: &[(String, Number)], kept: &KeptReferences
     let scene = catalogue::find(name, overrides)?;
     let truth = |choice: &Choice| -> Result<Truth> {
         let equations = derive_at(&scene.system, &scene.start, choice)?;
-        let ready = deltaq::prepare(setting(&scene), equations, &choice.constants, &Settings::default())?;
+        let ready = motion::prepare(setting(&scene), equations, &choice.constants, &Settings::default())?;
         Truth::new(&scene, &ready, SAMPLES, kept).context("no reference")
     };
     let mut truths: Vec<(String, Result<Truth, String>)> = Vec::new();
@@ -228,7 +228,7 @@ fn measurements(scene: &Scene, choice: &Choice, truth: &mut Truth, effort: &Effo
     let derive = clock.elapsed().as_secs_f64();
     let settings = Settings { method: Some(Method::Taylor), ..Settings::default() };
     let clock = Instant::now();
-    let mut ready = deltaq::prepare(setting(scene), equations, &choice.constants, &settings)?;
+    let mut ready = motion::prepare(setting(scene), equations, &choice.constants, &settings)?;
     let compile = clock.elapsed().as_secs_f64();
     let constants = ConstantsRule::Given(ready.constants.clone());
     let usual = Usual::new(setting(scene), &Choice { constants, ..choice.clone() }, truth, effort);

@@ -8,7 +8,7 @@ use integrate::Method;
 use serde_json::{Value, json};
 
 use crate::{Bench, Entry, Fastest, MEMBERS, Measurements, Series, TARGETS, Throughput, Time};
-use deltaq::words::{enumerate, short};
+use comparison::words::{enumerate, short};
 use pages::markdown::link;
 use pages::{DataPackage, Table};
 use picture::{Axis, Curve, Panel, Picture, PictureError, Style};
@@ -67,7 +67,9 @@ pub fn bench_files(benches: &[Bench], ensembles: &[Throughput]) -> Result<Vec<Fi
     data.table("settings", "For each motion, method and error: milliseconds and evaluations", &settings(benches));
     data.table("failures", "Settings that failed, with the cause", &failed(benches));
     let [times, ratios] = ensemble_tables(ensembles);
-    let many = format!("Many motions at once: microseconds per member (`deltaq bench --ensemble 1e-10` measures {MEMBERS} members)");
+    let many = format!(
+        "Many motions at once: microseconds per member (`deltaq bench --ensemble 1e-10` measures {MEMBERS} members)"
+    );
     data.table("ensembles", &many, &times);
     data.table("ensemble-ratios", "Many motions at once: ratios", &ratios);
     let columns = ["scene", "formulation", "both runs (ms)", "error", "single (ms)", "ratio"];
@@ -154,7 +156,8 @@ fn motions(benches: &[Bench]) -> Table {
 
 /// For each method and error, milliseconds and evaluations.
 fn settings(benches: &[Bench]) -> Table {
-    let targets = TARGETS.iter().flat_map(|target| [format!(">ms to {target:.0e}"), format!(">evaluations to {target:.0e}")]);
+    let targets =
+        TARGETS.iter().flat_map(|target| [format!(">ms to {target:.0e}"), format!(">evaluations to {target:.0e}")]);
     let columns = ["scene", "motion", "method"].map(String::from).into_iter();
     let mut table = Table::new(columns.chain(targets).chain([">least error".to_string()]));
     for (bench, entry) in benches.iter().flat_map(|bench| bench.entries.iter().map(move |entry| (bench, entry))) {

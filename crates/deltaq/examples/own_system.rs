@@ -1,7 +1,7 @@
 //! The README's example: the three formulations of a disc on a slope, from Rust.
 
+use deltaq::scene::Scene;
 use deltaq::{Settings, choices, compare, solve_choice};
-use scene::Scene;
 
 /// One system in every formulation.
 pub fn main() -> Result<(), Box<dyn std::error::Error>> {

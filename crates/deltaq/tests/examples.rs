@@ -1,6 +1,7 @@
 //! The README's system and its Rust program: the files are what the README prints, and the program runs.
 
-use deltaq::{Settings, choices, compare_unfitted, solve_choice};
+use comparison::compare_unfitted;
+use motion::{Settings, choices, solve_choice};
 use scene::Scene;
 
 #[allow(dead_code)]

@@ -1,73 +1,99 @@
-//! Common parts of the tests: scenes, choices, members, and ends of motions by every way of integration.
+//! Running a program of the workspace, which is `PROGRAM` of the tests that say this is a part of them.
 
-use deltaq::{
-    Choice, Comparison, Ensemble, EnsembleOptions, MemberMotion, Settings, choices, compare_unfitted, error_estimate,
-    setting, solve_choice,
-};
-use equations::Formulation;
-use integrate::Method;
-use scene::Scene;
+use std::process::{Command, Output};
 
-pub(crate) fn read(name: &str, text: &str) -> Scene {
-    Scene::parse(name, text).unwrap_or_else(|error| panic!("{error}\n{text}"))
+use crate::PROGRAM;
+
+/// The program with these arguments, to be started.
+pub fn command(arguments: &[&str]) -> Command {
+    let mut command = Command::new(PROGRAM);
+    command.args(arguments);
+    command
 }
 
-/// The text of a scene of the catalogue.
-pub(crate) fn text_of(name: &str) -> String {
-    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../catalogue/");
-    let read = |kind: &str| std::fs::read_to_string(format!("{folder}{kind}/{name}.toml"));
-    read("scenes").or_else(|_| read("classics")).unwrap_or_else(|error| panic!("{name}: {error}"))
+/// What the program did.
+pub fn run(arguments: &[&str]) -> Output {
+    command(arguments).output().expect("the command runs")
 }
 
-pub(crate) fn built_in(name: &str) -> Scene {
-    read(name, &text_of(name))
+/// What it wrote to one of its streams.
+pub fn text(bytes: &[u8]) -> String {
+    String::from_utf8(bytes.to_vec()).expect("UTF-8")
 }
 
-pub(crate) fn choice(scene: &Scene, formulation: &Formulation) -> Choice {
-    choices(scene).into_iter().find(|c| c.formulation == formulation).expect("it is there")
+/// Standard output and standard error of a program that has to end with this code.
+#[track_caller]
+pub fn answer(arguments: &[&str], code: i32) -> (String, String) {
+    let output = run(arguments);
+    let (stdout, stderr) = (text(&output.stdout), text(&output.stderr));
+    assert_eq!(output.status.code(), Some(code), "{arguments:?}: {stderr}");
+    assert!(!stderr.contains("panicked"), "{arguments:?}: {stderr}");
+    (stdout, stderr)
 }
 
-/// In all formulations, without fits.
-pub(crate) fn compared(name: &str, text: &str) -> Comparison {
-    let scene = read(name, text);
-    let choices = choices(&scene);
-    compare_unfitted(scene, choices, Vec::new(), &Settings::default()).expect("a comparison")
-}
-
-/// The motion as two members of an ensemble, which are to be the same, looked at at these times.
-pub(crate) fn member(scene: &Scene, choice: &Choice, times: &[f64]) -> MemberMotion {
-    let mut ensemble = Ensemble::new(scene, choice, &[], &Settings::default()).expect("an ensemble");
-    let members = vec![ensemble.member(&[]).expect("a member"); 2];
-    let options = EnsembleOptions { threads: 1, estimate: true };
-    let mut motions = ensemble.motions(&members, times, &options).into_iter().map(|motion| motion.expect("a motion"));
-    let (first, second) = (motions.next().expect("one"), motions.next().expect("another"));
-    assert_eq!((&first.run.states, first.status()), (&second.run.states, second.status()));
-    first
-}
-
-/// The coordinates at the end with their estimates, or why they are not to be trusted.
-pub(crate) type End = Result<(Vec<f64>, Vec<f64>), String>;
-
-pub(crate) fn alone(scene: &Scene, choice: &Choice, method: Option<Method>) -> End {
-    let mut motion = solve_choice(scene, choice, &Settings { method, ..Settings::default() }).expect("a motion");
-    let estimate = error_estimate(&mut motion, setting(scene)).expect("in range");
-    match estimate.status(&motion) {
-        ("completed", _) => Ok((motion.at(motion.end()).expect("the end").coordinates, estimate.coordinates)),
-        (_, cause) => Err(cause.unwrap_or_default()),
+/// The program must refuse with all these words and print nothing.
+#[track_caller]
+pub fn refused(arguments: &[&str], words: &[&str]) {
+    let (stdout, stderr) = answer(arguments, 2);
+    println!("{arguments:?}\n    {}", stderr.trim().replace('\n', "\n    "));
+    assert!(stdout.is_empty(), "{arguments:?}: a partial answer: {stdout}");
+    for word in words {
+        assert!(stderr.contains(word), "{arguments:?}: `{word}` is not in {stderr}");
     }
 }
 
-/// By each method, and in an ensemble.
-pub(crate) fn ends(scene: &Scene, choice: &Choice) -> Vec<(&'static str, End)> {
-    let methods = [None, Some(Method::Taylor), Some(Method::Dop853), Some(Method::Radau5)];
-    let by = |method: Option<Method>| (method.map_or("default", Method::name), alone(scene, choice, method));
-    let times = [0.5, 1.0].map(|part| scene.start.t + part * scene.duration);
-    let member = member(scene, choice, &times);
-    let in_lanes = match member.status() {
-        ("completed", _) => {
-            Ok((member.outputs[1].coordinates.clone(), member.estimate.expect("asked for").coordinates))
-        }
-        (_, cause) => Err(cause.unwrap_or_default()),
-    };
-    methods.into_iter().map(by).chain([("in lanes", in_lanes)]).collect()
+/// What the program does in a folder of its own; the folder must be as empty afterwards.
+#[track_caller]
+pub fn elsewhere(arguments: &[&str]) -> Output {
+    let folder = tempfile::tempdir().expect("a folder");
+    let output = command(arguments).current_dir(&folder).output().expect("the command runs");
+    assert_eq!(std::fs::read_dir(&folder).expect("a folder").count(), 0, "{arguments:?} left something behind");
+    output
+}
+
+/// Every call of a list must be refused: its words, `=>`, and those of the error, between bars.
+#[track_caller]
+pub fn all_refused(calls: &str) {
+    for row in calls.lines().filter(|row| !row.is_empty() && !row.starts_with('#')) {
+        let (call, words) = row.split_once(" =>").unwrap_or_else(|| panic!("`{row}` in refusals.txt"));
+        let words: Vec<&str> = words.split('|').map(str::trim).collect();
+        refused(&call.split(' ').collect::<Vec<_>>(), &words);
+    }
+}
+
+/// The names of the commands that the help lists.
+pub fn commands() -> Vec<String> {
+    let (help, _) = answer(&["--help"], 0);
+    let listed = help.lines().skip_while(|line| *line != "Commands:").skip(1).take_while(|line| !line.is_empty());
+    let names = listed
+        .filter_map(|line| line.strip_prefix("  ")?.split(' ').next().map(String::from))
+        .filter(|name| !name.is_empty());
+    names.collect()
+}
+
+/// Of each of these calls, an answer that cannot be written is an error.
+#[track_caller]
+pub fn none_is_lost(calls: &[&[&str]]) {
+    for arguments in calls {
+        let full = std::fs::File::options().write(true).open("/dev/full").expect("the device that is always full");
+        let output = command(arguments).stdout(full).output().expect("the command runs");
+        let stderr = text(&output.stderr);
+        assert_eq!(output.status.code(), Some(1), "{arguments:?}: {stderr}");
+        assert!(stderr.contains("cannot write the answer") && stderr.contains("No space left"), "{stderr}");
+    }
+}
+
+/// Of each of these calls, a reader that has seen enough and closes the pipe is no error.
+#[track_caller]
+pub fn all_may_be_left(calls: &[&[&str]]) {
+    for arguments in calls {
+        let mut child = command(arguments)
+            .stdout(std::process::Stdio::piped())
+            .stderr(std::process::Stdio::piped())
+            .spawn()
+            .expect("it runs");
+        drop(child.stdout.take());
+        let output = child.wait_with_output().expect("the command ends");
+        assert_eq!((output.status.code(), text(&output.stderr).as_str()), (Some(0), ""), "{arguments:?}");
+    }
 }

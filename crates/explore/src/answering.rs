@@ -46,7 +46,7 @@ fn answered(question: &str, kept: &mut Kept, numbers: &mut Vec<f64>) -> Result<V
 fn scene(subject: &Subject) -> Value {
     let Subject { scene, choices, unknown } = subject;
     let coordinate = |c: &mechanics::Coordinate| json!({ "name": c.name, "unit": c.unit });
-    let motion = |c: &deltaq::Choice| json!({ "label": c.label, "formulation": c.formulation.name });
+    let motion = |c: &motion::Choice| json!({ "label": c.label, "formulation": c.formulation.name });
     json!({
         "title": scene.title, "source": scene.source, "notes": scene.notes,
         "start": scene.start.t, "duration": scene.duration,

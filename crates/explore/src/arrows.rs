@@ -9,8 +9,8 @@
 //!
 //! Everything is for drawing: `J` and `d/dt` are differences, good to about 1e-5 of the largest value.
 
-use deltaq::SolveError;
 use mechanics::{Pose, Poses, System};
+use motion::SolveError;
 use nalgebra::{DMatrix, DVector, SymmetricEigen, Vector3};
 use scene::Scene;
 use symbolic::{Evaluator, Expr};

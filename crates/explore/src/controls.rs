@@ -2,8 +2,8 @@
 
 use std::f64::consts::PI;
 
-use deltaq::given_costates;
 use mechanics::ConstantsRule;
+use motion::given_costates;
 use scene::Scene;
 use serde_json::{Value, json};
 

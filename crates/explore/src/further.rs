@@ -1,7 +1,7 @@
 //! What is said of one motion beside it: its integrals, and its derivatives by the numbers that can be set.
 
-use deltaq::{Choice, sensitivities, setting};
 use integrals::Integrals;
+use motion::{Choice, sensitivities, setting};
 use serde_json::{Value, json};
 
 use crate::controls;

@@ -5,8 +5,8 @@
 //! scenes that are read with a little more of it: so a hand moves a start as a typed number does, and stays
 //! on the constraint.
 
-use deltaq::SolveError;
 use mechanics::Poses;
+use motion::SolveError;
 use scene::Scene;
 use serde_json::{Value, json};
 
@@ -26,7 +26,7 @@ pub(crate) fn of(scene: &Scene, question: &Question) -> Result<Option<Value>, So
     for (name, value) in start_numbers(scene) {
         let step = STEP * value.abs().max(1.0);
         let mut set: Vec<(String, f64)> = question.set.iter().map(|(name, x)| (name.clone(), *x)).collect();
-        set.retain(|(known, _)| *known != name && !deltaq::is_costate(known));
+        set.retain(|(known, _)| *known != name && !motion::is_costate(known));
         set.push((name.clone(), value + step));
         let Ok(moved) = Scene::parse_with(&question.name, &question.text, &set) else { continue };
         let Some(there) = held(&moved)? else { continue };

@@ -2,8 +2,8 @@
 
 use std::collections::HashMap;
 
-use deltaq::{Choice, Settings, SolveError, Varying};
 use mechanics::{ConstantsRule, Parameter};
+use motion::{Choice, Settings, SolveError, Varying};
 use scene::Scene;
 
 use crate::question::Question;

@@ -1,7 +1,8 @@
 //! Motions, sampled, and the gaps between them.
 
-use deltaq::{Metric, SolveError, compare_motions, constant_names};
+use comparison::compare_motions;
 use mechanics::{Constancy, Observables, System, Watched};
+use motion::{Metric, SolveError, constant_names};
 use scene::Scene;
 use serde_json::{Value, json};
 

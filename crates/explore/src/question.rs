@@ -37,7 +37,7 @@ pub struct Question {
     /// Numbers in the place of those of the text.
     #[serde(default)]
     pub set: BTreeMap<String, f64>,
-    /// Labels of the motions that are asked about ([`deltaq::Choice::label`]); the first is what gaps are to.
+    /// Labels of the motions that are asked about ([`motion::Choice::label`]); the first is what gaps are to.
     #[serde(default)]
     pub motions: Vec<String>,
     /// Equal steps in which motions are sampled, of the whole duration.
@@ -77,7 +77,7 @@ pub(crate) enum Refused {
     Faulty(#[from] SceneError),
     /// A motion cannot be computed or evaluated.
     #[error(transparent)]
-    Motion(#[from] deltaq::SolveError),
+    Motion(#[from] motion::SolveError),
     /// Nothing can be said of integrals.
     #[error(transparent)]
     Integrals(#[from] integrals::NoAnswer),

@@ -1,8 +1,8 @@
 //! A motion as it is asked for: in two runs with an error estimate, or in one at a glance.
 
-use deltaq::{Choice, Motion, Settings, SingleRun, SolveError, Varying, error_estimate, setting, solve_choice};
 use equations::{Equations, Outputs};
 use integrate::{Options, Status};
+use motion::{Choice, Motion, Settings, SingleRun, SolveError, Varying, error_estimate, setting, solve_choice};
 use scene::Scene;
 
 use crate::kept::Kept;

@@ -1,7 +1,7 @@
 //! What a question is about: a scene, and its motions with their free constants.
 
-use deltaq::{Choice, choices, given_costates, is_costate};
 use mechanics::ConstantsRule;
+use motion::{Choice, choices, given_costates, is_costate};
 use scene::{Scene, SceneError, SceneErrorKind};
 
 use crate::question::{Ask, Question};

@@ -1,11 +1,9 @@
 //! Equations, and what is decided, in words.
 
-use deltaq::words::{Headline, decisions, rows};
-use deltaq::{
-    Answer, CHETAEV, Comparison, EquationStyle, Extent, Pair, VAKONOMIC, Verdict, derive_at, equations_text,
-    integrability, system_text,
-};
+use comparison::words::{Headline, decisions, rows};
+use comparison::{Answer, Comparison, Extent, Pair, Verdict, integrability};
 use mechanics::Integrability;
+use motion::{CHETAEV, EquationStyle, VAKONOMIC, derive_at, equations_text, system_text};
 use serde_json::{Value, json};
 
 use crate::question::{Question, Refused};
@@ -15,7 +13,7 @@ use crate::subject::Subject;
 /// The system and the equations of every motion, in Markdown with LaTeX.
 pub(crate) fn equations(subject: &Subject) -> Result<Value, Refused> {
     let Subject { scene, choices, .. } = subject;
-    let motion = |choice: &deltaq::Choice| match derive_at(&scene.system, &scene.start, choice) {
+    let motion = |choice: &motion::Choice| match derive_at(&scene.system, &scene.start, choice) {
         Ok(equations) => {
             json!({ "label": choice.label, "equations": equations_text(&equations, EquationStyle::Latex) })
         }

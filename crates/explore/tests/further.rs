@@ -1,7 +1,7 @@
 //! Integrals and derivatives, against the library and against motions from other numbers.
 
-use deltaq::choices;
 use integrals::Integrals;
+use motion::choices;
 use scene::Scene;
 use serde_json::{Value, json};
 

@@ -3,9 +3,10 @@
 mod arrows;
 mod further;
 
-use deltaq::words::Headline;
-use deltaq::{Settings, choices, compare_unfitted, solve_choice};
+use comparison::compare_unfitted;
+use comparison::words::Headline;
 use explore::{Answer, Explorer};
+use motion::{Settings, choices, solve_choice};
 use scene::Scene;
 use serde_json::{Value, json};
 
@@ -48,7 +49,7 @@ fn motions_are_those_of_the_library() {
         }
         let mut motion = solve_choice(&scene, &choice, &Settings::default()).unwrap();
         assert_eq!(place(&all["motions"][i], "rows"), 51, "{label}");
-        let estimate = deltaq::error_estimate(&mut motion, deltaq::setting(&scene)).unwrap();
+        let estimate = motion::error_estimate(&mut motion, motion::setting(&scene)).unwrap();
         assert_eq!(all["motions"][i]["error"], estimate.absolute, "{label}");
         assert!(glance["motions"][i]["error"].is_null());
         for row in 0..=50 {
@@ -68,7 +69,7 @@ fn motions_are_those_of_the_library() {
     assert_eq!(all["gaps"][0]["verdict"], "different");
     // a gap at a glance is that of the rows of its two motions
     let gap = &glance["gaps"][0];
-    let mut metric = deltaq::Metric::new(&scene.system).unwrap();
+    let mut metric = motion::Metric::new(&scene.system).unwrap();
     for (row, numbers) in coarse[place(gap, "from")..].chunks_exact(3).take(place(gap, "rows")).enumerate() {
         let motion = |i: usize, count: usize| coordinates(&glance["motions"][i], &coarse, row, count);
         let (q, v) = motion(0, 6).split_at(3);

@@ -2,8 +2,8 @@
 
 use std::sync::Mutex;
 
-use deltaq::{CHETAEV, Choice, VAKONOMIC, choices_among, over_threads};
 use equations::Formulation;
+use motion::{CHETAEV, Choice, VAKONOMIC, choices_among, over_threads};
 use scene::Scene;
 
 use crate::creep;

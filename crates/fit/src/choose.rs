@@ -2,7 +2,7 @@
 
 use std::sync::{Mutex, PoisonError};
 
-use deltaq::over_threads;
+use motion::over_threads;
 
 use crate::search::evenly;
 use crate::{Design, EXCLUDED, FitError, Point};

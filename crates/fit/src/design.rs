@@ -13,8 +13,8 @@
 use std::cell::RefCell;
 use std::str::FromStr;
 
-use deltaq::{CHETAEV, Choice, choices_among};
 use equations::Formulation;
+use motion::{CHETAEV, Choice, choices_among};
 use scene::Scene;
 
 use crate::known::beside_chetaev;

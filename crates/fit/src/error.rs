@@ -1,6 +1,7 @@
 //! Why there is no fit.
 
-use deltaq::{Contradicted, SolveError};
+use comparison::Contradicted;
+use motion::SolveError;
 use scene::TableError;
 use symbolic::CompileError;
 

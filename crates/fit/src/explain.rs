@@ -13,8 +13,8 @@
 //! where that may be enough, it is fitted. One that moves the film by more than a tenth of its extent is not
 //! plain.
 
-use deltaq::{Choice, choices_among};
 use mechanics::Parameter;
+use motion::{Choice, choices_among};
 use nalgebra::{DMatrix, DVector};
 use scene::{Filmed, Scene};
 use symbolic::{Expr, Function};

@@ -15,7 +15,7 @@
 
 use decision::exact::{Coefficient, Dual, Exact, Jet, Modular, ORDERS, agreed, nullspace};
 use decision::{Dynamics, ExactStart, Program};
-use deltaq::{Choice, costate_names, derive};
+use motion::{Choice, costate_names, derive};
 use scene::Scene;
 use symbolic::{SplitMix, Symbol};
 

@@ -1,9 +1,8 @@
 //! What is known of a formulation before its fit: where its search may begin, and which family contains
 //! which.
 
-use deltaq::{
-    Answer, CHETAEV, Choice, Contradicted, Pairing, VAKONOMIC, costate_names, costates_of, membership, multipliers_of,
-};
+use comparison::{Answer, Contradicted, Pairing, costates_of, membership, multipliers_of};
+use motion::{CHETAEV, Choice, VAKONOMIC, costate_names};
 use scene::Scene;
 
 use crate::question::is_constant;

@@ -1,6 +1,6 @@
 //! One film with its motion: residuals and their derivatives.
 
-use deltaq::{Choice, Model, Settings};
+use motion::{Choice, Model, Settings};
 use scene::Scene;
 use symbolic::Symbol;
 

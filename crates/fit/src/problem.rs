@@ -1,6 +1,6 @@
 //! Residuals of films and their derivatives by the unknowns.
 
-use deltaq::{Choice, Settings, is_costate};
+use motion::{Choice, Settings, is_costate};
 use nalgebra::{DMatrix, DVector};
 use scene::Scene;
 

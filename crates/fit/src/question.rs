@@ -1,11 +1,11 @@
 //! Questions about films, and the fit problem of each formulation.
 
-use deltaq::{
+use equations::{Formulation, Needs};
+use mechanics::{ConstantsRule, Parameter};
+use motion::{
     Choice, FIRST_ORDER, FORMULATIONS, Settings, UnknownFormulation, VAKONOMIC_COSTATE, constants_of, costate_names,
     formulation, is_costate,
 };
-use equations::{Formulation, Needs};
-use mechanics::{ConstantsRule, Parameter};
 use scene::Scene;
 
 use crate::unknown::with_start;

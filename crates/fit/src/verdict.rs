@@ -1,7 +1,7 @@
 //! Which formulation films support.
 
-use deltaq::{CHETAEV, Choice};
 use equations::Formulation;
+use motion::{CHETAEV, Choice};
 
 use crate::distribution::{chi_squared_tail, normal_tails};
 use crate::question::is_law;

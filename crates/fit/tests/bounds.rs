@@ -7,8 +7,8 @@
 //! Z'' = α Z' + 5T/7 ,   α = 2iΩ/7 + (10/49) Ω(Ω − w) ε − 5c/7 .
 //! ```
 
-use deltaq::{FIRST_ORDER, Settings, choices};
 use fit::{Deviations, Film, Problem, Shown, Unknown, standard_errors};
+use motion::{FIRST_ORDER, Settings, choices};
 use nalgebra::{Complex, DMatrix};
 use scene::Scene;
 

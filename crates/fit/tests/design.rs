@@ -1,7 +1,7 @@
 //! The best film is found: against closed forms, and without a hint.
 
-use deltaq::{CHETAEV, Settings, VAKONOMIC};
 use fit::{Aim, Design, Deviations, EXCLUDED, Film, FitError, Question, Range, Sampling, Unknown};
+use motion::{CHETAEV, Settings, VAKONOMIC};
 use scene::Scene;
 
 use crate::bounds::{closed, laboratory};

@@ -2,9 +2,9 @@
 
 use std::fmt::Write;
 
-use deltaq::{CHETAEV, Choice, Settings, VAKONOMIC, choices, solve_choice};
 use fit::{Deviations, Film, Question, Row, Unknown, Verdict, fit_formulations};
 use mechanics::ConstantsRule;
+use motion::{CHETAEV, Choice, Settings, VAKONOMIC, choices, solve_choice};
 use scene::Scene;
 
 use crate::noise::Noise;

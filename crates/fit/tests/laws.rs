@@ -1,8 +1,8 @@
 //! Rows that are searched from elsewhere: slip at its bound, laws far from Chetaev's numbers, parameters with
 //! which formulations agree.
 
-use deltaq::{CHETAEV, Choice, FIRST_ORDER, Settings, choices, solve_choice};
 use fit::{Row, Verdict};
+use motion::{CHETAEV, Choice, FIRST_ORDER, Settings, choices, solve_choice};
 use num_complex::Complex;
 
 use crate::films::{SLEDGE, built_in, film, fitted, fitted_by, sledge, times};

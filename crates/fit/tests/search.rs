@@ -1,8 +1,8 @@
 //! The search for the least minimum: where a shorter one fails, and what intervals and rows owe to it.
 
-use deltaq::{CHETAEV, Choice, Settings, VAKONOMIC, choices, solve_choice};
 use fit::{Film, Problem, Question, Row, Unknown, Verdict, fit_formulations};
 use mechanics::ConstantsRule;
+use motion::{CHETAEV, Choice, Settings, VAKONOMIC, choices, solve_choice};
 use scene::Scene;
 
 use crate::films::{film, fitted_by};

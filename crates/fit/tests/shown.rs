@@ -1,8 +1,8 @@
 //! What films can show at all: against closed forms, and derivatives of motions.
 
-use deltaq::{CHETAEV, Settings, VAKONOMIC, choices};
 use equations::Formulation;
 use fit::{Deviations, Film, Identifiability, Problem, Unknown, standard_errors};
+use motion::{CHETAEV, Settings, VAKONOMIC, choices};
 use scene::Scene;
 
 use crate::films::{built_in, film, fitted, times};

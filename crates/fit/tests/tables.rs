@@ -1,7 +1,7 @@
 //! Films as they are read, unknowns as they are written, and what is refused.
 
-use deltaq::{Settings, choices};
 use fit::{Deviations, Film, FitError, Problem, Unknown, fit};
+use motion::{Settings, choices};
 use scene::Scene;
 
 use crate::films::built_in;

@@ -118,7 +118,7 @@ fn deviations_may_be_too_large_or_unknown() {
     let mut films = [Film::read(&scene, "film", &text, &deviations).unwrap()];
     let unknowns: Vec<Unknown> = SLEDGE.iter().map(|text| text.parse().unwrap()).collect();
     let question = crate::films::question(&unknowns);
-    let rows = fit_formulations(&scene, &mut films, &question, &[deltaq::CHETAEV, deltaq::VAKONOMIC]).unwrap();
+    let rows = fit_formulations(&scene, &mut films, &question, &[motion::CHETAEV, motion::VAKONOMIC]).unwrap();
     assert_eq!(rows[0].verdict, Verdict::Supported);
     for column in &films[0].columns {
         assert!((column.sigma / 1e-3 - 1.0).abs() < 0.2, "{column:?}");
@@ -190,8 +190,8 @@ fn what_is_cut_is_open() {
     let scene = Scene::parse("chain", &text).unwrap_or_else(|error| panic!("{error}"));
     let film = film(&scene, "x1", 1e-3, 8, &times(1.0), |t| vec![t]);
     let unknowns = ["k".parse().unwrap()];
-    let choice = deltaq::choices(&scene).into_iter().find(|c| *c.formulation == *deltaq::CHETAEV).unwrap();
-    let problem = fit::Problem::new(&scene, &choice, &[film], &unknowns, &deltaq::Settings::default()).unwrap();
+    let choice = motion::choices(&scene).into_iter().find(|c| *c.formulation == *motion::CHETAEV).unwrap();
+    let problem = fit::Problem::new(&scene, &choice, &[film], &unknowns, &motion::Settings::default()).unwrap();
     let shown = problem.identifiability(&scene, &choice);
     assert!(matches!(&shown, Identifiability::Open(why) if why.contains("cut")), "{shown:?}");
 }
@@ -206,7 +206,7 @@ fn a_stationary_unknown_is_shown() {
     let scene = Scene::parse("spring", text).unwrap_or_else(|error| panic!("{error}"));
     let estimate = |truth: f64| {
         let film = film(&scene, "x", 1e-2, 11, &times(2.0), |t| vec![(truth * t).cos()]);
-        let row = crate::films::fitted_by(&[deltaq::CHETAEV], &scene, &[film], &["e"], &[]).remove(0);
+        let row = crate::films::fitted_by(&[motion::CHETAEV], &scene, &[film], &["e"], &[]).remove(0);
         let fit = row.fit.unwrap_or_else(|error| panic!("{error}"));
         assert!(fit.hidden.is_empty(), "{:?}", fit.hidden);
         fit.estimates[0].clone()

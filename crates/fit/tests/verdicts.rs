@@ -1,8 +1,8 @@
 //! Verdicts on formulations, from their fits.
 
-use deltaq::{CHETAEV, Choice, VAKONOMIC};
 use fit::{Fit, FitError, ResidualTest, Verdict, verdicts};
 use mechanics::ConstantsRule;
+use motion::{CHETAEV, Choice, VAKONOMIC};
 
 fn fitted(chi_squared: f64) -> Result<Fit, FitError> {
     Ok(Fit {

@@ -2,9 +2,10 @@
 
 use std::iter::zip;
 
+use comparison::Contradicted;
 use decision::{DecisionError, ExactStart};
-use deltaq::{CHETAEV, Choice, Contradicted, Settings, SolveError, derive, solve_choice};
 use mechanics::{Constancy, Domain, System, Watched};
+use motion::{CHETAEV, Choice, Settings, SolveError, derive, solve_choice};
 use scene::Scene;
 use symbolic::{Expr, Graph, Symbol};
 

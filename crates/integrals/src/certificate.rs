@@ -2,8 +2,8 @@
 
 use decision::exact::{Modular, in_any_field, inverse};
 use decision::{ExactStart, Images, PlainScene, SeriesStart, named};
-use deltaq::CHETAEV;
 use mechanics::System;
+use motion::CHETAEV;
 use serde_json::{Map, Value, json};
 use symbolic::Fraction;
 

@@ -1,8 +1,8 @@
 //! Constraints on positions and kinks: answers hold on the leaf and branch of the start.
 
 use decision::ExactStart;
-use deltaq::choices;
 use integrals::{Integrals, Measure, constants, reversible};
+use motion::choices;
 use scene::Scene;
 
 fn asked(text: &str) -> Integrals {
@@ -74,7 +74,7 @@ fn chaplygins_sphere_in_unit_quaternions_has_its_measure() {
         let start = ExactStart::new(&scene.system, &scene.start, &scene.completion, None).expect("a start");
         let found = reversible(&scene.system, &start, 0);
         assert!(matches!(found.measure, Measure::Local { .. }), "{square}: {:?}", found.measure);
-        let equations = deltaq::derive(&scene.system, &choices(&scene)[0]);
+        let equations = motion::derive(&scene.system, &choices(&scene)[0]);
         let own: Vec<_> = scene.system.watched.iter().map(|watched| watched.expression).collect();
         let held = constants(&scene.system, &equations.expect("equations"), &start, &own).expect("an answer");
         assert_eq!(held, [true; 3], "{square}");

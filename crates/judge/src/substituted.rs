@@ -16,7 +16,7 @@ pub fn substituted(scene: &Scene, instants: &[Instant]) -> Result<Option<(f64, S
     if scene.system.has_forces() {
         return Ok(None);
     }
-    let Ok(removals) = deltaq::removals(scene) else { return Ok(None) };
+    let Ok(removals) = motion::removals(scene) else { return Ok(None) };
     let mut least: Option<(f64, String)> = None;
     for removal in removals {
         if let Some(left) = left_by(scene, &removal, instants)?

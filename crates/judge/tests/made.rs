@@ -1,8 +1,8 @@
 //! Motions by the project's own integrator, which knows no regression: the law is named, its numbers found.
 
-use deltaq::{CHETAEV, Choice, FIRST_ORDER, Motion, Settings, VAKONOMIC, choices, solve_choice};
 use judge::{Judgement, Law, Number, Samples, judge};
 use mechanics::Parameter;
+use motion::{CHETAEV, Choice, FIRST_ORDER, Motion, Settings, VAKONOMIC, choices, solve_choice};
 use scene::Scene;
 
 const SCENES: [&str; 4] = ["sledge", "disc", "turntable", "sleigh"];

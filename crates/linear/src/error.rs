@@ -1,7 +1,7 @@
 //! Why there is no linearization.
 
-use deltaq::SolveError;
 use equations::EvaluationFailure;
+use motion::SolveError;
 use scene::SceneErrorKind;
 
 /// A linearization that there is not.

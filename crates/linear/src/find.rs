@@ -1,7 +1,7 @@
 //! Search for steady motions.
 
-use deltaq::{CHETAEV, Choice, Setting};
 use mechanics::{ConstantsRule, SingularValues, State};
+use motion::{CHETAEV, Choice, Setting};
 use nalgebra::{DMatrix, DVector};
 
 use crate::LinearError;

@@ -26,7 +26,7 @@
 //! only. The eigenvalues of some coordinates are those of their blocks, whatever the others do.
 //!
 //! ```
-//! use deltaq::{choices, setting};
+//! use motion::{choices, setting};
 //! // a pendulum of 1 m that hangs, at 9 m/s²: frequency 3 rad/s
 //! let text = r#"
 //! title = "Pendulum"

@@ -2,8 +2,8 @@
 
 use std::fmt;
 
-use deltaq::{Choice, Ending, Form, Setting, Settings, SolveError, solve_from};
 use equations::{Compiled, Role};
+use motion::{Choice, Ending, Form, Setting, Settings, SolveError, solve_from};
 use nalgebra::DMatrix;
 use symbolic::question;
 

@@ -1,8 +1,8 @@
 //! Rates and their Jacobian at one point of a motion.
 
-use deltaq::{Choice, Prepared, Setting, Settings, derive_at, formulation_in, prepare};
 use equations::{Compiled, Equations, EvaluationFailure, Role};
 use integrate::Method;
+use motion::{Choice, Prepared, Setting, Settings, derive_at, formulation_in, prepare};
 use nalgebra::DMatrix;
 
 use crate::LinearError;

@@ -1,8 +1,8 @@
 //! Eigenvalues over a parameter, and where stability changes.
 
-use deltaq::{Choice, Ensemble, EnsembleStart, Form, Settings, SolveError, setting};
 use equations::Compiled;
 use mechanics::{ConstantsRule, State};
+use motion::{Choice, Ensemble, EnsembleStart, Form, Settings, SolveError, setting};
 use scene::{Scene, Starts};
 
 use crate::find::chetaev;

@@ -3,14 +3,14 @@
 mod chains;
 mod scales;
 
-use deltaq::{
-    CHETAEV, Choice, REMOVED_CONSTRAINT, Setting, Settings, SolveError, VAKONOMIC, VAKONOMIC_COSTATE, choices,
-    removals, setting,
-};
 use equations::Formulation;
 use linear::core::Core;
 use linear::{LinearError, Linearization, Spectrum, find_steady, linearize, linearize_at, sweep};
 use mechanics::ConstantsRule;
+use motion::{
+    CHETAEV, Choice, REMOVED_CONSTRAINT, Setting, Settings, SolveError, VAKONOMIC, VAKONOMIC_COSTATE, choices,
+    removals, setting,
+};
 use nalgebra::{Complex, DMatrix};
 use scene::Scene;
 

@@ -2,7 +2,7 @@
 
 use linear::{Growth, LinearError, find_steady, linearize, sweep};
 
-use deltaq::{CHETAEV, setting};
+use motion::{CHETAEV, setting};
 
 use super::{choice, scene};
 

@@ -3,13 +3,14 @@
 use std::path::PathBuf;
 
 use anyhow::Result;
-use deltaq::{Comparison, Ending, Verdict};
+use comparison::{Comparison, Verdict};
+use motion::Ending;
 use picture::MovingPicture;
 use scene::Scene;
 use scenery::Drawn;
 
 use crate::pictures::{drawn, style};
-use deltaq::words::short;
+use comparison::words::short;
 use program::File;
 use review::substitution::SUBSTITUTION;
 
@@ -29,7 +30,7 @@ pub fn bodies(comparison: &mut Comparison) -> Result<Option<File>> {
             label += &format!("; stops at {} s", short(t));
         }
         let at = move |t: f64| Ok(motion.at(t.min(motion.end()))?.coordinates);
-        motions.push(Drawn::<deltaq::SolveError> { label, style, at: Box::new(at) });
+        motions.push(Drawn::<motion::SolveError> { label, style, at: Box::new(at) });
     }
     let svg = scenery::moving(&comparison.scene, motions)?.and_then(|mut picture| {
         let message = message(&comparison.scene, motions_apart, &picture);

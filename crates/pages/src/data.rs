@@ -38,7 +38,8 @@ impl DataPackage {
         if table.is_empty() {
             return;
         }
-        let field = |(name, number): (String, bool)| json!({ "name": name, "type": if number { "number" } else { "string" } });
+        let field =
+            |(name, number): (String, bool)| json!({ "name": name, "type": if number { "number" } else { "string" } });
         self.resources.push(json!({
             "name": name,
             "title": about,

@@ -1,10 +1,11 @@
 //! The vakonomic motions of a scene over a line of `μ₀`, for pictures.
 
 use anyhow::Result;
-use deltaq::{Answer, CHETAEV, Comparison, Ensemble, EnsembleOptions, MemberMotion, Settings, VAKONOMIC, Verdict};
+use comparison::{Answer, Comparison, Verdict};
+use motion::{CHETAEV, Ensemble, EnsembleOptions, MemberMotion, Settings, VAKONOMIC};
 use picture::{Curve, Style};
 
-use deltaq::words::short;
+use comparison::words::short;
 
 /// The last `s`, and members up to there after the first.
 const END: f64 = 1.5;

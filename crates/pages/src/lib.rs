@@ -18,9 +18,9 @@ mod tex;
 mod verdicts;
 
 pub use bodies::bodies;
+pub use comparison::words::Headline;
+pub use comparison::words::sentence as membership_sentence;
 pub use data::DataPackage;
-pub use deltaq::words::Headline;
-pub use deltaq::words::sentence as membership_sentence;
 pub use fill::fill;
 pub use linear_page::{pairs, sweep_picture, sweep_text};
 pub use pictures::pictures;

@@ -9,7 +9,7 @@ use scene::Scene;
 
 use crate::markdown::inert;
 use crate::table::Table;
-use deltaq::words::{enumerate, precise, short};
+use comparison::words::{enumerate, precise, short};
 use picture::{Axis, Curve, Panel, Picture, Style};
 
 /// What was linearized, a table with one line per value, the states that were `found`, what first order

@@ -1,7 +1,8 @@
 //! Words for the decisions: is there a `μ₀` with which the vakonomic motion is Chetaev's, and the like.
 
-use deltaq::words::decisions;
-use deltaq::{Answer, Comparison, Decided, Membership, SolveError};
+use comparison::words::decisions;
+use comparison::{Answer, Comparison, Decided, Membership};
+use motion::SolveError;
 use serde_json::{Value, json};
 
 use crate::table::Table;

@@ -3,10 +3,11 @@
 use std::path::PathBuf;
 
 use anyhow::Result;
-use deltaq::words::enumerate;
-use deltaq::{Answer, CHETAEV, Comparison, Gap, PRESCRIBED, REMOVED_CONSTRAINT, Run, VAKONOMIC, Verdict};
+use comparison::words::enumerate;
+use comparison::{Answer, Comparison, Gap, Run, Verdict};
 use equations::Outputs;
 use mechanics::Observables;
+use motion::{CHETAEV, PRESCRIBED, REMOVED_CONSTRAINT, VAKONOMIC};
 use scene::Scene;
 
 use crate::family::family;

@@ -3,10 +3,9 @@
 use std::fmt::Write;
 
 use anyhow::{Context, Result};
-use deltaq::words::{Headline, rows, short};
-use deltaq::{
-    CHETAEV, Comparison, FirstTrace, Gap, Pair, REMOVED_CONSTRAINT, VAKONOMIC, VAKONOMIC_COSTATE, Verdict,
-};
+use comparison::words::{Headline, rows, short};
+use comparison::{Comparison, FirstTrace, Gap, Pair, Verdict};
+use motion::{CHETAEV, REMOVED_CONSTRAINT, VAKONOMIC, VAKONOMIC_COSTATE};
 use program::File;
 
 use crate::bodies::bodies;
@@ -121,7 +120,10 @@ pub(crate) fn message(comparison: &Comparison) -> String {
     match (gap(CHETAEV, VAKONOMIC), gap(CHETAEV, REMOVED_CONSTRAINT)) {
         _ if contradicted => "No verdict: results contradict each other.".into(),
         (Some(vakonomic), _) if !all.is_empty() && all.iter().all(|p| p.gap.verdict == Verdict::Same) => {
-            format!("All formulations give the same motion from this start: no difference above the error estimates {}.", until(vakonomic))
+            format!(
+                "All formulations give the same motion from this start: no difference above the error estimates {}.",
+                until(vakonomic)
+            )
         }
         (Some(vakonomic), removed) => {
             let first = differ("From this start the d'Alembert–Lagrange (Chetaev) and the vakonomic motion", vakonomic);
@@ -159,7 +161,7 @@ fn first_trace(comparison: &mut Comparison) -> Result<Table> {
     let Some(run) = comparison.run(CHETAEV) else { return Ok(table) };
     let Comparison { scene, runs, .. } = comparison;
     let Ok(motion) = &mut runs[run].outcome else { return Ok(table) };
-    let Some(FirstTrace { slope, acceleration }) = deltaq::first_trace(scene, motion, TRACED)? else {
+    let Some(FirstTrace { slope, acceleration }) = comparison::first_trace(scene, motion, TRACED)? else {
         return Ok(table);
     };
     let part = slope / acceleration;

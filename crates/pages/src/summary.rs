@@ -3,10 +3,11 @@
 use std::fmt::Write;
 
 use anyhow::Result;
-use deltaq::{CHETAEV, Comparison, Ending, Pair, VAKONOMIC, Verdict, error_estimate, setting};
+use comparison::{Comparison, Pair, Verdict};
+use motion::{CHETAEV, Ending, VAKONOMIC, error_estimate, setting};
 
-use deltaq::words::{Headline, rows};
-use deltaq::words::{or_dash, short};
+use comparison::words::{Headline, rows};
+use comparison::words::{or_dash, short};
 use picture::{Axis, Curve, Picture, Style};
 
 /// Rows of the plot.

@@ -76,7 +76,8 @@ impl Table {
             let mut cells = self.rows.iter().filter_map(|row| row.get(i)).map(|cell| plain(cell)).peekable();
             cells.peek().is_some() && cells.all(|cell| cell.is_empty() || cell.parse::<f64>().is_ok())
         };
-        let unique = |i: usize| if (0..i).any(|j| name(j) == name(i)) { format!("{} {}", name(i), i + 1) } else { name(i) };
+        let unique =
+            |i: usize| if (0..i).any(|j| name(j) == name(i)) { format!("{} {}", name(i), i + 1) } else { name(i) };
         (0..self.columns.len()).map(|i| (unique(i), is_number(i))).collect()
     }
 

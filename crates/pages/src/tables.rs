@@ -1,10 +1,11 @@
 //! The tables of a scene page.
 
 use anyhow::Result;
-use deltaq::{ChartChange, Comparison, Ending, Pair, Verdict};
+use comparison::{Comparison, Pair, Verdict};
+use motion::{ChartChange, Ending};
 
 use crate::table::Table;
-use deltaq::words::{by_half, or_dash, precise, reached, short, unseen};
+use comparison::words::{by_half, or_dash, precise, reached, short, unseen};
 
 /// Times at which invariants and residuals are sampled.
 const SAMPLES: usize = 400;
@@ -13,7 +14,7 @@ const SAMPLES: usize = 400;
 const BEFORE_A_STOP: f64 = 0.95;
 
 /// The word on a pair, with the time from which it holds.
-pub fn verdict_words(gap: &deltaq::Gap) -> String {
+pub fn verdict_words(gap: &comparison::Gap) -> String {
     match &gap.verdict {
         Verdict::Same => "same".into(),
         Verdict::Different => match gap.passes[0] {
@@ -51,7 +52,7 @@ pub(crate) fn runs(comparison: &Comparison) -> Table {
             }
             Ok(motion) => motion,
         };
-        let names = deltaq::constant_names(&motion.equations);
+        let names = motion::constant_names(&motion.equations);
         let constants = names.iter().zip(&motion.constants).map(|(n, c)| format!("{n} = {}", precise(*c)));
         let constants = constants.collect::<Vec<_>>().join(", ");
         let rule = match &run.choice.constants {
@@ -81,7 +82,8 @@ pub(crate) const SHOWN: [&str; 5] = ["pair", "verdict", "1e-3 after (s)", "large
 /// One line per pair: the verdict, when thresholds are passed, and how sure it is.
 pub(crate) fn pairs<'a>(comparison: &Comparison, pairs: impl IntoIterator<Item = &'a Pair>) -> Table {
     let columns = ["pair", "verdict", ">1e-6 after (s)", ">1e-3 after (s)", ">0.1 after (s)", ">largest gap"];
-    let coordinates = comparison.scene.system.coordinates.iter().map(|c| format!(">largest in {} ({})", c.name, c.unit));
+    let coordinates =
+        comparison.scene.system.coordinates.iter().map(|c| format!(">largest in {} ({})", c.name, c.unit));
     let columns = columns.into_iter().chain([">errors, both"]).map(String::from).chain(coordinates);
     let mut table = Table::new(columns);
     for pair in pairs {
@@ -119,7 +121,8 @@ pub(crate) fn growth(comparison: &Comparison) -> Table {
                 [p.exponent.to_string(), precise(p.length), off, if p.proved { "yes" } else { "no" }.into()]
             }
         };
-        let measured = [format!("{:.3}", growth.exponent), precise(growth.length), short(growth.from), short(growth.to)];
+        let measured =
+            [format!("{:.3}", growth.exponent), precise(growth.length), short(growth.from), short(growth.to)];
         table.cells([names(comparison, pair)].into_iter().chain(measured).chain(predicted));
     }
     table
@@ -128,7 +131,8 @@ pub(crate) fn growth(comparison: &Comparison) -> Table {
 /// What free constants that a search has found leave of a gap.
 pub(crate) fn fits(comparison: &Comparison) -> Table {
     let columns = ["motion", "fitted to", "by", ">starting guesses", "free constants", ">largest gap before"];
-    let mut table = Table::new(columns.into_iter().chain(["largest gap, best found", "half of the guesses", "verdict after"]));
+    let mut table =
+        Table::new(columns.into_iter().chain(["largest gap, best found", "half of the guesses", "verdict after"]));
     for fit in &comparison.fits {
         let label = |i: usize| comparison.runs[i].choice.label.clone();
         let before = comparison.pair(fit.run, fit.target).map(|p| p.gap.largest);
@@ -150,7 +154,7 @@ pub(crate) fn fits(comparison: &Comparison) -> Table {
 
 /// How far each motion left the constraint, and the drift of what should be constant.
 pub(crate) fn invariants(comparison: &mut Comparison) -> Result<[Table; 2]> {
-    let mut metric = deltaq::Metric::new(&comparison.scene.system)?;
+    let mut metric = motion::Metric::new(&comparison.scene.system)?;
     let mut residuals = Table::new(["motion", ">to (s)", ">largest constraint residual", ">largest projection"]);
     let mut constant = Table::new(["motion", "constant by theory", ">start", ">largest deviation"]);
     for run in &mut comparison.runs {

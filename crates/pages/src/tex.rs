@@ -1,9 +1,11 @@
 //! The equations of a scene as a document in LaTeX.
 
-use deltaq::{Comparison, EquationStyle, derive_at, equations_text, system_text};
+use comparison::Comparison;
+use motion::{EquationStyle, derive_at, equations_text, system_text};
 use review::substitution::SUBSTITUTION;
 
-const HEAD: &str = "\\documentclass{article}\n\\usepackage[fleqn]{amsmath}\n\\setlength{\\mathindent}{0pt}\n\\begin{document}\n";
+const HEAD: &str =
+    "\\documentclass{article}\n\\usepackage[fleqn]{amsmath}\n\\setlength{\\mathindent}{0pt}\n\\begin{document}\n";
 
 /// `L` and the constraints, then the equations of every motion as derived, printed from the expressions that
 /// are integrated.

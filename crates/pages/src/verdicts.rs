@@ -1,6 +1,7 @@
 //! The verdicts for machines. Nothing in them depends on the machine's speed.
 
-use deltaq::{Comparison, Ending};
+use comparison::Comparison;
+use motion::Ending;
 use serde_json::{Map, Value, json};
 
 use crate::membership;
@@ -11,7 +12,7 @@ const SAME_TIME: f64 = 1e-3;
 /// All verdicts of all scenes.
 pub fn verdicts(comparisons: &[Comparison]) -> Value {
     let scenes: Map<String, Value> = comparisons.iter().map(|c| (c.scene.name.clone(), scene(c))).collect();
-    json!({ "thresholds": deltaq::THRESHOLDS, "scenes": scenes })
+    json!({ "thresholds": comparison::THRESHOLDS, "scenes": scenes })
 }
 
 fn scene(comparison: &Comparison) -> Value {

@@ -112,7 +112,10 @@ impl Window {
 
     /// Whether another one lies in it.
     fn holds(self, other: Window) -> bool {
-        self.low.0 <= other.low.0 && self.low.1 <= other.low.1 && other.high.0 <= self.high.0 && other.high.1 <= self.high.1
+        self.low.0 <= other.low.0
+            && self.low.1 <= other.low.1
+            && other.high.0 <= self.high.0
+            && other.high.1 <= self.high.1
     }
 
     /// Of a solid at a step.
@@ -272,7 +275,11 @@ impl MovingPicture {
         let (x, up) = sheet.camera.project(*direction);
         let (size, right) = (x.hypot(up), WIDTH - MARGIN);
         if size < 0.05 {
-            *out += &format!("<text x=\"{}\" y=\"{}\" text-anchor=\"end\">seen from above</text></g>\n", px(right), px(y + 4.5));
+            *out += &format!(
+                "<text x=\"{}\" y=\"{}\" text-anchor=\"end\">seen from above</text></g>\n",
+                px(right),
+                px(y + 4.5)
+            );
             return;
         }
         let (x, down) = (ARROW * x / size, -ARROW * up / size);

@@ -130,7 +130,10 @@ impl HeatMap {
             text(out, (x, top + 10.0 + 15.0 * row as f64), "start", line);
         }
         let first = top + 50.0;
-        let entries = classes.iter().enumerate().map(|(i, class)| (Some((i as f64 + 0.5) / classes.len() as f64), class.to_string()));
+        let entries = classes
+            .iter()
+            .enumerate()
+            .map(|(i, class)| (Some((i as f64 + 0.5) / classes.len() as f64), class.to_string()));
         let entries = entries.chain(none.then(|| (None, NOTHING.to_owned())));
         for (row, (shade, label)) in entries.enumerate() {
             let y = first + 24.0 * row as f64;

@@ -20,7 +20,14 @@ fn wheel(style: Style, pace: f64, upright: bool) -> Bodies {
 }
 
 fn picture(motions: Vec<Bodies>) -> MovingPicture {
-    MovingPicture { title: "Wheels".into(), time: (0.0, 10.0, "s".into()), ground: Vec::new(), motions, unit: "m".into(), down: ([0.0, 0.0, -1.0], "down".into()) }
+    MovingPicture {
+        title: "Wheels".into(),
+        time: (0.0, 10.0, "s".into()),
+        ground: Vec::new(),
+        motions,
+        unit: "m".into(),
+        down: ([0.0, 0.0, -1.0], "down".into()),
+    }
 }
 
 /// Values of every animated path.

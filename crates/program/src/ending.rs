@@ -6,7 +6,8 @@ use std::process::ExitCode;
 
 use anyhow::{Error, Result};
 use clap::Parser;
-use deltaq::{Broken, Contradicted, caught};
+use comparison::Contradicted;
+use motion::{Broken, caught};
 
 use crate::answer::{Answer, Unwritten, complain, plain, print};
 

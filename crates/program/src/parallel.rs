@@ -35,14 +35,14 @@ pub fn use_threads(threads: usize) {
 
 /// How many threads there are for work: never 0.
 pub fn threads() -> usize {
-    deltaq::number_of_threads(THREADS.load(Ordering::Relaxed))
+    motion::number_of_threads(THREADS.load(Ordering::Relaxed))
 }
 
 /// `work` of each item, over all processors, results in the order of the items. Within [`in_turn`] the items
 /// of several jobs share the threads.
 pub fn map<I: Sync, T: Send>(items: &[I], work: impl Fn(&I) -> T + Sync) -> Vec<T> {
     turns::shared(|turn| {
-        deltaq::over_threads(threads(), items.len(), |index| {
+        motion::over_threads(threads(), items.len(), |index| {
             let _taken = turn.map(|rank| turns::take(rank, threads()));
             work(&items[index])
         })

@@ -1,7 +1,8 @@
 //! What a terminal is told, and exit codes.
 
 use anyhow::Error;
-use deltaq::{Broken, Contradicted};
+use comparison::Contradicted;
+use motion::Broken;
 use program::{Unwritten, exit_code, plain, pretty};
 
 #[test]

@@ -1,9 +1,10 @@
 //! What is chosen by name: formulation, removal, constants, method.
 
-use deltaq::{Choice, FORM_WORDS, Fits, Form, Settings, default_constants, formulation_in, removal_names, removals};
+use comparison::Fits;
 use equations::Formulation;
 use integrate::{Interrupt, Method, Projection};
 use mechanics::{ConstantsRule, Removal};
+use motion::{Choice, FORM_WORDS, Form, Settings, default_constants, formulation_in, removal_names, removals};
 use pyo3::IntoPyObjectExt;
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
@@ -96,7 +97,7 @@ pub(crate) fn unknown<'a>(what: &str, name: &str, known: impl Iterator<Item = &'
 
 /// The formulation of that name.
 pub(crate) fn formulation(name: &str) -> PyResult<&'static Formulation> {
-    deltaq::formulation(name).map_err(|error| errors::unknown(error.to_string()))
+    motion::formulation(name).map_err(|error| errors::unknown(error.to_string()))
 }
 
 /// The formulation of that name in that form.
@@ -141,7 +142,7 @@ fn chosen(
 /// The removal of that name, by default the first.
 fn pick(scene: &Scene, name: Option<&str>) -> PyResult<Removal> {
     let Some(name) = name else { return Ok(removals(scene).map_err(errors::solve)?.swap_remove(0)) };
-    let found = deltaq::removal(scene, name).map_err(errors::solve)?;
+    let found = motion::removal(scene, name).map_err(errors::solve)?;
     found.ok_or_else(|| unknown("removal", name, removal_names(scene).into_iter()))
 }
 

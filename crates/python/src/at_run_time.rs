@@ -2,8 +2,8 @@
 
 use std::collections::HashMap;
 
-use deltaq::{ByName, Choice, Form, Prepared, Settings, SolveError};
 use mechanics::ConstantsRule;
+use motion::{ByName, Choice, Form, Prepared, Settings, SolveError};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use scene::Scene;

@@ -5,8 +5,8 @@ use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::thread::{Builder, scope};
 use std::time::Duration;
 
-use deltaq::caught;
 use integrate::Interrupt;
+use motion::caught;
 use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
 use symbolic::{cancellable, work_on, worked_on};

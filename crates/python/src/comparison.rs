@@ -1,7 +1,7 @@
 //! All formulations of a system, pair by pair.
 
-use deltaq::words::at_most;
-use deltaq::{Answer, Fits, Gap, Membership, THRESHOLDS, Verdict};
+use comparison::words::at_most;
+use comparison::{Answer, Fits, Gap, Membership, THRESHOLDS, Verdict};
 use numpy::PyArrayDyn;
 use pyo3::exceptions::PyKeyError;
 use pyo3::prelude::*;
@@ -168,7 +168,7 @@ impl Decided {
         py: Python<'_>,
         family: String,
         motion: String,
-        outcome: Result<Membership, deltaq::SolveError>,
+        outcome: Result<Membership, motion::SolveError>,
     ) -> PyResult<Self> {
         let (answer, proved, order, because) = match outcome.as_ref().map(Membership::answer) {
             Err(error) => ("undecided", false, None, Some(error.to_string())),
@@ -279,7 +279,7 @@ impl Comparison {
             let count = Some(values.len());
             fixed(py, values, count, &[]).map(Bound::unbind)
         };
-        let pair = |p: deltaq::Pair| -> PyResult<Py<Pair>> {
+        let pair = |p: comparison::Pair| -> PyResult<Py<Pair>> {
             let (verdict, because) = words(&p.gap);
             let (tau, by_coordinate) = (PyDict::new(py), PyDict::new(py));
             for (threshold, time) in THRESHOLDS.iter().zip(p.gap.passes) {
@@ -296,7 +296,7 @@ impl Comparison {
                 let (exponent, length, proved) = (term.exponent, term.length, term.proved);
                 Py::new(py, LeadingTerm { exponent, length, proved, coefficient: vector(term.coefficient)? })
             });
-            let samples = |pick: fn(&deltaq::GapPoint) -> f64| vector(p.gap.points.iter().map(pick).collect());
+            let samples = |pick: fn(&comparison::GapPoint) -> f64| vector(p.gap.points.iter().map(pick).collect());
             let pair = Pair {
                 first: labels[p.first].clone(),
                 second: labels[p.second].clone(),
@@ -316,7 +316,7 @@ impl Comparison {
             };
             Py::new(py, pair)
         };
-        let fit = |f: deltaq::Fit| -> PyResult<Py<Fit>> {
+        let fit = |f: comparison::Fit| -> PyResult<Py<Fit>> {
             let constants = f.fitted.as_ref().map(|m| -> PyResult<Py<PyDict>> {
                 let dict = PyDict::new(py);
                 m.constants.iter().try_for_each(|(name, value)| dict.set_item(name, value))?;
@@ -329,13 +329,13 @@ impl Comparison {
                 verdict: f.fitted.as_ref().map(|m| words(&m.gap).0.into()),
                 largest_gap: f.fitted.as_ref().map(|m| m.gap.largest),
                 largest_gap_by_half: f.fitted.as_ref().map(|m| m.by_half),
-                settled: f.fitted.as_ref().map(deltaq::FittedMotion::is_settled),
+                settled: f.fitted.as_ref().map(comparison::FittedMotion::is_settled),
                 starts: f.fitted.as_ref().map(|m| m.starts),
                 by_identity: f.by_identity,
             };
             Py::new(py, fit)
         };
-        let run = |(choice, outcome): (deltaq::Choice, Result<Sampled, deltaq::SolveError>)| {
+        let run = |(choice, outcome): (motion::Choice, Result<Sampled, motion::SolveError>)| {
             let (motion, error) = match outcome {
                 Ok(sampled) => {
                     let asked = Asked { choice: &choice, form: "auto", times: None, settings: &settings };
@@ -349,7 +349,7 @@ impl Comparison {
                 Run { label: choice.label, formulation: choice.formulation.name.into(), removal, motion, error },
             )
         };
-        let membership = |d: deltaq::Decided| {
+        let membership = |d: comparison::Decided| {
             Py::new(py, Decided::new(py, labels[d.family].clone(), labels[d.curve].clone(), d.outcome)?)
         };
         Ok(Comparison {
@@ -375,23 +375,23 @@ fn words(gap: &Gap) -> (&'static str, Option<String>) {
 /// A comparison, with its motions read off.
 pub(crate) struct Compared {
     scene: Scene,
-    settings: deltaq::Settings,
+    settings: motion::Settings,
     integrability: String,
     contradictions: Vec<String>,
-    runs: Vec<(deltaq::Choice, Result<Sampled, deltaq::SolveError>)>,
-    pairs: Vec<deltaq::Pair>,
-    fits: Vec<deltaq::Fit>,
-    decided: Vec<deltaq::Decided>,
+    runs: Vec<(motion::Choice, Result<Sampled, motion::SolveError>)>,
+    pairs: Vec<comparison::Pair>,
+    fits: Vec<comparison::Fit>,
+    decided: Vec<comparison::Decided>,
 }
 
 /// Compares all formulations of `scene`.
-pub(crate) fn compare(scene: Scene, fits: Fits, settings: &deltaq::Settings) -> Result<Compared, deltaq::SolveError> {
-    let choices = deltaq::choices(&scene);
-    let mut compared = deltaq::compare_unfitted(scene, choices, Vec::new(), settings)?;
+pub(crate) fn compare(scene: Scene, fits: Fits, settings: &motion::Settings) -> Result<Compared, motion::SolveError> {
+    let choices = motion::choices(&scene);
+    let mut compared = comparison::compare_unfitted(scene, choices, Vec::new(), settings)?;
     compared.fit(fits, settings)?;
     let contradictions = compared.contradictions().iter().map(ToString::to_string).collect();
-    let deltaq::Comparison { scene, integrability, runs, pairs, fits, decided, .. } = compared;
-    let read = |motion| Sampled::new(motion, deltaq::setting(&scene), None);
+    let comparison::Comparison { scene, integrability, runs, pairs, fits, decided, .. } = compared;
+    let read = |motion| Sampled::new(motion, motion::setting(&scene), None);
     let runs = runs.into_iter().map(|run| (run.choice, run.outcome.and_then(read))).collect();
     let integrability = integrability.to_string();
     let settings = settings.clone();

@@ -1,8 +1,8 @@
 //! Motions between two points.
 
-use deltaq::{Aim, Choice, Connections as Found, Settings, SolveError};
 use integrate::Interrupt;
 use mechanics::ConstantsRule;
+use motion::{Aim, Choice, Connections as Found, Settings, SolveError};
 use numpy::PyArrayDyn;
 use pyo3::prelude::*;
 use pyo3::types::{IntoPyDict, PyDict};
@@ -152,7 +152,7 @@ fn found(
 ) -> PyResult<Connections> {
     let formulation = choice.formulation.name.to_string();
     let work = move || {
-        let found = deltaq::connect(&scene, &choice, &aim, &settings)?;
+        let found = motion::connect(&scene, &choice, &aim, &settings)?;
         Ok::<_, SolveError>((found, scene, aim))
     };
     let (found, scene, aim) = background::run(py, &interrupt, work)?.map_err(errors::solve)?;
@@ -176,7 +176,7 @@ fn one(
     scene: &Scene,
     aim: &Aim,
     unknowns: &[String],
-    motion: deltaq::Connection,
+    motion: motion::Connection,
 ) -> PyResult<Connection> {
     let named = |values: &[f64]| unknowns.iter().zip(values.iter().copied()).into_py_dict(py).map(Bound::unbind);
     let vector = |values: Vec<f64>| {
@@ -193,7 +193,7 @@ fn one(
     }
     let system = System::read(py, (&scene.name, None), own.to_toml(), Overrides::new())?;
     let times = motion.conjugate.as_ref();
-    let column = |pick: fn(&deltaq::ConjugateTime) -> f64| {
+    let column = |pick: fn(&motion::ConjugateTime) -> f64| {
         times.map(|times| vector(times.iter().map(pick).collect())).transpose()
     };
     Ok(Connection {

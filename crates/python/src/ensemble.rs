@@ -2,8 +2,8 @@
 
 use std::collections::BTreeMap;
 
-use deltaq::{Choice, EnsembleOptions, MemberMotion, Settings, SolveError, setting};
 use equations::Named;
+use motion::{Choice, EnsembleOptions, MemberMotion, Settings, SolveError, setting};
 use numpy::PyArrayDyn;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -142,7 +142,7 @@ impl Task {
     pub(crate) fn run(self) -> Result<Integrated, SolveError> {
         let Task { varied, scene, choice, times, end, settings, options } = self;
         let names: Vec<&str> = varied.values.keys().map(String::as_str).collect();
-        let ensemble = deltaq::Ensemble::new(&scene, &choice, &names, &settings)?.until(end);
+        let ensemble = motion::Ensemble::new(&scene, &choice, &names, &settings)?.until(end);
         let (equations, n) = (ensemble.equations(), scene.system.dimension());
         let cube = |width: usize| Cube::new(varied.count, times.len(), width);
         let named = |list: &[Named]| (list.iter().map(|n| n.name.clone()).collect(), cube(list.len()));

@@ -1,11 +1,11 @@
 //! Equations of motion as functions of arrays.
 
-use deltaq::{
-    EquationStyle, Language, Prepared, SolveError, code, constant_names, derive_at, equations_text, prepare, setting,
-};
 use equations::{Compiled, EvaluationFailure, Formulation, Role};
 use integrate::Method;
 use mechanics::{ConstantsRule, Observables};
+use motion::{
+    EquationStyle, Language, Prepared, SolveError, code, constant_names, derive_at, equations_text, prepare, setting,
+};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;

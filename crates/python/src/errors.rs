@@ -2,8 +2,8 @@
 
 use std::path::Path;
 
-use deltaq::Broken;
 use equations::EvaluationFailure;
+use motion::Broken;
 use pyo3::create_exception;
 use pyo3::exceptions::{PyException, PyOSError, PyValueError};
 use pyo3::prelude::*;
@@ -71,8 +71,8 @@ pub(crate) fn scene(py: Python<'_>, error: &scene::SceneError) -> PyErr {
     set.err().unwrap_or(raised)
 }
 
-pub(crate) fn solve(error: impl Into<deltaq::SolveError>) -> PyErr {
-    use deltaq::SolveError as Error;
+pub(crate) fn solve(error: impl Into<motion::SolveError>) -> PyErr {
+    use motion::SolveError as Error;
     let error = error.into();
     let text = error.to_string();
     match error {

@@ -1,11 +1,11 @@
 //! Films of motions, fitted.
 
-use deltaq::Settings;
 use fit::{
     Aim, Design, Deviations, Film, FitError, Question, ROBUST, Range, Row, Sampling, Unknown, design_value,
     fit_formulations, fit_value, profile,
 };
 use integrate::Interrupt;
+use motion::Settings;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 

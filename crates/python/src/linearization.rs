@@ -1,8 +1,8 @@
 //! Equations of motion to first order, and their eigenvalues.
 
-use deltaq::{Choice, Settings, setting};
 use integrate::Interrupt;
 use linear::{LinearError, Part, find_steady, linearize, linearize_at};
+use motion::{Choice, Settings, setting};
 use numpy::{Complex64, PyArray1, PyArrayDyn};
 use pyo3::prelude::*;
 use pyo3::types::{IntoPyDict, PyDict};

@@ -2,11 +2,11 @@
 
 use std::sync::{Arc, OnceLock};
 
-use deltaq::{
-    Choice, ErrorEstimate, Seconds, Sensitivities, Setting, Settings, SolveError, constant_names, error_estimates,
-};
 use integrate::{Method, Projection, Work};
 use mechanics::Observables;
+use motion::{
+    Choice, ErrorEstimate, Seconds, Sensitivities, Setting, Settings, SolveError, constant_names, error_estimates,
+};
 use numpy::PyArrayDyn;
 use pyo3::exceptions::{PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
@@ -22,7 +22,7 @@ use crate::{errors, sensitivities};
 
 /// A motion with everything that is computed without Python's lock.
 pub(crate) struct Sampled {
-    motion: deltaq::Motion,
+    motion: motion::Motion,
     times: Vec<f64>,
     /// One at each of the times that were reached.
     rows: Vec<Row>,
@@ -41,14 +41,14 @@ const INSTANTS: usize = 101;
 impl Sampled {
     /// Reads `motion` off at those of `times`, in ascending order, that it reached.
     pub(crate) fn new(
-        mut motion: deltaq::Motion,
+        mut motion: motion::Motion,
         setting: Setting,
         times: Option<Vec<f64>>,
     ) -> Result<Sampled, SolveError> {
         let (from, length) = (setting.start.t, setting.end - setting.start.t);
         let instant = |i: usize| from + length * i as f64 / (INSTANTS - 1) as f64;
         let times = times.unwrap_or_else(|| (0..INSTANTS).map(instant).collect());
-        let reached = |motion: &deltaq::Motion| -> Vec<f64> {
+        let reached = |motion: &motion::Motion| -> Vec<f64> {
             times.iter().map_while(|&t| within(t, motion.start(), motion.end())).collect()
         };
         let asked = reached(&motion);
@@ -211,7 +211,7 @@ kept!(
 );
 
 /// A motion, and the program of what is observed in it.
-type Integrated = Shared<(deltaq::Motion, Observables)>;
+type Integrated = Shared<(motion::Motion, Observables)>;
 
 /// What a run cost, by name.
 pub(crate) fn work(py: Python<'_>, work: &Work) -> PyResult<Py<PyDict>> {
@@ -316,7 +316,7 @@ impl Motion {
         };
         let instants: Vec<f64> = (0..t.count().unwrap_or(1)).map(inside).collect::<PyResult<_>>()?;
         let integrated = self.integrated(py)?;
-        let read = |(motion, program): &mut (deltaq::Motion, Observables)| {
+        let read = |(motion, program): &mut (motion::Motion, Observables)| {
             let row = |&t: &f64| Ok(observed(program, t, motion.at(t)?));
             let rows = instants.iter().map(row).collect::<Result<Vec<_>, SolveError>>()?;
             Ok((rows, Names::of(&motion.equations, program)))

@@ -1,6 +1,6 @@
 //! Certificates that no constants make the vakonomic motion Chetaev's; measures and integrals.
 
-use deltaq::{certificate, holds_beside_numbers};
+use comparison::{certificate, holds_beside_numbers};
 use integrals::{Integrals, NoAnswer, Open};
 use integrate::Interrupt;
 use pyo3::prelude::*;
@@ -15,7 +15,7 @@ impl System {
     #[pyo3(signature = (almost_every_start))]
     fn _certificate(&self, py: Python<'_>, almost_every_start: bool) -> PyResult<(Option<String>, Option<String>)> {
         let (scene, interrupt) = (self.scene()?, Interrupt::default());
-        let work = move || -> Result<_, deltaq::SolveError> {
+        let work = move || -> Result<_, motion::SolveError> {
             let found = certificate(&scene, almost_every_start)?;
             let sound = if found.is_ok() { holds_beside_numbers(&scene) } else { Ok(()) };
             Ok((found, sound))

@@ -2,10 +2,9 @@
 
 use std::convert::Infallible;
 
-use deltaq::{
-    EnsembleOptions, Settings, SolveError, Sweep, SweepPoint, number_of_threads, over_threads, setting, solve_choice,
-};
+use comparison::{Sweep, SweepPoint};
 use integrate::Interrupt;
+use motion::{EnsembleOptions, Settings, SolveError, number_of_threads, over_threads, setting, solve_choice};
 use picture::Style;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -166,7 +165,7 @@ impl System {
             let mut sampled = Sampled::new(motion, setting(&scene), instants)?;
             if let Some(names) = sensitivities.filter(|names| !names.is_empty()) {
                 let (names, reached) = (names.iter().map(String::as_str).collect::<Vec<_>>(), sampled.reached());
-                sampled.derived = Some(deltaq::sensitivities(&scene, &choice, &names, reached, &limits)?);
+                sampled.derived = Some(motion::sensitivities(&scene, &choice, &names, reached, &limits)?);
             }
             Ok((sampled, choice))
         };
@@ -275,7 +274,7 @@ impl System {
         };
         let formulations = formulations.map(read).transpose()?;
         let (name, width) = (self.name()?, names.len());
-        let work = || -> Result<Vec<SweepPoint>, deltaq::SolveError> {
+        let work = || -> Result<Vec<SweepPoint>, motion::SolveError> {
             let sweep = Sweep::new(&name, &self.text, &self.overrides, &names, formulations, &settings)?;
             let rows: Vec<&[f64]> = values.chunks_exact(width.max(1)).collect();
             Ok(over_threads(number_of_threads(threads), rows.len(), |i| sweep.point(rows[i])))

@@ -1,8 +1,8 @@
 //! What a motion misses of data, as a function of numbers that never raises.
 
-use deltaq::{Choice, Model, Reading, Settings};
 use equations::Outputs;
 use mechanics::ConstantsRule;
+use motion::{Choice, Model, Reading, Settings};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};

@@ -1,6 +1,6 @@
 //! Derivatives of a motion, as arrays.
 
-use deltaq::Sensitivities;
+use motion::Sensitivities;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 

@@ -2,7 +2,7 @@
 
 use std::sync::{Mutex, PoisonError};
 
-use deltaq::caught;
+use motion::caught;
 use pyo3::prelude::*;
 
 use crate::errors;

@@ -2,8 +2,9 @@
 
 use std::path::Path;
 
-use deltaq::{integrability, removals};
+use comparison::integrability;
 use integrate::Interrupt;
+use motion::removals;
 use numpy::PyArrayDyn;
 use pyo3::prelude::*;
 use pyo3::types::{IntoPyDict, PyDict};

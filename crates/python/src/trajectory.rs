@@ -2,8 +2,8 @@
 
 use std::time::Instant;
 
-use deltaq::{Prepared, SolveError};
 use integrate::{Dense, Options, Status};
+use motion::{Prepared, SolveError};
 use numpy::PyArrayDyn;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;

@@ -194,7 +194,7 @@ pub(crate) fn formulated(scene: &Scene, reading: &Reading, formulation: &'static
         let derivation = Derivation { removal: Some(removal), ..Derivation::default() };
         Base::new(words, reading, &(formulation.derive)(&own.system, &derivation).ok()?)
     };
-    deltaq::removals(&own).unwrap_or_default().iter().filter_map(base).collect()
+    motion::removals(&own).unwrap_or_default().iter().filter_map(base).collect()
 }
 
 /// The constraint put into `L`, by every removal in coordinates; with terms of `L` as columns: the residuals
@@ -202,7 +202,7 @@ pub(crate) fn formulated(scene: &Scene, reading: &Reading, formulation: &'static
 pub(crate) fn substituted(scene: &Scene, reading: &Reading, terms: &[Expr]) -> Vec<(Base, Vec<Vec<Expr>>)> {
     let own = Scene { system: reading.system.clone(), ..scene.clone() };
     let mut bases = Vec::new();
-    for removal in deltaq::removals(&own).unwrap_or_default() {
+    for removal in motion::removals(&own).unwrap_or_default() {
         let parameters = removal.parameters.iter().map(|u| u.coordinate);
         if parameters.chain(removal.memory.iter().map(|w| w.coordinate)).any(|i| i.is_none()) {
             continue;

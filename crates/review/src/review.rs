@@ -86,7 +86,7 @@ pub struct Asked {
 
 impl Default for Asked {
     fn default() -> Self {
-        Asked { formulation: deltaq::CHETAEV, wheres: Vec::new(), tolerance: 1e-8 }
+        Asked { formulation: motion::CHETAEV, wheres: Vec::new(), tolerance: 1e-8 }
     }
 }
 
@@ -295,7 +295,7 @@ fn explanations<C: Number>(
     asked: &[Base],
     formulation: &'static Formulation,
 ) -> Vec<Vec<String>> {
-    let others = deltaq::FORMULATIONS.iter().copied().filter(|f| *f != formulation);
+    let others = motion::FORMULATIONS.iter().copied().filter(|f| *f != formulation);
     let others: Vec<Base> = others.flat_map(|f| formulated(scene, reading, f)).collect();
     let pieces = pieces(&reading.system);
     let terms: Vec<symbolic::Expr> = pieces.iter().map(|(_, l)| *l).collect();
@@ -329,7 +329,7 @@ fn explanations<C: Number>(
         found = with(&mut others.iter(), false, true);
     }
     let mut wrong: Vec<Base> = Vec::new();
-    if found.is_empty() && formulation == deltaq::CHETAEV {
+    if found.is_empty() && formulation == motion::CHETAEV {
         wrong = with_constraints(reading, wrong_constraints(&reading.system));
         found = exact(&mut wrong.iter());
     }

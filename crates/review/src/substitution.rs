@@ -10,9 +10,10 @@
 //! as if `w` did not depend on the variation of `u`. It is right for integrable constraints in Chaplygin form
 //! (`w` in neither `L` nor `B`), and wrong nearly everywhere else. A test that does not notice is broken.
 
-use deltaq::{Choice, Run, Settings, setting, solve};
+use comparison::Run;
 use equations::{Block, Derivation, DerivationError, Equations, Formulation, Needs, Role, StateVariable, Statement};
 use mechanics::{ConstantsRule, DisplacementParameter, Removal, System};
+use motion::{Choice, Settings, setting, solve};
 use scene::Scene;
 use symbolic::Expr;
 

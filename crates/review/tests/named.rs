@@ -51,7 +51,7 @@ fn other_formulations_are_named_whatever_their_multipliers_are_called() {
         let found = of("sleigh", theirs);
         assert_eq!(found.verdict, Verdict::Wrong);
         assert_eq!(found.explanations[0], ["vakonomic equations"]);
-        let to_be = Asked { formulation: deltaq::VAKONOMIC, ..Asked::default() };
+        let to_be = Asked { formulation: motion::VAKONOMIC, ..Asked::default() };
         assert_eq!(review(&sleigh, "theirs", theirs, &to_be).unwrap().verdict, Verdict::Right);
     }
     // uniform motion along the blade and about it: m u'' = 0, phi'' = 0

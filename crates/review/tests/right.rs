@@ -87,18 +87,18 @@ fn right_equations_are_called_right_in_any_coordinates() {
 fn every_scene_is_right_as_it_is_shown() {
     for (name, _) in catalogue::built_in() {
         let scene = catalogue::find(name, &[]).unwrap();
-        let choices = deltaq::choices(&scene);
-        let choice = choices.iter().find(|c| c.formulation == deltaq::CHETAEV).unwrap();
-        let equations = deltaq::derive(&scene.system, choice).unwrap();
+        let choices = motion::choices(&scene);
+        let choice = choices.iter().find(|c| c.formulation == motion::CHETAEV).unwrap();
+        let equations = motion::derive(&scene.system, choice).unwrap();
         let g = &equations.graph;
         let lines = |print: &dyn Fn(symbolic::Expr) -> String| {
             let lines = equations.statements.iter().map(|s| format!("{} = {}\n", print(s.left), print(s.right)));
             lines.collect::<String>()
         };
-        let settings = deltaq::Settings::default();
+        let settings = motion::Settings::default();
         let prepared =
-            deltaq::prepare(deltaq::setting(&scene), equations.clone(), &choice.constants, &settings).unwrap();
-        let code = deltaq::code(&scene, &prepared, deltaq::Language::C).unwrap();
+            motion::prepare(motion::setting(&scene), equations.clone(), &choice.constants, &settings).unwrap();
+        let code = motion::code(&scene, &prepared, motion::Language::C).unwrap();
         for (file, text) in [("a.txt", lines(&|e| g.plain(e))), ("a.tex", lines(&|e| g.latex(e))), ("a.c", code)] {
             let found = review(&scene, file, &text, &Asked::default()).unwrap();
             assert_eq!(found.verdict, Verdict::Right, "{name}, {file}: {found:?}");

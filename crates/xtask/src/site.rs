@@ -16,7 +16,16 @@ const EVIDENCE: [&str; 7] =
 
 /// Measured pages that are older than their code, a line each: they do not belong to the site.
 fn older_pages() -> Result<String> {
-    succeed(cargo().args(["build", "--release", "--workspace", "--exclude", "engine", "--bin", "evidence", "--quiet"]))?;
+    succeed(cargo().args([
+        "build",
+        "--release",
+        "--workspace",
+        "--exclude",
+        "engine",
+        "--bin",
+        "evidence",
+        "--quiet",
+    ]))?;
     let output = outside(target()?.join("release").join("evidence")).args(["reports", "--ages"]).output()?;
     ensure!(output.status.success(), "evidence reports --ages: {}", String::from_utf8_lossy(&output.stderr));
     Ok(String::from_utf8(output.stdout)?)

@@ -1,7 +1,7 @@
 //! What is drawn is where the mechanics has it: bodies touch what they touch, and what rolls does not slip.
 
-use deltaq::{CHETAEV, Motion, solve_choice};
 use mechanics::{ConstantsRule, Kind, Shape, System, View};
+use motion::{CHETAEV, Motion, solve_choice};
 use nalgebra::{Matrix3, RowVector3, Vector3};
 use scene::Scene;
 use symbolic::{Evaluator, Expr};
@@ -130,7 +130,7 @@ fn largest(scene: &Scene, motion: &mut Motion) -> Largest {
 
 /// Chetaev's motion; every other one keeps the same constraints.
 fn moved(scene: &Scene) -> Largest {
-    let settings = deltaq::Settings { max_steps: 40_000, ..tight() };
+    let settings = motion::Settings { max_steps: 40_000, ..tight() };
     let chetaev = choice(CHETAEV, None, ConstantsRule::Given(Vec::new()));
     let mut motion = solve_choice(scene, &chetaev, &settings).unwrap_or_else(|e| panic!("{}: {e}", scene.name));
     largest(scene, &mut motion)

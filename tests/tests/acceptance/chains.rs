@@ -1,11 +1,11 @@
 //! Chains in few coordinates, by the velocities of their bodies, are the same systems.
 
 use catalogue::trailer::{self, Coordinates};
-use deltaq::{
-    CHETAEV, REDUCED_CHETAEV, REDUCED_VAKONOMIC, Settings, choices, derive_at, error_estimate, setting, solve_choice,
-};
 use equations::{Compiled, Plan};
 use mechanics::ConstantsRule;
+use motion::{
+    CHETAEV, REDUCED_CHETAEV, REDUCED_VAKONOMIC, Settings, choices, derive_at, error_estimate, setting, solve_choice,
+};
 use reference::{Question, Wide, reference};
 use scene::Scene;
 use symbolic::Scalar;

@@ -1,11 +1,11 @@
 //! Motions go on where pivots vanish: by other pivots they are those of the equations with multipliers.
 
-use deltaq::{
-    Choice, Ending, Motion, REDUCED_CHETAEV, REDUCED_VAKONOMIC, REMOVED_CONSTRAINT, Settings, VAKONOMIC, costates_of,
-    multipliers_of, solve_choice,
-};
+use comparison::{costates_of, multipliers_of};
 use equations::Formulation;
 use mechanics::{ConstantsRule, Removal};
+use motion::{
+    Choice, Ending, Motion, REDUCED_CHETAEV, REDUCED_VAKONOMIC, REMOVED_CONSTRAINT, Settings, VAKONOMIC, solve_choice,
+};
 use scene::Scene;
 
 use super::support::{

@@ -1,8 +1,8 @@
 //! The constraint law of first order, `E = Q + Aᵀλ − εCλ`, `f = −λ/N`, against closed forms and its
 //! neighbours.
 
-use deltaq::{CHETAEV, FIRST_ORDER, KAPPA, Motion};
 use equations::Compiled;
+use motion::{CHETAEV, FIRST_ORDER, KAPPA, Motion};
 use random::realization::with_friction;
 use scene::Scene;
 

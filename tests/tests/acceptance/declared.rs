@@ -1,8 +1,8 @@
 //! Declared time derivatives: series taken from those one order ahead are those of their own formulas.
 
 use catalogue::trailer::Coordinates;
-use deltaq::REDUCED_CHETAEV;
 use equations::{Compiled, Equations, Plan};
+use motion::REDUCED_CHETAEV;
 use proptest::{prop_assert, test_runner::TestCaseError};
 use scene::Scene;
 

@@ -1,6 +1,6 @@
 //! What derivations give besides motions: readers' equations, invariants, projections, guards, omissions.
 
-use deltaq::{CHETAEV, KAPPA, REMOVED_CONSTRAINT, VAKONOMIC, VAKONOMIC_COSTATE};
+use motion::{CHETAEV, KAPPA, REMOVED_CONSTRAINT, VAKONOMIC, VAKONOMIC_COSTATE};
 use std::collections::BTreeSet;
 
 use equations::{Equations, Formulation, Role};
@@ -124,9 +124,9 @@ fn states_say_what_they_are_and_second_rates_are_not_denied() {
 #[test]
 fn the_family_between_is_asked_for_by_its_parameter() {
     let without = support::scene("sledge", &[]);
-    assert!(deltaq::choices(&without).iter().all(|choice| choice.formulation != KAPPA));
+    assert!(motion::choices(&without).iter().all(|choice| choice.formulation != KAPPA));
     let error = (KAPPA.derive)(&without.system, &Default::default());
     assert!(error.err().expect("refused").to_string().contains("a parameter `kappa` is needed"));
     let with = support::scene("sledge", &[("kappa", 2.0)]);
-    assert!(deltaq::choices(&with).iter().any(|choice| choice.formulation == KAPPA));
+    assert!(motion::choices(&with).iter().any(|choice| choice.formulation == KAPPA));
 }

@@ -2,12 +2,12 @@
 //! their starts against those of the text with other numbers in it.
 
 use catalogue::{CLASSICS, SCENES, find};
-use deltaq::{
+use equations::Equations;
+use integrate::Method;
+use motion::{
     Choice, Ending, Ensemble, EnsembleOptions, EnsembleStart, Settings, choices, constants_of, error_estimate, forms,
     setting, solve_choice,
 };
-use equations::Equations;
-use integrate::Method;
 use scene::Scene;
 
 /// Not divisible by the number of lanes.

@@ -1,11 +1,10 @@
 //! Forces act by virtual work, `∫ (δL + Q·δq) dt = 0`, in every formulation: against closed forms, against
 //! one another, and against the sum `∫ (δL + Q·δq) dt` itself.
 
-use deltaq::{
-    Answer, CHETAEV, REDUCED_VAKONOMIC, REMOVED_CONSTRAINT, VAKONOMIC, VAKONOMIC_COSTATE, costates_of, membership,
-};
+use comparison::{Answer, costates_of, membership};
 use equations::{Compiled, Derivation, Role};
 use mechanics::Removal;
+use motion::{CHETAEV, REDUCED_VAKONOMIC, REMOVED_CONSTRAINT, VAKONOMIC, VAKONOMIC_COSTATE};
 use scene::Scene;
 use symbolic::{Evaluator, Symbol};
 use validation::casadi_job::forced;

@@ -1,6 +1,6 @@
 //! Quasi-velocities in a frame against Maggi and costate form: bodies turn, roll, slide to the frame's end.
 
-use deltaq::{CHETAEV, REDUCED_CHETAEV, REDUCED_VAKONOMIC, VAKONOMIC};
+use motion::{CHETAEV, REDUCED_CHETAEV, REDUCED_VAKONOMIC, VAKONOMIC};
 use std::cell::Cell;
 
 use equations::Role;
@@ -109,7 +109,7 @@ fn motions_near_the_ends_of_the_frame_are_those_of_the_multiplier_form() {
             let whole = equations(&scene.system, form, None);
             let mut multiplier = motion_of(&scene, whole, &mu, &tight());
             for method in [Method::Dop853, Method::Taylor] {
-                let settings = deltaq::Settings { method: Some(method), ..tight() };
+                let settings = motion::Settings { method: Some(method), ..tight() };
                 let reduced = equations(&scene.system, reduced, None);
                 let mut framed = motion_of(&scene, reduced, &mu, &settings);
                 let (gap, end) = known_gap(&mut multiplier, &mut framed);

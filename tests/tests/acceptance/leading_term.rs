@@ -1,6 +1,7 @@
 //! How vakonomic and Chetaev motions part: the predicted coefficient, seen without the fit of claim T5.
 
-use deltaq::{LeadingTerm, Pairing, choices, removals};
+use comparison::{LeadingTerm, Pairing};
+use motion::{choices, removals};
 use scene::Scene;
 use symbolic::Expr;
 

@@ -1,8 +1,8 @@
 //! Steady motions of the literature: eigenvalues and critical speeds that are known otherwise.
 
-use deltaq::{KAPPA, Settings, choices, setting};
 use linear::{Eigenvalue, LinearError, find_steady, linearize, linearize_at, sweep};
 use mechanics::ConstantsRule;
+use motion::{KAPPA, Settings, choices, setting};
 use scene::Scene;
 use serde_json::json;
 use validation::report::BicycleReport;
@@ -63,7 +63,7 @@ fn a_disc_finds_its_circle() {
     let rates: Vec<&str> = found.carried.iter().map(|c| &c.name[..]).collect();
     assert_eq!(rates, ["x", "y", "phi", "psi"]);
     // lean and both turns go on after a while as they began
-    let mut motion = deltaq::solve_choice(&turning, &choices(&turning)[0], &Settings::default()).expect("runs");
+    let mut motion = motion::solve_choice(&turning, &choices(&turning)[0], &Settings::default()).expect("runs");
     let (start, end) = (turning.start.clone(), motion.at(1.0).expect("complete"));
     must("lean after 1 s", (end.coordinates[3] - start.q[3]).abs(), 1e-9);
     must("turn after 1 s", (end.velocities[2] - start.v[2]).abs(), 1e-9);

@@ -1,8 +1,9 @@
 //! Systems from bodies against those whose formulas were written by hand.
 
 use catalogue::find;
-use deltaq::{Beyond, CHETAEV, REMOVED_CONSTRAINT, Settings, VAKONOMIC, beyond_contacts, solve_choice};
+use comparison::{Beyond, beyond_contacts};
 use mechanics::{ConstantsRule, State};
+use motion::{CHETAEV, REMOVED_CONSTRAINT, Settings, VAKONOMIC, solve_choice};
 use nalgebra::{DMatrix, DVector};
 use scene::Scene;
 use symbolic::SplitMix;

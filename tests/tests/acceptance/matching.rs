@@ -1,6 +1,7 @@
 //! Removed-constraint motions inside the vakonomic family, and outside of it (T2, T3).
 
-use deltaq::{Metric, VAKONOMIC, best_fit, setting};
+use comparison::best_fit;
+use motion::{Metric, VAKONOMIC, setting};
 use scene::Scene;
 
 use super::support::{

@@ -3,13 +3,13 @@
 use std::f64::consts::FRAC_PI_2;
 
 use catalogue::trailer::{self, Coordinates};
-use deltaq::{
-    CHETAEV, Choice, Ending, Motion, REDUCED_CHETAEV, REDUCED_VAKONOMIC, Settings, VAKONOMIC_COSTATE, choices,
-    solve_choice,
-};
 use diffsol_methods::{BDF, ESDIRK34, EVERY, TR_BDF2, TSIT45};
 use integrate::Method;
 use mechanics::ConstantsRule;
+use motion::{
+    CHETAEV, Choice, Ending, Motion, REDUCED_CHETAEV, REDUCED_VAKONOMIC, Settings, VAKONOMIC_COSTATE, choices,
+    solve_choice,
+};
 use scene::Scene;
 
 use super::closed_forms::sledge;
@@ -39,7 +39,7 @@ fn every_method_reaches_the_closed_form_of_the_sledge() {
         assert!(motion.is_complete(), "{method:?}: {:?}", motion.ending);
         let now = at(&mut motion, 10.0).coordinates;
         let error = super::support::largest_difference(&now, &[end.x, end.y, end.phi]) / size;
-        let kept = tolerance * deltaq::TIGHTER;
+        let kept = tolerance * motion::TIGHTER;
         println!("{method:?}: {} steps, {} evaluations", motion.work.steps, motion.work.evaluations);
         must(&format!("sledge, {method:?} at tolerance {kept:.0e}: relative error at t = 10"), error, factor * kept);
     }

@@ -1,7 +1,7 @@
 //! Reactions of one's own: `E = Q + Wᵀλ`, `f = 0`, against motions by hand.
 
-use deltaq::{PRESCRIBED, SolveError};
 use mechanics::StartError;
+use motion::{PRESCRIBED, SolveError};
 use scene::Scene;
 
 use super::support::{
@@ -9,7 +9,7 @@ use super::support::{
     parameter, scene, tight,
 };
 
-fn prescribed(scene: &Scene) -> deltaq::Motion {
+fn prescribed(scene: &Scene) -> motion::Motion {
     motion_of(scene, equations(&scene.system, PRESCRIBED, None), &[], &tight())
 }
 
@@ -63,7 +63,7 @@ fn robot_turned_by_one_wheel() {
     must("one-motor robot", error(&mut motion, &exact), 1e-10);
     // by Chetaev the turning needs a torque alone: s' = dΩ²
     let mut own = chetaev(&scene);
-    let speed = |motion: &mut deltaq::Motion| {
+    let speed = |motion: &mut motion::Motion| {
         let now = at(motion, 4.0);
         now.velocities[0] * now.coordinates[2].cos() + now.velocities[1] * now.coordinates[2].sin()
     };
@@ -105,7 +105,7 @@ fn reactions_that_cannot_keep_the_constraints_are_refused_with_the_number() {
             scene = Scene::parse(name, &text.replace(from, to)).unwrap_or_else(|e| panic!("{e}"));
         }
         let choice = choice(PRESCRIBED, None, mechanics::ConstantsRule::Zero);
-        match deltaq::solve_choice(&scene, &choice, &tight()) {
+        match motion::solve_choice(&scene, &choice, &tight()) {
             Err(SolveError::Start(StartError::SingularReactions { ratio, limit, .. })) => {
                 assert_eq!(limit, 1e-10);
                 ratio

@@ -1,9 +1,9 @@
 //! Chetaev in quasi-velocities is Chetaev: against the saddle-point form and Maggi's, derived independently.
 
 use catalogue::trailer::{self, Coordinates};
-use deltaq::REDUCED_CHETAEV;
 use equations::{Compiled, Equations};
 use mechanics::State;
+use motion::REDUCED_CHETAEV;
 use proptest::{prop_assert, test_runner::TestCaseError};
 use referees::maggi::Maggi;
 use scene::Scene;

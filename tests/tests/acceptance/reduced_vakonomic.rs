@@ -3,9 +3,9 @@
 use std::cell::Cell;
 
 use catalogue::trailer::{self, Coordinates};
-use deltaq::{REDUCED_VAKONOMIC, Settings, VAKONOMIC, VAKONOMIC_COSTATE};
 use equations::{Compiled, Equations, Formulation, Outputs, Plan};
 use integrate::Method;
+use motion::{REDUCED_VAKONOMIC, Settings, VAKONOMIC, VAKONOMIC_COSTATE};
 use proptest::prop_assert;
 use reduction::Frame;
 use scene::Scene;

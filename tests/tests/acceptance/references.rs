@@ -1,8 +1,8 @@
 //! Every formulation against reference states from code that shares nothing with the solvers.
 
 use crate::references::{Motion, REFERENCES, Reference};
-use deltaq::{CHETAEV, REMOVED_CONSTRAINT, SolveError, VAKONOMIC, setting, solve};
 use mechanics::ConstantsRule;
+use motion::{CHETAEV, REMOVED_CONSTRAINT, SolveError, VAKONOMIC, setting, solve};
 
 use super::support::{at, equations, largest_difference, must, scene, tight};
 
@@ -16,7 +16,7 @@ fn costates(scene: &scene::Scene, named: &[(&str, f64)]) -> Vec<f64> {
 }
 
 /// The names of the formulation and of the constants, and the motion itself.
-fn motion(reference: &Reference, scene: &scene::Scene, natural: bool) -> Result<deltaq::Motion, SolveError> {
+fn motion(reference: &Reference, scene: &scene::Scene, natural: bool) -> Result<motion::Motion, SolveError> {
     let (name, removal, rule) = match &reference.motion {
         Motion::Chetaev => (CHETAEV, None, ConstantsRule::Zero),
         Motion::Vakonomic { multipliers } => (VAKONOMIC, None, ConstantsRule::Given(multipliers.to_vec())),
@@ -31,7 +31,7 @@ fn motion(reference: &Reference, scene: &scene::Scene, natural: bool) -> Result<
 }
 
 /// Largest relative error over coordinates, velocities and, where they have the same meaning, multipliers.
-fn error(reference: &Reference, motion: &mut deltaq::Motion) -> f64 {
+fn error(reference: &Reference, motion: &mut motion::Motion) -> f64 {
     let now = at(motion, reference.t);
     let size = reference.q.iter().chain(&reference.v).fold(1.0_f64, |a, x| a.max(x.abs()));
     let state =

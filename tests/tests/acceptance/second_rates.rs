@@ -9,8 +9,8 @@
 //!
 //! Newton's motion only where the free constant `p₀` is `ẋ₀`.
 
-use deltaq::{Motion, REMOVED_CONSTRAINT};
 use equations::{DerivationError, Role};
+use motion::{Motion, REMOVED_CONSTRAINT};
 use scene::Scene;
 
 use super::support::{at, complete, derived, equations, must, must_exceed, removed, scene};
@@ -44,7 +44,7 @@ fn exact(t: f64, momentum: f64) -> (f64, f64) {
 fn the_one_free_constant_is_the_momentum() {
     let scene = oscillator();
     let equations = equations(&scene.system, REMOVED_CONSTRAINT, Some(&scene.removals[0]));
-    let names = deltaq::constant_names(&equations);
+    let names = motion::constant_names(&equations);
     assert_eq!(names, ["p0_u"]);
     let roles: Vec<Role> = equations.states.iter().map(|y| y.role).collect();
     for role in [Role::DisplacementParameter, Role::ParameterRate, Role::ParameterSecondRate, Role::ParameterMomentum] {
@@ -136,8 +136,8 @@ fn a_singular_highest_hessian_is_refused_where_only_some_parameters_are_of_secon
 #[test]
 fn a_lagrangian_without_the_rate_of_the_parameter_is_refused() {
     let scene = scene("appell-hamel", &[]);
-    let by_heading = |choice: &deltaq::Choice| choice.removal.as_ref().is_some_and(|r| r.name == "by-heading");
-    let choice = deltaq::choices(&scene).into_iter().find(by_heading).expect("a removal of the scene");
-    let error = deltaq::solve_choice(&scene, &choice, &Default::default()).err().map(|e| e.to_string());
+    let by_heading = |choice: &motion::Choice| choice.removal.as_ref().is_some_and(|r| r.name == "by-heading");
+    let choice = motion::choices(&scene).into_iter().find(by_heading).expect("a removal of the scene");
+    let error = motion::solve_choice(&scene, &choice, &Default::default()).err().map(|e| e.to_string());
     assert!(error.as_ref().is_some_and(|e| e.contains("singular")), "{error:?}");
 }

@@ -7,7 +7,7 @@
 //! built-in scene, formulation and number (`SENSITIVITIES=sledge,disc` those of these scenes), with what
 //! was found; otherwise a part of them is taken.
 
-use deltaq::{Choice, Sensitivities, Settings, choices, derive, prepare, sensitivities, setting};
+use motion::{Choice, Sensitivities, Settings, choices, derive, prepare, sensitivities, setting};
 use reference::{DoubleDouble, Question, Wide, reference};
 use scene::Scene;
 

@@ -2,11 +2,11 @@
 
 use std::collections::HashMap;
 
-use deltaq::{
-    CHETAEV, Choice, Metric, Motion, REMOVED_CONSTRAINT, Settings, VAKONOMIC, VAKONOMIC_COSTATE, derive, setting, solve,
-};
 use equations::{Compiled, Derivation, DerivationError, Equations, Formulation, Outputs};
 use mechanics::{ConstantsRule, Removal, State, System, complete_removal_start};
+use motion::{
+    CHETAEV, Choice, Metric, Motion, REMOVED_CONSTRAINT, Settings, VAKONOMIC, VAKONOMIC_COSTATE, derive, setting, solve,
+};
 use nalgebra::{DMatrix, DVector};
 use proptest::test_runner::{Config, RngSeed, TestCaseError, TestRunner};
 use random::{Kind, recipes_of};

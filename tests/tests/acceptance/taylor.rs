@@ -1,9 +1,9 @@
 //! Taylor series of motions: their slope against the rates, and whole motions against DOP853.
 
-use deltaq::{CHETAEV, Settings, VAKONOMIC};
 use equations::Equations;
 use integrate::{Method, Projection};
 use mechanics::ConstantsRule;
+use motion::{CHETAEV, Settings, VAKONOMIC};
 use scene::Scene;
 
 use super::support::{all_equations, equations, known_gap, motion_of, must, scenes, some_multipliers};
@@ -16,7 +16,7 @@ fn defect(scene: &Scene, equations: Equations, constants: &[f64]) -> f64 {
     let settings = Settings { method: Some(Method::Taylor), ..Settings::default() };
     let rule = ConstantsRule::Given(constants.to_vec());
     let name = equations.formulation;
-    let ready = deltaq::prepare(deltaq::setting(scene), equations, &rule, &settings);
+    let ready = motion::prepare(motion::setting(scene), equations, &rule, &settings);
     let mut ready = ready.unwrap_or_else(|e| panic!("{}, {name}: {e}", scene.name));
     let (t, n) = (scene.start.t, ready.start.len());
     let mut c = vec![0.0; (ORDER + 1) * n];

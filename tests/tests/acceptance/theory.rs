@@ -1,7 +1,8 @@
 //! Numbers of `docs/theory.md` and `docs/removal.md`, each with a case in which a hypothesis is dropped.
 
-use deltaq::{Answer, CHETAEV, FIRST_ORDER, KAPPA, Motion, REMOVED_CONSTRAINT, VAKONOMIC, membership, solve_choice};
+use comparison::{Answer, membership};
 use mechanics::ConstantsRule;
+use motion::{CHETAEV, FIRST_ORDER, KAPPA, Motion, REMOVED_CONSTRAINT, VAKONOMIC, solve_choice};
 use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
 use random::realization::with_friction;
 use scene::Scene;

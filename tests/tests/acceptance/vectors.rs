@@ -1,7 +1,7 @@
 //! Scenes written by vectors and rotations move as those whose components were worked out by hand.
 
-use deltaq::{CHETAEV, Settings, VAKONOMIC, solve_choice};
 use mechanics::ConstantsRule;
+use motion::{CHETAEV, Settings, VAKONOMIC, solve_choice};
 use scene::Scene;
 
 use super::support::{choice, gap, must, tight};

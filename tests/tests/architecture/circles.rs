@@ -91,8 +91,8 @@ fn modules_form_no_circle() {
     }
     assert!(offences.is_empty(), "{offences}");
     // what is known to be there is found
-    let deltaq = &crates.iter().find(|(name, _)| name == "deltaq").expect("a crate").1;
-    assert!(deltaq["motion"].contains("error") && deltaq["ensemble/run"].contains("single_run"), "{deltaq:?}");
+    let motion = &crates.iter().find(|(name, _)| name == "motion").expect("a crate").1;
+    assert!(motion["motion"].contains("error") && motion["ensemble/run"].contains("single_run"), "{motion:?}");
 }
 
 /// The arrows between made-up files, by path below the folder of the crate.

@@ -1,12 +1,12 @@
 //! Every scene, and systems that nobody chose: discrete motions of order 8 come to the derived ones.
 
 use catalogue::{SCENES, find};
-use deltaq::{
-    Choice, Motion, REMOVED_CONSTRAINT, Settings, SolveError, Steps, VAKONOMIC, choices, solve_by_steps, solve_choice,
-};
 use discrete::{Composition, DiscreteError};
 use integrate::Method;
 use mechanics::ConstantsRule;
+use motion::{
+    Choice, Motion, REMOVED_CONSTRAINT, Settings, SolveError, Steps, VAKONOMIC, choices, solve_by_steps, solve_choice,
+};
 use random::{Case, Kind, draw_recipe};
 use scene::Scene;
 

@@ -2,12 +2,12 @@
 
 use bench::exponent;
 use catalogue::find;
-use deltaq::{
-    CHETAEV, Choice, Motion, REMOVED_CONSTRAINT, Settings, Steps, VAKONOMIC, choices, solve_by_steps, solve_choice,
-};
 use discrete::Composition;
 use equations::Formulation;
 use mechanics::ConstantsRule;
+use motion::{
+    CHETAEV, Choice, Motion, REMOVED_CONSTRAINT, Settings, Steps, VAKONOMIC, choices, solve_by_steps, solve_choice,
+};
 use scene::Scene;
 
 /// Errors under this times the size of the motion are round-off; over [`COARSE`] they tell no order yet.

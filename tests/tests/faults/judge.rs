@@ -1,7 +1,7 @@
 //! Judges: what is wrong with equations, from the values of `L`, `f` and `Q` alone.
 
-use deltaq::{CHETAEV, FIRST_ORDER, PRESCRIBED, REDUCED_CHETAEV};
 use equations::Formulation;
+use motion::{CHETAEV, FIRST_ORDER, PRESCRIBED, REDUCED_CHETAEV};
 use nalgebra::DVector;
 use symbolic::Symbol;
 
@@ -80,7 +80,7 @@ impl Principle {
             own if [CHETAEV, REDUCED_CHETAEV].contains(&own) => Principle::Chetaev,
             own if own == FIRST_ORDER => Principle::FirstOrder { epsilon: KAPPA },
             own if own == PRESCRIBED => Principle::Prescribed,
-            own if own == deltaq::KAPPA => Principle::Vakonomic { kappa: KAPPA },
+            own if own == motion::KAPPA => Principle::Vakonomic { kappa: KAPPA },
             _ => Principle::Vakonomic { kappa: 0.0 },
         }
     }

@@ -18,9 +18,9 @@ use std::panic::Location;
 use std::path::Path;
 use std::time::Instant;
 
-use deltaq::{FORMS, FORMULATIONS, over_threads};
 use equations::Formulation;
 use mechanics::{Parameter, Removal};
+use motion::{FORMS, FORMULATIONS, over_threads};
 use scene::Scene;
 
 use road::{Outcome, Stage, Trial};

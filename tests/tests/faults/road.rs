@@ -1,7 +1,7 @@
 //! Derivation paths from a system to its equations, and their judges.
 
-use deltaq::FORMS;
 use equations::{Derivation, Formulation, Plan};
+use motion::FORMS;
 use symbolic::faults::{self, Chance};
 
 use super::judge::{self, Findings, Principle};

@@ -3,9 +3,9 @@
 
 mod families;
 
-use deltaq::{CHETAEV, Ensemble, EnsembleOptions, Metric, Motion, Settings, choices, derive, error_estimates, setting};
 use equations::Outputs;
 use families::{Draw, FAMILIES, Family};
+use motion::{CHETAEV, Ensemble, EnsembleOptions, Metric, Motion, Settings, choices, derive, error_estimates, setting};
 use reference::{DoubleDouble, Entry, Question, Reference, ReferenceError, reference};
 use scene::Scene;
 use symbolic::Scalar;
@@ -94,7 +94,7 @@ fn judge(scene: &Scene, motion: &mut Motion, times: &[f64]) -> Result<Reference,
     reference(&question, times, ACCURACY * size)
 }
 
-fn chetaev(scene: &Scene) -> deltaq::Choice {
+fn chetaev(scene: &Scene) -> motion::Choice {
     choices(scene).into_iter().find(|c| c.formulation == CHETAEV).expect("it is there")
 }
 
@@ -127,7 +127,7 @@ fn measure(scene: &Scene, for_judge: &Scene, alone: &mut Tally, member: &mut Tal
         tally.told += 1;
         println!("  told: {text}");
     };
-    let mut motion = match deltaq::solve_choice(scene, &choice, &settings) {
+    let mut motion = match motion::solve_choice(scene, &choice, &settings) {
         Ok(motion) => motion,
         Err(error) => {
             member.told += 1;

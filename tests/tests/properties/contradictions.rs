@@ -1,6 +1,7 @@
 //! Motions, decisions, proofs and Frobenius' test on random systems, side by side as `compare` has them.
 
-use deltaq::{Settings, choices, compare_unfitted};
+use comparison::compare_unfitted;
+use motion::{Settings, choices};
 use proptest::test_runner::TestCaseError;
 use random::{Kind, Recipe, recipes_of};
 

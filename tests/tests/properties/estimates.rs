@@ -1,7 +1,7 @@
 //! The error estimate of a motion is near its error, and over it.
 
-use deltaq::{Choice, Form, Motion, Settings, choices, error_estimate, setting, solve_choice};
 use integrate::Method;
+use motion::{Choice, Form, Motion, Settings, choices, error_estimate, setting, solve_choice};
 use random::{Batch, Kind};
 use scene::Scene;
 
@@ -26,7 +26,7 @@ fn measured(scene: &Scene, choice: &Choice) -> Option<(f64, f64)> {
     let mut judge = motion(scene, choice, &sharp)?;
     let estimate = error_estimate(&mut given, setting(scene)).expect("readable");
     let doubt = error_estimate(&mut judge, setting(scene)).expect("readable").absolute;
-    let mut metric = deltaq::Metric::new(&scene.system).expect("compiles");
+    let mut metric = motion::Metric::new(&scene.system).expect("compiles");
     let error = given.grid(200).into_iter().fold(0.0_f64, |error, t| {
         let (here, there) = (given.at(t).expect("readable"), judge.at(t).expect("readable"));
         error.max(metric.distance(t, &there.coordinates, &there.velocities, &here.coordinates))

@@ -6,7 +6,8 @@
 use std::collections::BTreeSet;
 use std::mem::swap;
 
-use deltaq::{CHETAEV, Membership, Pairing, SolveError, choices};
+use comparison::{Membership, Pairing};
+use motion::{CHETAEV, SolveError, choices};
 use program::parallel::map;
 use proptest::strategy::ValueTree;
 use random::{Batch, CHECKS, Case, Fault, Finding, Findings, Kind, Word, draw_recipe, equations, make, null_test};

@@ -1,7 +1,7 @@
 //! The chosen form of the equations has the rates of the plain one.
 
-use deltaq::{Motion, REMOVED_CONSTRAINT, VAKONOMIC};
 use equations::{Compiled, Plan};
+use motion::{Motion, REMOVED_CONSTRAINT, VAKONOMIC};
 use proptest::test_runner::TestCaseError;
 use random::{Case, Kind, Recipe, Which, recipes_of};
 use reference::{DoubleDouble, Instant, Wide};
@@ -89,8 +89,8 @@ fn rates_of_the_chosen_form_are_those_of_the_plain_one_on_random_systems() {
 }
 
 /// Blocks as the formulation derives them: those in quasi-velocities are of intermediate quantities.
-fn as_derived() -> deltaq::Settings {
-    deltaq::Settings { form: deltaq::Form::Named, ..deltaq::Settings::default() }
+fn as_derived() -> motion::Settings {
+    motion::Settings { form: motion::Form::Named, ..motion::Settings::default() }
 }
 
 #[test]
@@ -98,8 +98,8 @@ fn scenes_need_no_factorization_and_have_the_rates_of_the_plain_form() {
     let mut count = 0;
     for (name, text) in catalogue::SCENES {
         let scene = scene::Scene::parse(name, text).expect("a scene");
-        for choice in deltaq::choices(&scene) {
-            let Ok(mut motion) = deltaq::solve_choice(&scene, &choice, &as_derived()) else { continue };
+        for choice in motion::choices(&scene) {
+            let Ok(mut motion) = motion::solve_choice(&scene, &choice, &as_derived()) else { continue };
             let Some(found) = compare(&mut motion) else { continue };
             assert!(found.worst <= 1.0, "{name}, {}: {:.1e}", choice.label, found.worst);
             assert_eq!(found.left, 0, "{name}, {}: a block is left", choice.label);
@@ -113,14 +113,14 @@ fn scenes_need_no_factorization_and_have_the_rates_of_the_plain_form() {
 fn motions_on_which_pivots_go_through_zero_are_those_of_the_plain_form() {
     for (name, formulation) in [("trailer", VAKONOMIC), ("ball-in-cone", REMOVED_CONSTRAINT)] {
         let scene = catalogue::find(name, &[]).expect("a scene");
-        let choices = deltaq::choices(&scene);
+        let choices = motion::choices(&scene);
         let choice = choices.iter().find(|c| c.formulation == formulation).expect("a choice");
-        let many_steps = deltaq::Settings { method: Some(integrate::Method::Dop853), ..as_derived() };
-        let mut motion = deltaq::solve_choice(&scene, choice, &many_steps).expect("a motion");
+        let many_steps = motion::Settings { method: Some(integrate::Method::Dop853), ..as_derived() };
+        let mut motion = motion::solve_choice(&scene, choice, &many_steps).expect("a motion");
         let (evaluations, fallbacks) = (motion.work.evaluations, motion.form.fallbacks);
         assert!(fallbacks > 0 && 20 * fallbacks < evaluations, "{name}: {fallbacks} of {evaluations}");
-        let plain = deltaq::Settings { tolerance: 1e-11, plain: true, ..as_derived() };
-        let mut plain = deltaq::solve_choice(&scene, choice, &plain).expect("a motion");
+        let plain = motion::Settings { tolerance: 1e-11, plain: true, ..as_derived() };
+        let mut plain = motion::solve_choice(&scene, choice, &plain).expect("a motion");
         for t in motion.grid(20) {
             let other = plain.at(t).expect("readable").coordinates;
             let allowed = motion.difference_of_runs(t).expect("readable").iter().fold(1e-11_f64, |a, d| a.max(d.abs()));

@@ -18,13 +18,13 @@ const ON_THE_CONSTRAINT: f64 = 1e-12;
 fn starts_are_on_the_constraint_and_regular_and_removals_remove() {
     for_all(256, &recipes_of(&Kind::ALL), |recipe: Recipe| {
         let scene = recipe.scene("random");
-        let mut metric = deltaq::Metric::new(&scene.system).expect("compiles");
+        let mut metric = motion::Metric::new(&scene.system).expect("compiles");
         let residual = metric.constraint_residual(scene.start.t, &scene.start.q, &scene.start.v);
         prop_assert!(residual < ON_THE_CONSTRAINT, "residual {residual:e}");
         prop_assert_eq!(scene.system.constraints.len(), recipe.h());
         let regular = check_regularity(&scene.system, &scene.start);
         prop_assert!(regular.is_ok(), "{regular:?}");
-        for removal in deltaq::removals(&scene).expect("removable") {
+        for removal in motion::removals(&scene).expect("removable") {
             let verified = removal.verify(&scene.system);
             prop_assert!(verified.is_ok(), "{verified:?}");
         }
@@ -40,8 +40,8 @@ fn scenes_survive_being_written_to_a_file() {
         let again = Scene::parse("random", &text).map_err(|e| TestCaseError::fail(format!("{e}\n{text}")))?;
         prop_assert_eq!(&again.start, &scene.start);
         let (mut one, mut two) = (
-            deltaq::Metric::new(&scene.system).expect("compiles"),
-            deltaq::Metric::new(&again.system).expect("compiles"),
+            motion::Metric::new(&scene.system).expect("compiles"),
+            motion::Metric::new(&again.system).expect("compiles"),
         );
         let (q, v) = (&scene.start.q, &scene.start.v);
         let lengths = [&mut one, &mut two].map(|m| m.length(0.3, q, v, v));
@@ -77,8 +77,8 @@ fn a_false_claim_is_shrunk_to_a_small_system() {
     let moves = |recipe: &Recipe| {
         // one motion says it, and all others are not asked
         let scene = recipe.scene("small");
-        let chetaev = deltaq::choices(&scene).into_iter().find(|choice| choice.formulation == deltaq::CHETAEV)?;
-        let mut motion = deltaq::solve_choice(&scene, &chetaev, &deltaq::Settings::default()).ok()?;
+        let chetaev = motion::choices(&scene).into_iter().find(|choice| choice.formulation == motion::CHETAEV)?;
+        let mut motion = motion::solve_choice(&scene, &chetaev, &motion::Settings::default()).ok()?;
         let (start, end) = (motion.at(motion.start()).ok()?, motion.at(scene.start.t + scene.duration).ok()?);
         let ways = end.coordinates.iter().zip(&start.coordinates).map(|(a, b)| (a - b).abs());
         let way = ways.fold(0.0, f64::max);
@@ -94,8 +94,8 @@ fn a_false_claim_is_shrunk_to_a_small_system() {
         assert!(small.mass_terms.is_empty() && small.potential.is_empty(), "superfluous terms: {small:?}");
         // what is written is what was found: the file opens, and its motions can be compared
         let again = Scene::parse("small", &scene.to_toml()).expect("opens");
-        let choices = deltaq::choices(&again);
-        deltaq::compare(again, choices, Vec::new(), &deltaq::Settings::default()).expect("can be compared");
+        let choices = motion::choices(&again);
+        comparison::compare(again, choices, Vec::new(), &motion::Settings::default()).expect("can be compared");
         found += 1;
     }
     assert!(found > 0, "the claim is false on no system tried");
@@ -121,7 +121,7 @@ fn classes_are_those_that_their_kind_may_have() {
         if recipe.is_homogeneous() && recipe.h() > 0 && system.is_autonomous() {
             // f = 0 at twice the velocities, too
             let twice: Vec<f64> = start.v.iter().map(|v| 2.0 * v).collect();
-            let mut metric = deltaq::Metric::new(&system).expect("compiles");
+            let mut metric = motion::Metric::new(&system).expect("compiles");
             let residual = metric.constraint_residual(start.t, &start.q, &twice);
             let size = 1.0 + twice.iter().map(|v| v * v).sum::<f64>();
             assert!(residual < ON_THE_CONSTRAINT * size, "{kind} {index}: {residual:e}");

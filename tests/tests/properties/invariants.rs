@@ -1,6 +1,6 @@
 //! Invariants that equations list: all of them are constant, and none is missing.
 
-use deltaq::{CERTAINTY, Motion, Setting};
+use motion::{CERTAINTY, Motion, Setting};
 use proptest::test_runner::TestCaseError;
 use random::realization::{Realization, realize};
 use random::{Case, Kind, Recipe, Which, recipes_of};

@@ -8,10 +8,10 @@ mod errors;
 
 use std::cell::Cell;
 
-use deltaq::{CHETAEV, Choice, Metric, Motion, REMOVED_CONSTRAINT, Settings, VAKONOMIC, choices, solve_choice};
 use equations::Formulation;
 use integrate::Method;
 use mechanics::ConstantsRule;
+use motion::{CHETAEV, Choice, Metric, Motion, REMOVED_CONSTRAINT, Settings, VAKONOMIC, choices, solve_choice};
 use random::{CHECKS, Case, Classes, Fault, Finding, Kind, NullTest, Removed, Word, draw_recipe, make, null_test};
 use scene::Scene;
 

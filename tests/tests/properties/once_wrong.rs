@@ -1,6 +1,6 @@
 //! Systems on which a claim failed once: what was wrong stood between the motions and the word.
 
-use deltaq::Answer;
+use comparison::Answer;
 use random::{Batch, Classes, Fault, Kind, Recipe, Word, draw_recipe};
 use scene::Scene;
 
@@ -67,7 +67,7 @@ duration = 1.5
 #[test]
 fn what_round_off_leaves_of_forces_that_balance_is_no_motion() {
     let scene = Scene::parse("held", HELD).expect("a scene");
-    let found = deltaq::membership(&scene, 1.5).expect("decided").expect("constrained");
+    let found = comparison::membership(&scene, 1.5).expect("decided").expect("constrained");
     assert!(found.contradiction().is_none(), "{:?}", found.contradiction());
     assert!(matches!(found.answer(), Answer::Some { .. } | Answer::SomeProved), "{:?}", found.answer());
     assert_eq!(found.decision.set.dimension(), 2);

@@ -102,7 +102,7 @@ impl Suite {
             self.theorems.iter().map(|&(theorem, cases)| (theorem, drawn(&self.kinds, cases))).collect();
         let most = drawn.iter().map(|(_, recipes)| recipes).max_by_key(|recipes| recipes.len()).expect("a theorem");
         assert!(drawn.iter().all(|(_, recipes)| most.starts_with(recipes)), "theorems have systems of their own");
-        deltaq::over_threads(0, most.len(), |i| {
+        motion::over_threads(0, most.len(), |i| {
             checked(&most[i], |theorem| drawn.iter().any(|(of, recipes)| *of == theorem && i < recipes.len()))
         })
     }

@@ -1,7 +1,7 @@
 //! Errors of a run.
 
 use catalogue::NotFound;
-use deltaq::SolveError;
+use motion::SolveError;
 
 /// Why a scene cannot be put to the engine, or compared with it.
 #[derive(Debug, thiserror::Error)]

@@ -70,7 +70,9 @@ fn headline(studies: &[Study]) -> String {
         ),
         ("", none) => format!("On {none} it was not shown that the engine's motion converges to Chetaev's."),
         (some, rest) => {
-            format!("On {some} the engine's motion converges to Chetaev's at first order; on {rest} that was not shown.")
+            format!(
+                "On {some} the engine's motion converges to Chetaev's at first order; on {rest} that was not shown."
+            )
         }
     }
 }
@@ -153,7 +155,10 @@ fn picture(study: &Study) -> Result<String, PictureError> {
     curves.push(curve(format!("to {first}, extrapolated, 1 MHz"), Style::Member(3), &study.yielding, &extrapolated));
     curves.push(curve(format!("to {first}, contacts as shipped"), Style::Member(2), &study.shipped, &as_shipped));
     // a line of first order below the others
-    let guide = study.hard.first().map(|from| study.hard.iter().map(|l| (l.dt, 0.1 * from.distances[0] * l.dt / from.dt)).collect());
+    let guide = study
+        .hard
+        .first()
+        .map(|from| study.hard.iter().map(|l| (l.dt, 0.1 * from.distances[0] * l.dt / from.dt)).collect());
     curves.extend(guide.map(|points| Curve { label: "∝ dt".into(), style: Style::Threshold, points }));
     let finding = study.finding();
     let title = match study.targets.len() > 1 && finding.holds() {

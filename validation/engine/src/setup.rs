@@ -1,6 +1,6 @@
 //! From a scene to a ball, a surface and a start.
 
-use deltaq::Metric;
+use motion::Metric;
 use rapier3d_f64::math::Vector;
 use scene::Scene;
 

@@ -1,7 +1,7 @@
 //! The limit of the engine's motion as its time step shrinks.
 
 use bench::exponent;
-use deltaq::{CHETAEV, Ending, Settings, VAKONOMIC_COSTATE, choices, solve_choice};
+use motion::{CHETAEV, Ending, Settings, VAKONOMIC_COSTATE, choices, solve_choice};
 use scene::Scene;
 
 use crate::{Ball, Contacts, EngineError, Mapping, Pose, Run, Setup, Trajectory};

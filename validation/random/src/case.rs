@@ -1,11 +1,11 @@
 //! One random system with its motions, on which claims are tested.
 
-use deltaq::{
-    CHETAEV, Ending, Gap, Membership, Metric, Motion, REMOVED_CONSTRAINT, Sampling, Setting, Settings, SolveError,
-    TIGHTER, VAKONOMIC, Verdict, compare_motions_by, membership, setting,
-};
+use comparison::{Gap, Membership, Sampling, Verdict, compare_motions_by, membership};
 use equations::{Equations, Formulation};
 use mechanics::{ConstantsRule, Removal, SingularValues, State, System};
+use motion::{
+    CHETAEV, Ending, Metric, Motion, REMOVED_CONSTRAINT, Setting, Settings, SolveError, TIGHTER, VAKONOMIC, setting,
+};
 use nalgebra::DMatrix;
 use referees::maggi::{self, MaggiError};
 use scene::Scene;
@@ -103,7 +103,7 @@ impl Case {
         let chetaev = run(equations(system, CHETAEV, None)?, &[])?;
         let vakonomic = run(equations(system, VAKONOMIC, None)?, &scene.multipliers)?;
         let mut removed = Vec::new();
-        for removal in deltaq::removals(scene)? {
+        for removal in motion::removals(scene)? {
             let equations = equations(system, REMOVED_CONSTRAINT, Some(&removal))?;
             let costates = some_costates(recipe, &equations, removal.memory.len());
             let motion = run(equations.clone(), &free_constants(&equations, &costates))?;
@@ -304,7 +304,7 @@ fn solve(
     let mut best: Option<Motion> = None;
     for tolerance in tolerances(floor) {
         let settings = Settings { tolerance, max_steps: MAX_STEPS, plain, ..Settings::default() };
-        let motion = deltaq::solve(setting, equations.clone(), &rule, &settings)?;
+        let motion = motion::solve(setting, equations.clone(), &rule, &settings)?;
         if motion.is_complete() {
             return Ok(motion);
         }

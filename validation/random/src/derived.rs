@@ -1,8 +1,8 @@
 //! Equations by a formulation.
 
-use deltaq::{Choice, SolveError, derive};
 use equations::{Equations, Formulation};
 use mechanics::{ConstantsRule, Removal, System};
+use motion::{Choice, SolveError, derive};
 
 /// The equations of a formulation.
 ///

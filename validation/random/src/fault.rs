@@ -1,6 +1,6 @@
 //! Something that is made wrong on purpose, so that claims are seen to fail.
 
-use deltaq::SolveError;
+use motion::SolveError;
 use scene::Scene;
 
 use super::Case;

@@ -1,7 +1,8 @@
 //! Is the control flagged where it is wrong, and only there? Judged by Maggi's equations: their residual on
 //! the control's motion, and their own motion beside it. They share nothing with what flags it.
 
-use deltaq::{CERTAINTY, Gap, Metric, Motion, Setting, SolveError};
+use comparison::Gap;
+use motion::{CERTAINTY, Metric, Motion, Setting, SolveError};
 use referees::maggi::{self, Maggi, MaggiError};
 
 use crate::Word;

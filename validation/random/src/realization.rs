@@ -13,10 +13,10 @@
 
 use std::collections::HashMap;
 
-use deltaq::{CHETAEV, Metric, Motion, Setting, Settings, SolveError, solve};
 use diffsol_methods::BDF;
 use integrate::Method;
 use mechanics::{ConstantsRule, Parameter, Removal, State, System, complete_removal_start};
+use motion::{CHETAEV, Metric, Motion, Setting, Settings, SolveError, solve};
 use nalgebra::{DMatrix, DVector};
 use symbolic::{CompileError, Expr, Graph, Symbol};
 

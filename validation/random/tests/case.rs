@@ -1,6 +1,7 @@
 //! Limits that all claims share.
 
-use deltaq::{Metric, Settings, choices, compare_motions, solve_choice};
+use comparison::compare_motions;
+use motion::{Metric, Settings, choices, solve_choice};
 use random::judged::{floor, tolerances};
 use random::{Case, Kind, Removed, Word, draw_recipe};
 use scene::Scene;

@@ -1,6 +1,6 @@
 //! What is said of a fit where the decision denies one.
 
-use deltaq::Gap;
+use comparison::Gap;
 use random::judged::{denied, visible};
 use random::{Case, Findings, Kind, Which, Word, draw_recipe};
 

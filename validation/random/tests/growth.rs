@@ -1,6 +1,6 @@
 //! What is said of a growth beside the predicted one.
 
-use deltaq::{Growth, LeadingTerm};
+use comparison::{Growth, LeadingTerm};
 use random::judged::judge_growth;
 use random::{Findings, Word};
 

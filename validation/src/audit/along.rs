@@ -3,8 +3,8 @@
 use std::collections::HashMap;
 
 use anyhow::{Context as _, Result};
-use deltaq::{REMOVED_CONSTRAINT, Settings, setting, solve};
 use mechanics::ConstantsRule;
+use motion::{REMOVED_CONSTRAINT, Settings, setting, solve};
 
 use super::context::Context;
 use random::equations;

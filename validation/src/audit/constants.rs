@@ -1,12 +1,10 @@
 //! What the paper's constants of integration are: numbers for it.
 
 use anyhow::{Context as _, Result};
-use deltaq::{
-    CHETAEV, Metric, Motion, REMOVED_CONSTRAINT, Setting, Settings, VAKONOMIC, best_fit, compare_motions, setting,
-    solve,
-};
+use comparison::{best_fit, compare_motions};
 use equations::Formulation;
 use mechanics::{ConstantsRule, Removal};
+use motion::{CHETAEV, Metric, Motion, REMOVED_CONSTRAINT, Setting, Settings, VAKONOMIC, setting, solve};
 use scene::Scene;
 
 use random::equations;

@@ -7,7 +7,7 @@
 //! Ṗ_k = −Σ_i (p_i ∂V_i/∂w_k + L_{q_i} ∂q_i/∂w_k) − Σ_j P_j ∂B_j/∂w_k .
 //! ```
 
-use deltaq::REMOVED_CONSTRAINT;
+use motion::REMOVED_CONSTRAINT;
 use std::collections::HashMap;
 
 use anyhow::{Context as _, Result};

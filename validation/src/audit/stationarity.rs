@@ -6,9 +6,9 @@
 use std::collections::HashMap;
 
 use anyhow::{Context as _, Result, anyhow};
-use deltaq::{REMOVED_CONSTRAINT, Setting, Settings, solve};
 use integrate::{DenseOutput, EvaluationError, Options, Problem, Start, integrate};
 use mechanics::{ConstantsRule, State};
+use motion::{REMOVED_CONSTRAINT, Setting, Settings, solve};
 use scene::Scene;
 use symbolic::{Evaluator, Expr, Symbol};
 

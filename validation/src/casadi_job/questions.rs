@@ -3,12 +3,12 @@
 use std::collections::HashMap;
 
 use anyhow::{Context, Result, bail};
-use deltaq::{
-    Answer, CHETAEV, Choice, Motion, REMOVED_CONSTRAINT, Settings, VAKONOMIC, VAKONOMIC_COSTATE, choices, setting,
-    solve,
-};
+use comparison::Answer;
 use equations::{Compiled, Derivation, Equations, Formulation, Role};
 use mechanics::{ConstantsRule, complete_removal_start};
+use motion::{
+    CHETAEV, Choice, Motion, REMOVED_CONSTRAINT, Settings, VAKONOMIC, VAKONOMIC_COSTATE, choices, setting, solve,
+};
 use scene::Scene;
 use serde::Serialize;
 use symbolic::SplitMix;
@@ -118,7 +118,7 @@ impl Question {
     /// Where a motion of ours cannot be read off.
     pub fn new(scene: &Scene, text: &str, amount: Amount) -> Result<Question> {
         // An automatic removal brings symbols of its own into the graph: first the removals, then the copy.
-        let removals = deltaq::removals(scene).unwrap_or_default();
+        let removals = motion::removals(scene).unwrap_or_default();
         let whole = Scene { removals, ..scene.clone() };
         let mut cases = Vec::new();
         for choice in choices(scene) {
@@ -141,7 +141,7 @@ impl Question {
     /// # Errors
     /// Where it cannot be decided.
     pub fn with_decision(mut self, scene: &Scene) -> Result<Question> {
-        let Some(found) = deltaq::membership(scene, scene.start.t + scene.duration)? else { return Ok(self) };
+        let Some(found) = comparison::membership(scene, scene.start.t + scene.duration)? else { return Ok(self) };
         let dimension = match found.answer() {
             Answer::NoneProved { .. } | Answer::None { .. } => None,
             Answer::SomeProved | Answer::Some { .. } => Some(found.decision.set.dimension()),

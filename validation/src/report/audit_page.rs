@@ -9,7 +9,7 @@ use symbolic::Vanishing;
 use crate::audit::{
     Constants, Example, Finding, Form, Paper, STATEMENT, Stationarity, Variant, Verdict, cone, refusal,
 };
-use deltaq::words::{enumerate, short};
+use comparison::words::{enumerate, short};
 use pages::{DataPackage, Table, fill};
 use program::File;
 

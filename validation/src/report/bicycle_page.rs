@@ -1,12 +1,12 @@
 //! The page about the benchmark bicycle.
 
 use anyhow::{Context, Result, bail};
-use deltaq::{CHETAEV, Choice, default_constants};
 use linear::{Eigenvalue, Sweep, SweepPoint, sweep};
+use motion::{CHETAEV, Choice, default_constants};
 use nalgebra::Complex;
 use serde_json::{Value, json};
 
-use deltaq::words::short;
+use comparison::words::short;
 use pages::{Table, fill};
 use pages::{pairs, sweep_picture};
 use program::File;
@@ -102,13 +102,11 @@ impl BicycleReport {
             ],
         );
         let [low, high] = [self.changes[0].1, self.changes[1].1];
-        let title = format!("The bicycle is linearly stable from {low:.2} to {high:.2} m/s: eigenvalues over its speed");
+        let title =
+            format!("The bicycle is linearly stable from {low:.2} to {high:.2} m/s: eigenvalues over its speed");
         Ok(vec![
             File { path: "evidence/bicycle.md".into(), text: page },
-            File {
-                path: "evidence/bicycle.svg".into(),
-                text: sweep_picture(&title, &self.drawn)?,
-            },
+            File { path: "evidence/bicycle.svg".into(), text: sweep_picture(&title, &self.drawn)? },
         ])
     }
 }
@@ -126,7 +124,7 @@ fn bicycle((from, to, count): (f64, f64, usize)) -> Result<Sweep> {
         &scene,
         &choice,
         &["lean", "steer"],
-        ("v", &deltaq::equidistant(from, to, count).collect::<Vec<_>>()),
+        ("v", &motion::equidistant(from, to, count).collect::<Vec<_>>()),
         false,
     )?)
 }

@@ -1,7 +1,8 @@
 //! What is said of the control on scenes, and what Maggi's equations say of that.
 
-use deltaq::words::{enumerate, short};
-use deltaq::{CHETAEV, Comparison, Metric, Setting, Verdict, setting};
+use comparison::words::{enumerate, short};
+use comparison::{Comparison, Verdict};
+use motion::{CHETAEV, Metric, Setting, setting};
 use random::{FoundOut, Unjudged, Word, found_out, referee};
 use review::substitution::SUBSTITUTION;
 
@@ -22,7 +23,7 @@ impl Control {
         let gap = &comparison.pair(chetaev, control)?.gap;
         let judged = || -> Result<FoundOut, Unjudged> {
             let scene = &comparison.scene;
-            let mut metric = Metric::new(&scene.system).map_err(deltaq::SolveError::from)?;
+            let mut metric = Metric::new(&scene.system).map_err(motion::SolveError::from)?;
             let setting = Setting { end: gap.end, ..setting(scene) };
             let mut motion = comparison.runs[control].outcome.clone()?;
             found_out(setting, &mut motion, gap, &mut referee(setting)?, &mut metric, 0.0)

@@ -4,8 +4,9 @@ use std::collections::BTreeMap;
 use std::fmt;
 
 use anyhow::{Context, Result, ensure};
-use deltaq::{Answer, Contradicted, Finding, Membership, Pairing, Section, VAKONOMIC, choices, membership};
+use comparison::{Answer, Contradicted, Finding, Membership, Pairing, Section, membership};
 use mechanics::Removal;
+use motion::{VAKONOMIC, choices};
 use program::parallel;
 use scene::{Number, Scene};
 use serde::Deserialize;
@@ -13,7 +14,7 @@ use serde_json::Value;
 
 use crate::report::folder_of;
 use catalogue::CLASSICS;
-use deltaq::words::short;
+use comparison::words::short;
 use pages::{DataPackage, Table};
 use program::File;
 
@@ -79,8 +80,11 @@ impl Asked {
     pub(super) fn link(&self) -> String {
         let name = &self.scene;
         let classic = CLASSICS.iter().any(|(known, _)| known == name);
-        let page =
-            if classic { format!("../../crates/catalogue/classics/{name}.toml") } else { format!("../{}/{name}.md", folder_of(name)) };
+        let page = if classic {
+            format!("../../crates/catalogue/classics/{name}.toml")
+        } else {
+            format!("../{}/{name}.md", folder_of(name))
+        };
         let numbers = if self.set.is_empty() { String::new() } else { format!(", {}", numbers(&self.set)) };
         let control = if self.control { ", the constraint put into $L$" } else { "" };
         format!("[{name}]({page}){numbers}{control}")

@@ -1,10 +1,10 @@
 //! The family `kappa` beside the law of first order, scene by scene.
 
 use anyhow::{Context, Result};
-use deltaq::words::short;
-use deltaq::{CHETAEV, FIRST_ORDER, KAPPA, Metric, Motion, Settings, choices, solve_choice};
+use comparison::words::short;
 use equations::Formulation;
 use mechanics::ConstantsRule;
+use motion::{CHETAEV, FIRST_ORDER, KAPPA, Metric, Motion, Settings, choices, solve_choice};
 use pages::Table;
 use program::parallel;
 use random::realization::distance;

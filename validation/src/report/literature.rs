@@ -4,14 +4,14 @@ use equations::Formulation;
 use std::collections::{BTreeMap, HashMap};
 
 use anyhow::{Context, Result, ensure};
-use deltaq::{CHETAEV, Settings, choices, formulation, solve_choice};
+use motion::{CHETAEV, Settings, choices, formulation, solve_choice};
 use program::parallel;
 use serde::de::Error;
 use serde::{Deserialize, Deserializer};
 use serde_json::Value;
 
 use crate::report::equivalence::{Asked, Found, Written};
-use deltaq::words::short;
+use comparison::words::short;
 use pages::{DataPackage, Table};
 use program::File;
 

@@ -1,12 +1,13 @@
 //! The first page of the reports.
 
-use deltaq::{Answer, CHETAEV, Comparison, Fit, Membership, REMOVED_CONSTRAINT, VAKONOMIC, Verdict};
+use comparison::{Answer, Comparison, Fit, Membership, Verdict};
 use equations::Formulation;
 use mechanics::Integrability;
+use motion::{CHETAEV, REMOVED_CONSTRAINT, VAKONOMIC};
 
 use crate::report::control::{self, Control};
 use crate::report::{AS_PRINTED, CASADI};
-use deltaq::words::{enumerate, reached, short};
+use comparison::words::{enumerate, reached, short};
 use pages::{Table, fill, membership};
 
 /// One page: verdict matrix, findings, further pages (`further`: a line and a path), how to regenerate. The
@@ -119,7 +120,8 @@ fn names<'a>(comparisons: impl Iterator<Item = &'a Comparison>) -> Vec<String> {
 
 fn headline(comparisons: &[&Comparison]) -> String {
     let same = comparisons.iter().filter(|c| all_same(c)).count();
-    let apart = names(comparisons.iter().copied().filter(|c| verdict_of(c, CHETAEV, VAKONOMIC) == Some(&Verdict::Different)));
+    let apart =
+        names(comparisons.iter().copied().filter(|c| verdict_of(c, CHETAEV, VAKONOMIC) == Some(&Verdict::Different)));
     let count = |wanted: fn(&Answer) -> bool| {
         comparisons
             .iter()

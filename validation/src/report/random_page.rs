@@ -5,7 +5,7 @@ use std::fmt::Write;
 use anyhow::Result;
 use serde_json::{Map, Value, json};
 
-use deltaq::words::{enumerate, or_dash, short};
+use comparison::words::{enumerate, or_dash, short};
 use pages::{DataPackage, Table, fill};
 use picture::{Axis, Curve, Panel, Picture, Style};
 use program::File;

@@ -1,17 +1,17 @@
 //! The page about realizations.
 
 use anyhow::{Context, Result};
-use deltaq::{
+use equations::Formulation;
+use mechanics::ConstantsRule;
+use motion::{
     CHETAEV, Metric, Motion, REMOVED_CONSTRAINT, Setting, Settings, SolveError, VAKONOMIC, choices, setting, solve,
     solve_choice,
 };
-use equations::Formulation;
-use mechanics::ConstantsRule;
 use scene::Scene;
 use serde_json::{Map, Value, json};
 
 use super::law_rows;
-use deltaq::words::short;
+use comparison::words::short;
 use pages::{DataPackage, Table, fill};
 use picture::{Axis, Curve, Picture, Style};
 use program::File;
@@ -230,7 +230,7 @@ fn of_scene(name: &str, duration: f64) -> Result<Vec<Approach>> {
     if scene.multipliers.iter().all(|mu| *mu == 0.0) {
         scene.multipliers = (0..scene.multipliers.len()).map(|i| MULTIPLIERS[i % 2]).collect();
     }
-    let settings = deltaq::Settings::default();
+    let settings = motion::Settings::default();
     let choice =
         |own: &Formulation| choices(&scene).into_iter().find(|c| c.formulation == own).context("no such formulation");
     let mut metric = Metric::new(&scene.system)?;
@@ -274,7 +274,7 @@ fn approaches(
     let system = with_kappa(setting.system, KAPPA);
     let (rule, settings) = (ConstantsRule::Given(multipliers.to_vec()), Settings::default());
     let mut between =
-        solve(Setting { system: &system, ..setting }, equations(&system, deltaq::KAPPA, None)?, &rule, &settings)?;
+        solve(Setting { system: &system, ..setting }, equations(&system, motion::KAPPA, None)?, &rule, &settings)?;
     Ok(vec![
         approach(FRICTION, Style::Chetaev, chetaev, metric, &plain(Realization::Friction))?,
         approach(ADDED_MASS, Style::Vakonomic, vakonomic, metric, &plain(Realization::AddedMass))?,
@@ -295,7 +295,8 @@ fn picture(name: &str, approaches: &[Approach]) -> Result<String> {
     // a line of slope -1 below the others
     let guide = first.map(|d| STRENGTHS.map(|n| (n, 0.1 * d * STRENGTHS[0] / n)).to_vec());
     let guide = guide.map(|points| Curve { label: "∝ 1/N".into(), style: Style::Threshold, points });
-    let (x, y) = (Axis::log("strength N (s⁻¹ of friction, kg/kg of mass)"), Axis::log("distance from the limit (m √kg)"));
+    let (x, y) =
+        (Axis::log("strength N (s⁻¹ of friction, kg/kg of mass)"), Axis::log("distance from the limit (m √kg)"));
     let rates: Vec<f64> = approaches.iter().filter_map(Approach::rate).collect();
     let falls = rates.len() == approaches.len() && rates.iter().all(|rate| RATE.contains(rate));
     let title = match falls {

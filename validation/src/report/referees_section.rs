@@ -3,7 +3,8 @@
 use std::collections::BTreeMap;
 
 use anyhow::Result;
-use deltaq::{CHETAEV, Comparison, Metric};
+use comparison::Comparison;
+use motion::{CHETAEV, Metric};
 use pages::{DataPackage, Table, fill};
 use program::File;
 

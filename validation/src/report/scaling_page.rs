@@ -4,8 +4,8 @@ use anyhow::Result;
 
 use crate::scaling::{FROM, Line, Point};
 use bench::Exponent;
-use deltaq::FORMS;
-use deltaq::words::{or_dash, short};
+use comparison::words::{or_dash, short};
+use motion::FORMS;
 use pages::{DataPackage, Table};
 use picture::{Axis, Curve, Picture, Style};
 use program::File;
@@ -130,13 +130,13 @@ const OUTLIER: f64 = 100.0;
 
 /// The name of a formulation in words.
 fn words(formulation: &str) -> String {
-    let named = deltaq::formulation(formulation).map(|known| known.title.to_owned());
+    let named = motion::formulation(formulation).map(|known| known.title.to_owned());
     let form = FORMS.iter().find(|form| form.name == formulation);
     let stem = formulation.trim_end_matches("-reduced");
     match (named, form) {
         (Ok(title), _) => title,
         (_, Some(_)) => {
-            let title = deltaq::formulation(stem).map_or(stem.to_owned(), |known| known.title.to_owned());
+            let title = motion::formulation(stem).map_or(stem.to_owned(), |known| known.title.to_owned());
             format!("{title}, quasi-velocities")
         }
         _ => formulation.replace("removed-constraint", "removed constraint"),

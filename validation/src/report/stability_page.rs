@@ -7,7 +7,7 @@ use serde_json::{Map, Value, json};
 use crate::stability::{
     Answering, CASES, Case, Cell, LONG_RUNS, LongRun, MAX_STEPS, MILLION, Texts, Verdict, long_runs, run, tolerance,
 };
-use deltaq::words::{enumerate, short};
+use comparison::words::{enumerate, short};
 use pages::{DataPackage, Table, fill};
 use picture::{Axis, Curve, Picture, Style};
 use program::File;
@@ -256,7 +256,8 @@ impl StabilityReport {
             let points: Vec<Option<(f64, f64)>> = cells.iter().map(|cell| error(cell)).collect();
             stops.extend(points.windows(2).filter(|pair| pair[1].is_none()).filter_map(|pair| pair[0]));
             // a line breaks where an answer is refused
-            let lines = points.split(Option::is_none).map(|points| points.iter().copied().flatten().collect::<Vec<_>>());
+            let lines =
+                points.split(Option::is_none).map(|points| points.iter().copied().flatten().collect::<Vec<_>>());
             let curve = |points| Curve { label: label.into(), style, points };
             curves.extend(lines.filter(|points| !points.is_empty()).map(curve));
         }

@@ -13,7 +13,10 @@ const BEGINS: &str = "Measured on ";
 pub const PAGES: [(&str, &[&str]); 10] = [
     ("evidence/films.md", &["crates/fit/src", "crates/vakonomic/src", "crates/chetaev/src"]),
     ("evidence/judge.md", &["validation/judge", "crates/judge/src", "crates/first-order/src"]),
-    ("evidence/engine.md", &["validation/engine/src", "crates/chetaev/src", "crates/integrate/src", "crates/deltaq/src"]),
+    (
+        "evidence/engine.md",
+        &["validation/engine/src", "crates/chetaev/src", "crates/integrate/src", "crates/motion/src"],
+    ),
     (
         "evidence/peers.md",
         &[
@@ -31,7 +34,7 @@ pub const PAGES: [(&str, &[&str]); 10] = [
             "crates/symbolic/src",
             "crates/equations/src",
             "crates/integrate/src",
-            "crates/deltaq/src",
+            "crates/motion/src",
         ],
     ),
     (
@@ -46,8 +49,14 @@ pub const PAGES: [(&str, &[&str]); 10] = [
     ),
     ("integrals/integrals.md", &["crates/integrals/src", "crates/decision/src/exact", "validation/integrals"]),
     ("measured/machine-code.md", &["crates/symbolic/src"]),
-    ("sweeps/sledge-sweep.md", &["crates/decision/src", "crates/integrate/src", "crates/deltaq/src"]),
-    ("sweeps/turntable-sweep.md", &["crates/decision/src", "crates/integrate/src", "crates/deltaq/src"]),
+    (
+        "sweeps/sledge-sweep.md",
+        &["crates/decision/src", "crates/integrate/src", "crates/motion/src", "crates/comparison/src"],
+    ),
+    (
+        "sweeps/turntable-sweep.md",
+        &["crates/decision/src", "crates/integrate/src", "crates/motion/src", "crates/comparison/src"],
+    ),
 ];
 
 /// Puts the line under a page of the folder of reports, instead of an older one.

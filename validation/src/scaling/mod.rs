@@ -9,12 +9,12 @@ use std::time::Instant;
 
 use anyhow::{Context, Result};
 use bench::{Exponent, exponent};
-use deltaq::{
+use equations::{Compiled, Derivation, Formulation};
+use mechanics::{ConstantsRule, Removal, System};
+use motion::{
     CHETAEV, Prepared, REDUCED_CHETAEV, REDUCED_VAKONOMIC, REMOVED_CONSTRAINT, Setting, Settings, VAKONOMIC,
     VAKONOMIC_COSTATE, default_constants, prepare, setting, solve,
 };
-use equations::{Compiled, Derivation, Formulation};
-use mechanics::{ConstantsRule, Removal, System};
 use scene::Scene;
 use serde::Serialize;
 

@@ -1,7 +1,7 @@
 //! The word for a motion, given what it should have been.
 
-use deltaq::{Ending, Metric, Motion, SolveError, TRUSTED};
 use equations::Outputs;
+use motion::{Ending, Metric, Motion, SolveError, TRUSTED};
 use serde::Serialize;
 
 use super::Known;

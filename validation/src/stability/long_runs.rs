@@ -1,14 +1,14 @@
 //! A million steps: what a long run loses of its energy, of its constraints and of its way.
 
 use anyhow::{Context, Result};
-use deltaq::{
-    CHETAEV, Choice, Metric, Motion, REMOVED_CONSTRAINT, Setting, Settings, Stepping, Steps, VAKONOMIC, derive_at,
-    solve, solve_by_steps,
-};
 use discrete::Composition;
 use equations::Formulation;
 use integrate::Method;
 use mechanics::ConstantsRule;
+use motion::{
+    CHETAEV, Choice, Metric, Motion, REMOVED_CONSTRAINT, Setting, Settings, Stepping, Steps, VAKONOMIC, derive_at,
+    solve, solve_by_steps,
+};
 use scene::Scene;
 use serde::{Serialize, Serializer};
 use symbolic::Evaluator;
@@ -214,11 +214,11 @@ impl Loss {
         let off = error > (BETTER_THAN_IT_KNOWS * estimate).max(FLOOR) || error.is_nan() || estimate.is_nan();
         match &motion.ending {
             _ if off && motion.doubt.is_none() => Verdict::Wrong { error, estimate, t: motion.end() },
-            deltaq::Ending::Stopped { t, cause } => Verdict::Refused { t: Some(*t), cause: cause.clone() },
-            deltaq::Ending::Completed if estimate <= deltaq::TRUSTED && motion.doubt.is_none() => {
+            motion::Ending::Stopped { t, cause } => Verdict::Refused { t: Some(*t), cause: cause.clone() },
+            motion::Ending::Completed if estimate <= motion::TRUSTED && motion.doubt.is_none() => {
                 Verdict::Accurate { error, estimate }
             }
-            deltaq::Ending::Completed => Verdict::Admitted { error, estimate },
+            motion::Ending::Completed => Verdict::Admitted { error, estimate },
         }
     }
 }

@@ -1,12 +1,12 @@
 //! Questions, and the answers of every method.
 
 use anyhow::{Context, Result};
-use deltaq::{Choice, Metric, Motion, Setting, Settings, TIGHTER, solve, solve_from};
 use diffsol_methods::{BDF, ESDIRK34, EVERY, TR_BDF2, TSIT45};
 use discrete::Composition;
 use equations::Equations;
 use integrate::Method;
 use mechanics::{ConstantsRule, State, System};
+use motion::{Choice, Metric, Motion, Setting, Settings, TIGHTER, solve, solve_from};
 use serde::{Deserialize, Serialize, Serializer};
 
 use super::judge::{Allowance, BETTER_THAN_IT_KNOWS, FLOOR, Verdict, judge};
@@ -215,7 +215,7 @@ impl Question {
 
     fn judged(&self, motion: &mut Motion, subject: &Subject, known: &mut Known, by: Answering) -> Result<Verdict> {
         let allowance = by.allowance(self.compared, self.each, subject.end);
-        let refused = |error: deltaq::SolveError| Verdict::Refused { t: None, cause: error.to_string() };
+        let refused = |error: motion::SolveError| Verdict::Refused { t: None, cause: error.to_string() };
         Ok(judge(motion, &mut Metric::new(&subject.measured)?, known, allowance).unwrap_or_else(refused))
     }
 }

@@ -1,9 +1,9 @@
 //! References of motions: closed forms, and equations derived by hand in other variables.
 
-use deltaq::{Choice, Ending, Motion, Setting, Settings, derive_at, solve};
 use equations::Formulation;
 use integrate::{DenseOutput, EvaluationError, Options, Problem, Start, Status, integrate};
 use mechanics::{ConstantsRule, State, System};
+use motion::{Choice, Ending, Motion, Setting, Settings, derive_at, solve};
 use referees::maggi::{self, Maggi};
 
 /// Coordinates over time.
@@ -138,7 +138,7 @@ fn derived(
     start: &State,
     end: f64,
     formulation: &'static Formulation,
-) -> Result<Motion, deltaq::SolveError> {
+) -> Result<Motion, motion::SolveError> {
     let constants = ConstantsRule::Zero;
     let choice = Choice { label: formulation.title.into(), formulation, removal: None, constants: constants.clone() };
     let settings = Settings { tolerance: MAGGI[0], max_steps: STEPS, ..Settings::default() };

@@ -2,8 +2,8 @@
 
 use std::time::Instant;
 
-use deltaq::{Prepared, SingleRun};
 use integrate::{Method, Options, Status, Work};
+use motion::{Prepared, SingleRun};
 
 use super::{Effort, Truth};
 

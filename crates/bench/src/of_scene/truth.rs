@@ -1,9 +1,9 @@
 //! The reference that errors are taken against.
 
 use anyhow::Result;
-use deltaq::{Metric, Prepared};
 use integrate::{Options, Status};
 use mechanics::State;
+use motion::{Metric, Prepared};
 use reference::{Kept, Question, reference};
 use scene::Scene;
 

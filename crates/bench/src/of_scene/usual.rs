@@ -1,14 +1,14 @@
 //! The default run: only the tolerance is given.
 
-use deltaq::{Choice, Setting, Settings, error_estimate, solve_from};
 use integrate::Method;
+use motion::{Choice, Setting, Settings, error_estimate, solve_from};
 
 use super::{Effort, Truth};
 
 /// The default tolerance of the commands.
 const TOLERANCE: f64 = 1e-10;
 
-/// A motion in the form and by the method that are chosen, as [`deltaq::solve_from`] gives it.
+/// A motion in the form and by the method that are chosen, as [`motion::solve_from`] gives it.
 #[derive(Clone, Debug)]
 pub struct Usual {
     /// Name of the form.

@@ -1,8 +1,8 @@
 //! Claims that fail where the forces of a system are forgotten in a motion.
 
-use deltaq::{CHETAEV, Motion, REMOVED_CONSTRAINT, SolveError, VAKONOMIC};
 use equations::Formulation;
 use mechanics::Removal;
+use motion::{CHETAEV, Motion, REMOVED_CONSTRAINT, SolveError, VAKONOMIC};
 use random::{Case, Kind, Removed, equations, free_constants};
 
 use super::{False, in_case};

@@ -1,7 +1,8 @@
 //! Limits of claims on motions: their error estimates, or the distance below which two motions cannot be
 //! distinguished.
 
-use deltaq::{CHETAEV, Gap, Metric, Motion, Settings, VAKONOMIC, compare_motions, growth};
+use comparison::{Gap, compare_motions, growth};
+use motion::{CHETAEV, Metric, Motion, Settings, VAKONOMIC};
 use random::{CHECKS, Finding, FoundOut, Which, Word, found_out, make, referee};
 use scene::Scene;
 
@@ -9,7 +10,7 @@ use super::{SIDES, case, exact, found, loose, motion, observed, on_both_sides, p
 
 /// What is said of a control whose gap to Chetaev's motion is this.
 fn judged(scene: &Scene, control: &mut Motion, gap: &Gap, floor: f64) -> FoundOut {
-    let (setting, mut metric) = (deltaq::setting(scene), Metric::new(&scene.system).expect("a metric"));
+    let (setting, mut metric) = (motion::setting(scene), Metric::new(&scene.system).expect("a metric"));
     let mut referee = referee(setting).unwrap_or_else(|e| panic!("{e}"));
     found_out(setting, control, gap, &mut referee, &mut metric, floor).unwrap_or_else(|e| panic!("{e}"))
 }

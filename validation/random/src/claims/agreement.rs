@@ -1,10 +1,8 @@
 //! T1, T2, T3, T11, T14: where formulations give the same motion.
 
-use deltaq::{
-    Choice, REMOVED_CONSTRAINT, Setting, SolveError, VAKONOMIC, costates_of, derive, growth, integrability,
-    integrals_by_ranks, multipliers_of,
-};
+use comparison::{costates_of, growth, integrability, integrals_by_ranks, multipliers_of};
 use mechanics::{ConstantsRule, Integrability, Removal, SingularValues, complete_removal_start};
+use motion::{Choice, REMOVED_CONSTRAINT, Setting, SolveError, VAKONOMIC, derive};
 use nalgebra::{DMatrix, DVector};
 use scene::Scene;
 use symbolic::Symbol;

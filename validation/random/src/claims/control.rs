@@ -1,7 +1,8 @@
 //! T12: the deliberately wrong formulation.
 
+use comparison::multipliers_of;
 use decision::Verdict;
-use deltaq::{Setting, VAKONOMIC, multipliers_of, setting};
+use motion::{Setting, VAKONOMIC, setting};
 
 use super::CheckError;
 use crate::case::Which;

@@ -1,7 +1,8 @@
 //! T9: whether a motion is vakonomic for some multipliers: decided, proved, and fitted.
 
+use comparison::{Answer, Gap, Membership, Pairing, best_fit};
 use decision::{Finding, Verdict};
-use deltaq::{Answer, Gap, Membership, Pairing, Settings, VAKONOMIC, best_fit, choices, setting};
+use motion::{Settings, VAKONOMIC, choices, setting};
 
 use super::CheckError;
 use crate::case::Which;
@@ -129,7 +130,7 @@ pub(super) fn fit(case: &mut Case) -> Result<(), CheckError> {
     let fitted = best_fit(setting(&case.scene), &equations, &mut chetaev, &guesses, &mut metric, &settings)?;
     let Some(mut fitted) = fitted else { return Ok(()) };
     let before = case.gap(Which::Chetaev, Which::Vakonomic)?;
-    let after = deltaq::compare_motions(&mut chetaev, &mut fitted, &mut metric)?;
+    let after = comparison::compare_motions(&mut chetaev, &mut fitted, &mut metric)?;
     if found.decision.verdict == Verdict::NotContained {
         let note = format!("gap {:.1e}, rho {:.1e}", after.largest, found.decision.least);
         let visible = visible(found.decision.least, case.scene.duration);

@@ -1,6 +1,7 @@
 //! T5: how the divergence begins.
 
-use deltaq::{Growth, LeadingTerm, Pairing, choices, growth};
+use comparison::{Growth, LeadingTerm, Pairing, growth};
+use motion::choices;
 
 use super::CheckError;
 use crate::case::Which;

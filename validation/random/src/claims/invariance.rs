@@ -1,8 +1,9 @@
 //! T4 and T10: what a formulation does not depend on.
 
-use deltaq::{CERTAINTY, CHETAEV, Motion, REMOVED_CONSTRAINT, Sampling, SolveError, VAKONOMIC, compare_motions};
+use comparison::{Sampling, compare_motions};
 use equations::Outputs;
 use mechanics::{State, System};
+use motion::{CERTAINTY, CHETAEV, Motion, REMOVED_CONSTRAINT, SolveError, VAKONOMIC};
 use nalgebra::DMatrix;
 use symbolic::{Expr, Function, Matrix, Symbol};
 

@@ -1,8 +1,8 @@
 //! T6 and T7: energy and momenta, written out here and not taken from what is judged.
 
-use deltaq::{CERTAINTY, Motion, SolveError};
 use equations::Outputs;
 use mechanics::System;
+use motion::{CERTAINTY, Motion, SolveError};
 use symbolic::{Bounded, Expr, Scalar, Symbol};
 
 use super::CheckError;

@@ -11,7 +11,7 @@ mod null_tests;
 mod realization;
 mod within;
 
-use deltaq::SolveError;
+use motion::SolveError;
 use symbolic::CompileError;
 
 use super::{Case, Unjudged};

@@ -1,7 +1,7 @@
 //! Constants that are natural at a horizon: costates vanish there, in whatever units.
 
-use deltaq::{CERTAINTY, Motion, REMOVED_CONSTRAINT, Setting, Settings, SolveError, TIGHTER, solve};
 use mechanics::{ConstantsRule, Removal};
+use motion::{CERTAINTY, Motion, REMOVED_CONSTRAINT, Setting, Settings, SolveError, TIGHTER, solve};
 use nalgebra::{DMatrix, DVector};
 use symbolic::Expr;
 

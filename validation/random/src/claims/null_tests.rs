@@ -1,8 +1,8 @@
 //! T13: systems on which formulations agree, or differ in a known way, with random numbers in them.
 
-use deltaq::{CHETAEV, Motion, SolveError, VAKONOMIC, setting, solve};
 use equations::Formulation;
 use mechanics::ConstantsRule;
+use motion::{CHETAEV, Motion, SolveError, VAKONOMIC, setting, solve};
 use proptest::prelude::*;
 use proptest::strategy::ValueTree;
 use scene::Scene;
@@ -112,7 +112,7 @@ fn scene(text: &str, overrides: &[(&str, f64)]) -> Scene {
 
 fn motion(scene: &Scene, formulation: &'static Formulation, constants: &[f64]) -> Result<Motion, SolveError> {
     let equations = equations(&scene.system, formulation, None)?;
-    solve(setting(scene), equations, &ConstantsRule::Given(constants.to_vec()), &deltaq::Settings::default())
+    solve(setting(scene), equations, &ConstantsRule::Given(constants.to_vec()), &motion::Settings::default())
 }
 
 /// Largest distance from a closed form, relative to the distance covered.

@@ -1,6 +1,6 @@
 //! T8: what friction and added mass tend to, and the family between.
 
-use deltaq::{CERTAINTY, Metric, Motion, Setting, SolveError};
+use motion::{CERTAINTY, Metric, Motion, Setting, SolveError};
 
 use super::CheckError;
 use crate::case::Which;
@@ -74,7 +74,7 @@ fn apart(case: &mut Case, which: Which, motion: &mut Motion) -> Result<[f64; 2],
 fn between(case: &mut Case) -> Result<(), CheckError> {
     let (system, multipliers) = (case.scene.system.clone(), case.scene.multipliers.clone());
     let motion = |case: &mut Case, kappa: f64| {
-        case.run(equations(&with_kappa(&system, kappa), deltaq::KAPPA, None)?, &multipliers)
+        case.run(equations(&with_kappa(&system, kappa), motion::KAPPA, None)?, &multipliers)
     };
     let mut at_zero = motion(case, 0.0)?;
     case.same(8, "the family between begins at vakonomic", Which::Vakonomic, &mut at_zero);

@@ -1,7 +1,7 @@
 //! What must hold within each formulation.
 
-use deltaq::VAKONOMIC_COSTATE;
 use mechanics::{SingularValues, State, System};
+use motion::VAKONOMIC_COSTATE;
 use referees::maggi;
 
 use super::CheckError;
@@ -64,7 +64,7 @@ fn compared(
         limit = limit.max(largest(&own.coordinates, &other.coordinates) + largest(&one, &two));
         size = size.max(own.coordinates.iter().fold(0.0, |a, q| a.max(q.abs())));
     }
-    case.found.bound(0, claim, gap, deltaq::CERTAINTY * (limit + ROUND_OFF * size) + case.floor);
+    case.found.bound(0, claim, gap, motion::CERTAINTY * (limit + ROUND_OFF * size) + case.floor);
     if last < end {
         let because = match last < kept.end() {
             true => "the constraints nearly lose rank".into(),
@@ -95,7 +95,7 @@ fn keeps_constraint(case: &mut Case, which: Which) -> Result<(), CheckError> {
     let (mut residual, mut limit) = (0.0_f64, 0.0_f64);
     for t in motion.grid(INSTANTS) {
         let (kept, looser) = motion.at_in_both_runs(t)?;
-        let of = |metric: &mut deltaq::Metric, o: &equations::Outputs| {
+        let of = |metric: &mut motion::Metric, o: &equations::Outputs| {
             metric.constraint_residual(t, &o.coordinates, &o.velocities)
         };
         let size = kept.velocities.iter().fold(1.0_f64, |a, v| a.max(v.abs()));
@@ -104,7 +104,7 @@ fn keeps_constraint(case: &mut Case, which: Which) -> Result<(), CheckError> {
         residual = residual.max(own);
         // what both runs are off by is no error of theirs
         let error = error + (own - other).abs();
-        limit = limit.max(deltaq::CERTAINTY * size * error + ROUND_OFF * size * size);
+        limit = limit.max(motion::CERTAINTY * size * error + ROUND_OFF * size * size);
     }
     case.found.bound(0, "the constraint is kept", residual, limit);
     Ok(())

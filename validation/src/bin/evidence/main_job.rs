@@ -9,8 +9,9 @@ use std::time::Instant;
 
 use anyhow::{Context, Result, bail};
 use clap::{CommandFactory, ValueEnum};
-use deltaq::{Comparison, Fits, Settings, choices, compare_unfitted};
+use comparison::{Comparison, Fits, compare_unfitted};
 use diffsol_methods::EVERY;
+use motion::{Settings, choices};
 use scene::Scene;
 use serde_json::{Value, json};
 

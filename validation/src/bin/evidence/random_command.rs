@@ -51,7 +51,7 @@ fn told(batch: &Batch, records: &[Record], seconds: Option<f64>, arguments: &Ran
         let rate = |seconds: f64| format!(" in {seconds:.1} s, {:.0} per second", records.len() as f64 / seconds);
         let _ = writeln!(text, "\n{} systems{}", records.len(), seconds.map_or(String::new(), rate));
         let features: Vec<String> = summary.features.iter().map(|(name, count)| format!("{count} {name}")).collect();
-        let _ = writeln!(text, "they have {}", deltaq::words::enumerate(&features));
+        let _ = writeln!(text, "they have {}", comparison::words::enumerate(&features));
         let (at_stake, all) = (summary.total_at_stake(), summary.total().total());
         let _ = writeln!(text, "{at_stake} of {all} verdicts are on systems on which formulations differ");
         text += &work(records);

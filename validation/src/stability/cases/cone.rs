@@ -1,8 +1,8 @@
 //! The ball near the apex of the cone, and near the ends of its chart.
 
-use deltaq::{CHETAEV, REMOVED_CONSTRAINT, VAKONOMIC};
 use equations::Formulation;
 use mechanics::State;
+use motion::{CHETAEV, REMOVED_CONSTRAINT, VAKONOMIC};
 use nalgebra::Vector3;
 use scene::{Scene, SceneError};
 

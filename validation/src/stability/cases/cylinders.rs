@@ -1,8 +1,8 @@
 //! Three rough cylinders near the singularities of their constraints.
 
-use deltaq::{CHETAEV, VAKONOMIC, VAKONOMIC_COSTATE};
 use equations::Formulation;
 use mechanics::{State, System};
+use motion::{CHETAEV, VAKONOMIC, VAKONOMIC_COSTATE};
 use scene::{Scene, SceneError};
 
 use crate::stability::question::Question;

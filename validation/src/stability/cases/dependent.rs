@@ -1,7 +1,7 @@
 //! Two constraints that are nearly one.
 
-use deltaq::{CHETAEV, REMOVED_CONSTRAINT};
 use equations::Formulation;
+use motion::{CHETAEV, REMOVED_CONSTRAINT};
 use scene::Scene;
 
 use super::FORMULATIONS;

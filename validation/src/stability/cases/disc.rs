@@ -1,6 +1,6 @@
 //! A disc that rolls: what pushes, holds or brakes it.
 
-use deltaq::CHETAEV;
+use motion::CHETAEV;
 use std::sync::Arc;
 
 use scene::{Scene, SceneError};

@@ -1,7 +1,7 @@
 //! Masses of very different size, put in (added mass) or given (mass ratios).
 
-use deltaq::{CHETAEV, REMOVED_CONSTRAINT, Setting};
 use mechanics::{ConstantsRule, State};
+use motion::{CHETAEV, REMOVED_CONSTRAINT, Setting};
 use referees::closed_forms::Particle;
 use scene::Scene;
 

@@ -19,11 +19,11 @@ use equations::Formulation;
 use std::collections::HashMap;
 use std::sync::LazyLock;
 
-use deltaq::{
+use mechanics::ConstantsRule;
+use motion::{
     CHETAEV, Choice, REMOVED_CONSTRAINT, Settings, Steps, VAKONOMIC, VAKONOMIC_COSTATE, choices, derive_at,
     solve_by_steps,
 };
-use mechanics::ConstantsRule;
 use scene::{Scene, SceneError};
 
 use super::question::{Case, MAX_STEPS, Question, Subject, Texts};

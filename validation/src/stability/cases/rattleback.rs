@@ -1,6 +1,6 @@
 //! The rattleback, by Newton's and Euler's equations.
 
-use deltaq::CHETAEV;
+use motion::CHETAEV;
 use nalgebra::{Matrix3, Rotation3, Vector3};
 use scene::Scene;
 

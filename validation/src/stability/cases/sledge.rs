@@ -1,7 +1,7 @@
 //! The sledge with a mass that hardly resists turning, or hardly turns; and for a long time.
 
-use deltaq::{CHETAEV, REMOVED_CONSTRAINT};
 use equations::Formulation;
+use motion::{CHETAEV, REMOVED_CONSTRAINT};
 use referees::closed_forms;
 use scene::{Scene, SceneError};
 

@@ -1,6 +1,6 @@
 //! The vakonomic snakeboard, by Hamilton's equations in the speed of the board.
 
-use deltaq::{VAKONOMIC, VAKONOMIC_COSTATE};
+use motion::{VAKONOMIC, VAKONOMIC_COSTATE};
 use scene::Scene;
 
 use crate::stability::question::Question;

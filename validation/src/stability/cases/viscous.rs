@@ -1,6 +1,6 @@
 //! Friction in the place of a constraint: stiff.
 
-use deltaq::CHETAEV;
+use motion::CHETAEV;
 use nalgebra::Complex;
 
 use crate::stability::question::{Question, Subject};

@@ -1,0 +1,223 @@
+//! Two derivation paths, one answer: results that cannot both be true.
+//!
+//! Motions, the decision in floating point, the proof over a finite field and Frobenius' test share little
+//! code. If two of them contradict each other, one is wrong, and no conclusion is drawn from either.
+
+use std::fmt::{self, Display, Formatter};
+
+use decision::{Finding, Verdict as Floating};
+use scene::Scene;
+
+use crate::runs::{Decided, Pair};
+use crate::{Answer, Comparison, Growth, LeadingTerm, Membership, Run, Verdict, membership};
+use motion::is_in_table;
+use motion::{Breach, CERTAINTY, CHETAEV, Motion, PRESCRIBED, VAKONOMIC, VAKONOMIC_COSTATE};
+
+/// Two results that exclude each other.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Contradiction {
+    /// Statement of the first.
+    pub one: String,
+    /// Statement of the second.
+    pub other: String,
+}
+
+impl Display for Contradiction {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        write!(f, "{}, but {}", self.one, self.other)
+    }
+}
+
+/// The explanation of a contradiction in messages.
+pub(crate) const FAULT: &str = "This is a fault of the program: please report it, with the scene.";
+
+/// Results contradict each other, and no conclusion is drawn from them.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("results contradict each other. {FAULT}{}", .0.iter().map(|found| format!("\n  {found}")).collect::<String>())]
+pub struct Contradicted(pub Vec<String>);
+
+/// Checks a certificate ([`crate::certificate`]) against results in floating point, which share little code
+/// with it and can only contradict it.
+///
+/// # Errors
+/// [`Contradicted`], with the name of the scene.
+pub fn holds_beside_numbers(scene: &Scene) -> Result<(), Contradicted> {
+    let numbers = membership(scene, scene.start.t + scene.duration).ok().flatten();
+    let found = numbers.and_then(|found| found.contradiction());
+    found.map_or(Ok(()), |found| Err(Contradicted(vec![format!("{}: {found}", scene.name)])))
+}
+
+fn contradiction(one: impl Into<String>, other: impl Into<String>) -> Contradiction {
+    Contradiction { one: one.into(), other: other.into() }
+}
+
+/// A proved mismatch is at least this many times the noise before it has to be seen.
+const SEEN: f64 = 10.0;
+
+/// The growth of a gap is compared with its prediction if it was measured within this part of the time in
+/// which the predicted term leads, and to this accuracy; exponents are whole numbers.
+const LEADS: f64 = 0.3;
+const ACCURATE: f64 = 0.1;
+const ANOTHER: f64 = 0.5;
+
+impl Membership {
+    /// The decision in floating point and the proof, where they exclude each other.
+    pub fn contradiction(&self) -> Option<Contradiction> {
+        let number = |x: f64| format!("{x:.1e}");
+        let (least, noise) = (number(self.decision.least), number(self.decision.noise));
+        match (&self.proof.this_start, self.decision.verdict) {
+            (Finding::None(none), _) if self.section.is_some() => Some(contradiction(
+                format!("it is proved that no constants give the motion (order {})", none.order),
+                "a formula gives such constants for all starts",
+            )),
+            (Finding::None(none), Floating::Contained) => {
+                let implied = self.implied.filter(|implied| *implied > SEEN * self.decision.noise)?;
+                Some(contradiction(
+                    format!(
+                        "it is proved that no constants give the motion (order {}), with a mismatch of at least {}",
+                        none.order,
+                        number(implied)
+                    ),
+                    format!("the least mismatch found is {least} with noise {noise}"),
+                ))
+            }
+            // a motion may leave the branch of its start
+            (_, Floating::NotContained) if self.proof.domain.branch => None,
+            (Finding::Contained { .. }, Floating::NotContained) => Some(contradiction(
+                "ranks show that some constants give the motion",
+                format!("the least mismatch found is {least} with noise {noise}"),
+            )),
+            (_, Floating::NotContained) if self.section.is_some() => Some(contradiction(
+                "a formula gives such constants for all starts",
+                format!("the least mismatch found is {least} with noise {noise}"),
+            )),
+            _ => None,
+        }
+    }
+}
+
+impl Comparison {
+    /// Results of this comparison that exclude each other; none, unless the program is wrong.
+    pub fn contradictions(&self) -> Vec<Contradiction> {
+        let mut found: Vec<Contradiction> = self.decided.iter().flat_map(|decided| self.of_decided(decided)).collect();
+        found.extend(self.pairs.iter().flat_map(|pair| self.of_pair(pair)));
+        found.extend(self.of_forms());
+        for fit in self.fits.iter().filter(|fit| fit.by_identity && !self.is_chetaev(fit.target)) {
+            if fit.fitted.as_ref().is_some_and(|fitted| fitted.gap.verdict == Verdict::Different) {
+                found.push(contradiction(
+                    format!("{} and {} are one family", self.name(fit.run), self.name(fit.target)),
+                    "their motions differ with the constants that should make them one",
+                ));
+            }
+        }
+        found
+    }
+
+    /// An error where results exclude each other.
+    ///
+    /// # Errors
+    /// [`Contradicted`], with the name of the scene and [`Comparison::contradictions`].
+    pub fn is_sound(&self) -> Result<(), Contradicted> {
+        let found = self.contradictions();
+        let lines = found.iter().map(|found| format!("{}: {found}", self.scene.name)).collect();
+        if found.is_empty() { Ok(()) } else { Err(Contradicted(lines)) }
+    }
+
+    /// Two forms of the vakonomic equations, one of which keeps clearly what the other changes.
+    fn of_forms(&self) -> Option<Contradiction> {
+        let of = |own| self.runs[self.run(own)?].outcome.as_ref().ok().filter(|motion| motion.doubt.is_none());
+        let motions = [of(VAKONOMIC)?, of(VAKONOMIC_COSTATE)?];
+        let changes = |motion: &Motion, name: &str| motion.breaches.iter().any(|breach| breach.name == name);
+        let clear = |breach: &&Breach| breach.largest > SEEN * CERTAINTY * breach.estimate;
+        let one_sided = |[one, other]: [&Motion; 2]| {
+            let found = one.breaches.iter().filter(clear).find(|breach| !changes(other, &breach.name));
+            found.map(|breach| format!("{breach}"))
+        };
+        let found = one_sided(motions).or_else(|| one_sided([motions[1], motions[0]]))?;
+        Some(contradiction(
+            format!("of two forms of the vakonomic equations one says that {found}"),
+            "the other keeps it",
+        ))
+    }
+
+    fn of_decided(&self, decided: &Decided) -> Option<Contradiction> {
+        let membership = decided.outcome.as_ref().ok()?;
+        let [family, curve] = [decided.family, decided.curve].map(|i| self.name(i));
+        if let Some(Contradiction { one, other }) = membership.contradiction() {
+            return Some(contradiction(format!("{family} beside {curve}: {one}"), other));
+        }
+        let answer = membership.answer();
+        let none = matches!(answer, Answer::NoneProved { .. } | Answer::None { .. });
+        if none && self.agree_if_integrable(decided.family, decided.curve) {
+            let one = format!("the constraint is {}", self.integrability);
+            return Some(contradiction(one, format!("no constants of {family} give the motion of {curve}")));
+        }
+        let gap = &self.pair(decided.family, decided.curve)?.gap;
+        let every = membership.decision.set.dimension() == membership.decision.constants.len();
+        match (answer, &gap.verdict) {
+            (Answer::SomeProved, Verdict::Different) if every => Some(contradiction(
+                format!("every choice of constants gives {family} the motion of {curve}"),
+                "the two motions differ",
+            )),
+            _ => None,
+        }
+    }
+
+    fn of_pair(&self, pair: &Pair) -> Option<Contradiction> {
+        let [first, second] = [pair.first, pair.second].map(|i| self.name(i));
+        if pair.gap.verdict == Verdict::Different && self.agree_if_integrable(pair.first, pair.second) {
+            let one = format!("the constraint is {}", self.integrability);
+            return Some(contradiction(one, format!("the motions of {first} and {second} differ")));
+        }
+        let predicted = pair.predicted.as_ref().filter(|predicted| predicted.proved)?;
+        let start = self.runs[pair.first].outcome.as_ref().ok()?.start();
+        if pair.gap.certain_from.is_none() && stands_out(predicted, pair, start) {
+            return Some(contradiction(
+                format!("{first} and {second} agree within their errors"),
+                format!("it is proved that they part as {:.1e} t^{}", predicted.length, predicted.exponent),
+            ));
+        }
+        let measured = pair.growth.as_ref().filter(|growth| is_another(growth, predicted))?;
+        Some(contradiction(
+            format!("it is proved that {first} and {second} part as t^{}", predicted.exponent),
+            format!("they were measured to part as t^{:.2}", measured.exponent),
+        ))
+    }
+
+    /// Whether T1 says that two runs agree: Chetaev's, vakonomic motions and removals by coordinates do for
+    /// an integrable constraint; not where it creeps, nor where reactions are prescribed.
+    fn agree_if_integrable(&self, first: usize, second: usize) -> bool {
+        let is_bound = |run: &Run| {
+            let by_coordinates = |u: &mechanics::DisplacementParameter| u.coordinate.is_some();
+            is_in_table(run.choice.formulation)
+                && run.choice.formulation != PRESCRIBED
+                && run.outcome.as_ref().is_ok_and(|motion| !motion.equations.creeps)
+                && run.choice.removal.as_ref().is_none_or(|removal| removal.parameters.iter().all(by_coordinates))
+        };
+        self.integrability.is_integrable() && [first, second].into_iter().all(|i| is_bound(&self.runs[i]))
+    }
+
+    fn is_chetaev(&self, run: usize) -> bool {
+        self.runs[run].choice.formulation == CHETAEV
+    }
+
+    fn name(&self, run: usize) -> &str {
+        &self.runs[run].choice.label
+    }
+}
+
+/// Whether a leading term would have been seen while it leads.
+fn stands_out(predicted: &LeadingTerm, pair: &Pair, start: f64) -> bool {
+    pair.gap.points.iter().any(|point| {
+        let past = point.t - start;
+        let leads = predicted.from < LEADS * past && past < LEADS * predicted.reach;
+        leads && predicted.length * past.powi(predicted.exponent as i32) > 2.0 * point.limit
+    })
+}
+
+fn is_another(growth: &Growth, predicted: &LeadingTerm) -> bool {
+    growth.uncertainty < ACCURATE
+        && predicted.from < LEADS * growth.from
+        && growth.to < LEADS * predicted.reach
+        && (growth.exponent - f64::from(predicted.exponent)).abs() > ANOTHER
+}

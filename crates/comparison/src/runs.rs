@@ -1,0 +1,85 @@
+//! Runs of a scene, pairs of them, and what is decided about them.
+
+use equations::Formulation;
+use mechanics::ConstantsRule;
+use scene::Scene;
+
+use crate::gap::Gap;
+use crate::growth::{Growth, LeadingTerm};
+use crate::{Membership, Pairing, costates_of};
+use motion::is_in_table;
+use motion::{CHETAEV, Choice, KAPPA, Motion, SolveError, VAKONOMIC, constant_names};
+
+/// A choice and what became of it.
+pub struct Run {
+    /// The choice.
+    pub choice: Choice,
+    /// The motion, or why there is none.
+    pub outcome: Result<Motion, SolveError>,
+}
+
+/// Two runs compared.
+pub struct Pair {
+    /// Index of the first run.
+    pub first: usize,
+    /// Index of the second run.
+    pub second: usize,
+    /// The gap between them.
+    pub gap: Gap,
+    /// Growth of `second − first` near the start, where it stands out from the errors.
+    pub growth: Option<Growth>,
+    /// Predicted leading term, if the first has Taylor series and the second no constants found by a search.
+    pub predicted: Option<LeadingTerm>,
+}
+
+/// Whether one motion belongs to the family of another formulation.
+pub struct Decided {
+    /// Index of the run whose constants are unknown.
+    pub family: usize,
+    /// Index of the run whose motion is the curve.
+    pub curve: usize,
+    /// The decision, or why it is impossible.
+    pub outcome: Result<Membership, SolveError>,
+}
+
+/// The leading term of the difference of two runs.
+pub(crate) fn predicted(scene: &Scene, curve: &Choice, run: &Run) -> Option<LeadingTerm> {
+    let (Ok(motion), Ok(pairing)) = (&run.outcome, Pairing::new(scene, curve, &run.choice)) else { return None };
+    if matches!(run.choice.constants, ConstantsRule::Natural { .. }) {
+        return None;
+    }
+    // costates that the motion has left out are zero
+    let names = constant_names(&motion.equations);
+    let value = |name| names.iter().position(|own| own == name).map_or(0.0, |i| motion.constants[i]);
+    let constants: Vec<f64> = pairing.constants().iter().map(value).collect();
+    pairing.leading_term(&constants).ok().flatten()
+}
+
+/// Families and motions: of Chetaev's it is asked whether it belongs to the other families, of the vakonomic
+/// one whether it belongs to those of removals that have more than coordinates for their variables.
+pub(crate) fn questions(scene: &Scene, runs: &[Run]) -> Vec<(usize, usize)> {
+    let has = |i: &usize| {
+        runs[*i].outcome.is_ok() && is_in_table(runs[*i].choice.formulation) && !scene.system.constraints.is_empty()
+    };
+    let of = |own: &Formulation| (0..runs.len()).filter(has).find(|&i| runs[i].choice.formulation == own);
+    let own_variables = |i: &usize| {
+        let removal = runs[*i].choice.removal.as_ref();
+        removal.is_some_and(|r| !matches!(costates_of(scene, r, &scene.multipliers), Ok(Some(_))))
+    };
+    let removed: Vec<usize> = (0..runs.len()).filter(has).filter(own_variables).collect();
+    let mut asked: Vec<(usize, usize)> = Vec::new();
+    if let Some(curve) = of(CHETAEV) {
+        asked.extend(of(VAKONOMIC).into_iter().chain(of(KAPPA)).chain(removed.clone()).map(|i| (i, curve)));
+    }
+    if let Some(curve) = of(VAKONOMIC) {
+        asked.extend(removed.iter().map(|&i| (i, curve)));
+    }
+    asked
+}
+
+/// Whether the motion of the second run belongs to the family of the first.
+pub(crate) fn decide(scene: &Scene, runs: &[Run], (family, curve): (usize, usize)) -> Decided {
+    let end = runs[curve].outcome.as_ref().map_or(0.0, Motion::end);
+    let pairing = Pairing::new(scene, &runs[curve].choice, &runs[family].choice);
+    Decided { family, curve, outcome: pairing.and_then(|pairing| pairing.decide(end)) }
+}

@@ -1,0 +1,149 @@
+//! Results that exclude each other, forged one at a time: each is noticed, and there is no verdict.
+
+use comparison::words::Headline;
+use comparison::{Comparison, Verdict, compare};
+use decision::{Finding, NoConstants};
+use equations::Formulation;
+use mechanics::Integrability;
+use motion::{CHETAEV, REMOVED_CONSTRAINT, Settings, VAKONOMIC, choices};
+use scene::Scene;
+
+use crate::compared::compared;
+
+/// Nonintegrable; no multipliers give Chetaev's motion.
+fn sledge() -> Comparison {
+    compared("sledge", include_str!("../../scene/sledge.toml"))
+}
+
+/// Integrable: all multipliers do.
+fn bowl() -> Comparison {
+    compared("bowl", include_str!("../../catalogue/scenes/bowl.toml"))
+}
+
+/// Some multipliers do, by an identity.
+fn disc() -> Comparison {
+    compared("disc", include_str!("../../catalogue/scenes/disc.toml"))
+}
+
+fn no_constants() -> Finding {
+    Finding::None(NoConstants { order: 1, full_rank: true, size: 2 })
+}
+
+/// The one thing that is found, the page's first words and the command's error.
+fn found(comparison: &Comparison) -> String {
+    let [found] = &comparison.contradictions()[..] else { panic!("{:?}", comparison.contradictions()) };
+    let headline = Headline::of(comparison);
+    assert!(headline.verdict.starts_with("No verdict: results contradict each other."), "{}", headline.verdict);
+    assert!(headline.why.contains(&found.to_string()) && headline.sure.is_empty(), "{}", headline.why);
+    assert!(comparison.is_sound().unwrap_err().to_string().contains(&found.to_string()));
+    found.to_string()
+}
+
+/// What was decided about Chetaev's motion and the vakonomic family.
+fn decided(comparison: &mut Comparison) -> &mut comparison::Membership {
+    let asked = (comparison.run(VAKONOMIC), comparison.run(CHETAEV));
+    let is = |d: &&mut comparison::Decided| (Some(d.family), Some(d.curve)) == asked;
+    comparison.decided.iter_mut().find(is).and_then(|d| d.outcome.as_mut().ok()).expect("a decision")
+}
+
+fn pair<'a>(comparison: &'a mut Comparison, other: &Formulation) -> &'a mut comparison::Pair {
+    let wanted = (comparison.run(CHETAEV).unwrap(), comparison.run(other).unwrap());
+    comparison.pairs.iter_mut().find(|p| (p.first, p.second) == wanted).expect("a pair")
+}
+
+#[test]
+fn scenes_as_they_are_contradict_nothing() {
+    for comparison in [sledge(), bowl(), disc()] {
+        assert_eq!(comparison.contradictions(), Vec::new());
+        assert!(comparison.is_sound().is_ok());
+    }
+}
+
+#[test]
+fn a_proof_that_some_do_beside_a_mismatch() {
+    let mut sledge = sledge();
+    decided(&mut sledge).proof.this_start = Finding::Contained { rank: 1, order: 3 };
+    assert!(found(&sledge).contains("ranks show that some constants give the motion, but the least mismatch"));
+}
+
+#[test]
+fn a_motion_that_leaves_the_branch_of_its_start() {
+    let scene = "title = 'branch'\n[coordinates]\nx = { start = 1 }\ny = { start = 0.3 }\nz = { start = 0 }\n[system]\n\
+                 lagrangian = \"(x'^2 + y'^2 + z'^2)/2\"\nconstraints = [\"z' - (x - sqrt(x^2))*y'\"]\n\
+                 [start]\nvelocities = { \"x'\" = -1, \"y'\" = 0.7 }\n[run]\nduration = 3\n";
+    let mut branch = compared("branch", scene);
+    assert_eq!(branch.contradictions(), Vec::new());
+    let answer = decided(&mut branch).answer();
+    assert!(matches!(&answer, comparison::Answer::None { unproved } if unproved.contains("branch")), "{answer:?}");
+}
+
+#[test]
+fn a_proof_that_none_do_beside_a_formula_and_beside_no_mismatch() {
+    let mut disc = disc();
+    decided(&mut disc).proof.this_start = no_constants();
+    assert!(found(&disc).contains("but a formula gives such constants for all starts"));
+    let membership = decided(&mut disc);
+    (membership.section, membership.implied) = (None, Some(1e-3));
+    assert!(found(&disc).contains("with a mismatch of at least 1.0e-3, but the least mismatch found is"));
+    // a mismatch that noise hides is no contradiction
+    let membership = decided(&mut disc);
+    membership.implied = Some(membership.decision.noise);
+    assert_eq!(disc.contradictions(), Vec::new());
+}
+
+#[test]
+fn a_formula_for_all_starts_beside_a_mismatch() {
+    let (mut sledge, mut disc) = (sledge(), disc());
+    decided(&mut sledge).section = decided(&mut disc).section.clone();
+    decided(&mut sledge).proof.this_start = Finding::ThroughOrder { rank: 1, order: 3 };
+    assert!(found(&sledge).contains("a formula gives such constants for all starts, but the least mismatch"));
+}
+
+#[test]
+fn an_integrable_constraint_beside_motions_that_differ_or_no_multipliers() {
+    let mut sledge = sledge();
+    sledge.integrability = Integrability::Integrable { exact: true };
+    let all = sledge.contradictions();
+    assert!(all.iter().any(|c| c.other == "the motions of Chetaev and vakonomic differ"), "{all:?}");
+    assert!(all.iter().any(|c| c.other == "no constants of vakonomic give the motion of Chetaev"), "{all:?}");
+    let mut bowl = bowl();
+    pair(&mut bowl, REMOVED_CONSTRAINT).gap.verdict = Verdict::Different;
+    assert!(found(&bowl).starts_with("the constraint is integrable"));
+}
+
+#[test]
+fn every_multiplier_beside_motions_that_differ() {
+    let mut bowl = bowl();
+    bowl.integrability = Integrability::NonlinearInVelocity;
+    pair(&mut bowl, VAKONOMIC).gap.verdict = Verdict::Different;
+    assert!(found(&bowl).ends_with("but the two motions differ"));
+}
+
+#[test]
+fn a_proved_difference_beside_motions_that_agree_and_beside_another_growth() {
+    let mut sledge = sledge();
+    let gap = &mut pair(&mut sledge, VAKONOMIC).gap;
+    let certain_from = gap.certain_from.take();
+    assert!(found(&sledge).contains("agree within their errors, but it is proved that they part as"));
+    let pair = pair(&mut sledge, VAKONOMIC);
+    pair.gap.certain_from = certain_from;
+    pair.growth.as_mut().expect("a growth").exponent += 1.0;
+    assert!(found(&sledge).contains("part as t^3, but they were measured to part as t^4.0"));
+    // nothing is where another term is the larger one
+    let pair = self::pair(&mut sledge, VAKONOMIC);
+    let (growth, predicted) = (pair.growth.as_mut().expect("a growth"), pair.predicted.as_ref().expect("a term"));
+    growth.to = 0.5 * predicted.reach;
+    assert_eq!(sledge.contradictions(), Vec::new());
+}
+
+#[test]
+fn one_family_whose_motions_differ() {
+    let scene = Scene::parse("heisenberg", include_str!("../../catalogue/scenes/heisenberg.toml")).expect("a scene");
+    let choices = choices(&scene);
+    let mut heisenberg = compare(scene, choices, Vec::new(), &Settings::default()).expect("a comparison");
+    assert_eq!(heisenberg.contradictions(), Vec::new());
+    let chetaev = heisenberg.run(CHETAEV);
+    let fit = heisenberg.fits.iter_mut().find(|fit| fit.by_identity && Some(fit.target) != chetaev).expect("a fit");
+    fit.fitted.as_mut().expect("a motion").gap.verdict = Verdict::Different;
+    assert!(found(&heisenberg).contains("are one family, but their motions differ"));
+}

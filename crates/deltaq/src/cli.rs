@@ -1,0 +1,269 @@
+//! The command line.
+
+mod connect;
+mod design;
+mod ensemble;
+mod fit;
+mod integrals;
+mod judge;
+mod linearize;
+mod range;
+mod review;
+mod scenes;
+
+use std::path::PathBuf;
+
+use clap::builder::{PossibleValuesParser, TypedValueParser};
+use clap::{Args, Parser, Subcommand, ValueEnum};
+use clap_complete::Shell;
+
+use bench::MEMBERS;
+use comparison::Fits;
+pub use connect::ConnectArguments;
+pub use design::DesignArguments;
+pub use ensemble::{EnsembleArguments, FreeArguments, Limits, MotionArguments};
+use equations::Formulation;
+pub use fit::FitArguments;
+pub use integrals::IntegralsArguments;
+use integrate::Method;
+pub use judge::JudgeArguments;
+pub use linearize::{LinearizeArguments, TableFormat};
+use motion::Stepping;
+use program::{Common, Output, TextOrJson, by_name};
+pub use range::{MOST_MEMBERS, Range};
+pub use review::ReviewArguments;
+pub use scenes::{CheckArguments, NewArguments, Overrides, SceneArguments, ShowArguments};
+
+/// The methods of time stepping that are built in.
+#[cfg(feature = "diffsol")]
+pub const METHODS: &[Method] = &diffsol_methods::EVERY;
+/// The methods of time stepping that are built in.
+#[cfg(not(feature = "diffsol"))]
+pub const METHODS: &[Method] = &Method::ALL;
+
+/// What exit codes mean, below the help of the program.
+const EXIT_CODES: &str = "Exit codes: 0 for an answer to be trusted, 1 where it cannot be written or `review` finds equations wrong, 2 for bad input, 3 for an answer \
+that is not to be trusted or that there is not, 4 where results contradict each other, 5 where a computation breaks off. \
+4 and 5 are faults of deltaq: please report them.";
+
+/// What may a virtual displacement be? One system with velocity constraints, several formulations of motion.
+#[derive(Parser, Debug)]
+#[command(name = "deltaq", version = env!("DELTAQ_VERSION"), propagate_version = true, max_term_width = 100)]
+#[command(after_help = EXIT_CODES)]
+pub struct Cli {
+    /// What to do.
+    #[command(subcommand)]
+    pub command: Command,
+    /// Options of every command.
+    #[command(flatten)]
+    pub common: Common,
+    /// Seconds that each question of algebra may take (a proof, integrals of one degree, brackets,
+    /// eigenvalues) before it stays open; 0 for no bound.
+    #[arg(long, global = true, value_name = "SECONDS", default_value_t = 10)]
+    pub patience: u32,
+}
+
+/// The subcommands.
+#[derive(Subcommand, Debug)]
+pub enum Command {
+    /// List the built-in scenes.
+    List(ListArguments),
+    /// Write a commented scene to begin with.
+    New(NewArguments),
+    /// Look for all that is wrong with scene files, without deriving anything.
+    Check(CheckArguments),
+    /// Show the equations of a scene, what was left out of them, and whether its constraints are integrable.
+    Show(ShowArguments),
+    /// Integrate a scene in one formulation.
+    Solve(SolveArguments),
+    /// Find the motions between two points, with their conjugate times.
+    Connect(ConnectArguments),
+    /// Integrate many starts or parameters of a scene at once, by Taylor series, in one formulation.
+    Ensemble(EnsembleArguments),
+    /// Linearize a steady motion: eigenvalues with errors, and where stability to first order changes.
+    Linearize(LinearizeArguments),
+    /// Compare all formulations of one or more scenes.
+    Compare(CompareArguments),
+    /// Write a self-contained page for browsers, without a server: sliders, bodies in motion, verdicts.
+    Explore(ExploreArguments),
+    /// Prove that no multipliers make a scene's vakonomic motion Chetaev's: a certificate others can check.
+    Prove(ProveArguments),
+    /// Decide which invariant measure and first integrals there are: printed, counted, or proved to be none.
+    Integrals(IntegralsArguments),
+    /// Say which law a program integrates, from motions that it made: slip, epsilon and drag with errors.
+    Judge(JudgeArguments),
+    /// Say whether somebody's equations of motion are right, and if not, what is wrong with them.
+    Review(ReviewArguments),
+    /// Fit unknown numbers to films: estimates with intervals, and which formulation the films support.
+    Fit(FitArguments),
+    /// Choose the film to be made that tells two formulations apart best, or shows a number best.
+    Design(DesignArguments),
+    /// Measure error against run time, by every method at every tolerance.
+    Bench(BenchArguments),
+    /// Print completions for a shell.
+    Completions {
+        /// The shell.
+        shell: Shell,
+    },
+    /// Print a page of the manual, for `man -l -`.
+    Man {
+        /// The command that it is about; the whole program if left out.
+        command: Option<String>,
+    },
+}
+
+/// `deltaq list`.
+#[derive(Args, Debug)]
+pub struct ListArguments {
+    /// Output format.
+    #[arg(long, value_enum, default_value_t = TextOrJson::Text)]
+    pub format: TextOrJson,
+}
+
+/// `deltaq solve`.
+#[derive(Args, Debug)]
+pub struct SolveArguments {
+    #[command(flatten)]
+    pub motion: MotionArguments,
+    /// Time-stepping method: auto, the one that suits equations and motion (taylor, or else dop853 or
+    /// radau5); Taylor series, of the order that the tolerance asks for; explicit Runge–Kutta of order 8
+    /// (dop853); stiff: implicit Runge–Kutta of order 5 (radau5); leapfrog, a discrete variational principle
+    /// in equal steps, which keeps constraints, reversibility and (vakonomic, removed) the symplectic form.
+    /// A program built with `--features diffsol` has those of the library diffsol, too: explicit Runge–Kutta
+    /// of order 5 (tsit45); stiff: backward differentiation formulas (bdf), implicit Runge–Kutta of order 2
+    /// (tr-bdf2) and 4 (esdirk34).
+    #[arg(long, value_parser = by_name(Stepping::all(METHODS), Stepping::name, None), default_value = "auto")]
+    pub method: Stepping,
+    /// Longest step of `--method leapfrog`, at most the duration, which is cut into two at least. A second
+    /// run in half as many steps gives the error estimate.
+    #[arg(long, value_name = "H", allow_negative_numbers = true)]
+    pub step: Option<f64>,
+    /// Order of `--method leapfrog`: 2, 4, 6 or 8; 2 if left out.
+    #[arg(long, value_parser = ["2", "4", "6", "8"])]
+    pub order: Option<String>,
+    /// Add the derivatives of all columns by these numbers, with their error estimates: parameters, start
+    /// values (the constraints supply the velocities that they supply in the scene), `mu0_1`, … and `P0_w`, …
+    #[arg(long, value_name = "NAME,…", value_delimiter = ',')]
+    pub sensitivities: Vec<String>,
+    /// Watch the integrals that `deltaq integrals` writes down for this formulation, but those that contain
+    /// multipliers: a column each, and their drift among the invariants.
+    #[arg(long)]
+    pub integrals: bool,
+}
+
+/// `deltaq compare`.
+#[derive(Args, Debug)]
+pub struct CompareArguments {
+    /// Built-in names, paths of scene files, or `-` for standard input.
+    #[arg(required = true)]
+    pub scenes: Vec<String>,
+    #[command(flatten)]
+    pub output: Output,
+    #[command(flatten)]
+    pub set: Overrides,
+    /// Print the whole page, in Markdown, and not only the answer.
+    #[arg(long, conflicts_with_all = ["out", "format"])]
+    pub markdown: bool,
+    /// Formulations to compare, all if left out.
+    #[arg(long, short, value_name = "NAME,…", value_delimiter = ',', value_parser = formulations())]
+    pub formulation: Vec<&'static Formulation>,
+    /// Also fit free constants where it is decided whether some constants give the motion.
+    #[arg(long = "with", value_name = "PART")]
+    pub with: Option<Searched>,
+    /// Fit no free constants, not even where nothing is decided.
+    #[arg(long, value_name = "PART", conflicts_with = "with")]
+    pub without: Option<Searched>,
+    /// Vary a parameter, a start value, `mu0_1`, … or `P0_w`, … and compare two motions at each value, both
+    /// ends included: a table. The motions are Chetaev's and the vakonomic one, or of costates `P0_w` the one
+    /// without constraints, or two given by `--formulation`. Several combine; with `--out` a file, which goes
+    /// on where it was cut off.
+    #[arg(long, value_name = "NAME=FROM:TO:COUNT", value_parser = range::range,
+          conflicts_with_all = ["markdown", "format", "with"])]
+    pub sweep: Vec<Range>,
+    /// Tolerance of the looser of the two runs of every motion.
+    #[arg(long, default_value = "1e-11", allow_negative_numbers = true)]
+    pub tolerance: f64,
+    #[command(flatten)]
+    pub limits: Limits,
+}
+
+impl CompareArguments {
+    /// Which free constants are fitted.
+    pub(crate) fn fits(&self) -> Fits {
+        match (self.with, self.without) {
+            (Some(Searched::Fits), _) => Fits::All,
+            (None, Some(Searched::Fits)) => Fits::None,
+            (None, None) => Fits::Undecided,
+        }
+    }
+}
+
+/// What takes a search.
+#[derive(ValueEnum, Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Searched {
+    /// Fits of free constants.
+    Fits,
+}
+
+fn formulations() -> impl TypedValueParser<Value = &'static Formulation> {
+    let names = PossibleValuesParser::new(motion::FORMULATIONS.iter().map(|formulation| formulation.name));
+    names.try_map(|name| motion::formulation(&name))
+}
+
+/// `deltaq explore`.
+#[derive(Args, Debug)]
+pub struct ExploreArguments {
+    /// The scene that it opens with: a built-in name, the path of a scene file, or `-` for standard input.
+    pub scene: Option<String>,
+    #[command(flatten)]
+    pub set: Overrides,
+    /// File for the page; `-` for standard output. What deltaq did not write is not replaced.
+    #[arg(long, value_name = "FILE", default_value = "explore.html")]
+    pub out: PathBuf,
+}
+
+/// `deltaq prove`.
+#[derive(Args, Debug)]
+pub struct ProveArguments {
+    #[command(flatten)]
+    pub scene: SceneArguments,
+    /// File for the certificate, which `validation/proof/verify.py` checks; `-` for standard output. What
+    /// deltaq did not write is not replaced.
+    #[arg(long, value_name = "FILE")]
+    pub out: PathBuf,
+    /// Prove it for a start drawn at random, and so for almost every start, in the place of the scene's own.
+    #[arg(long)]
+    pub almost_every: bool,
+    /// Output format of the answer; a certificate is JSON.
+    #[arg(long, value_enum, default_value_t = TextOrJson::Text)]
+    pub format: TextOrJson,
+}
+
+/// `deltaq bench`.
+#[derive(Args, Debug)]
+pub struct BenchArguments {
+    /// Built-in names or paths of scene files; every built-in scene if left out.
+    pub scenes: Vec<String>,
+    /// Seconds over which the runs of one setting are repeated; the least time counts.
+    #[arg(long, default_value_t = 0.05)]
+    pub seconds: f64,
+    #[command(flatten)]
+    pub set: Overrides,
+    /// Measure throughput of ensembles of sledges instead, at this tolerance: alone, in lanes, on all cores.
+    #[arg(long, value_name = "TOLERANCE", num_args = 0..=1, default_missing_value = "1e-10", conflicts_with_all = ["scenes", "overrides", "out"])]
+    pub ensemble: Option<f64>,
+    /// Members of each of these ensembles.
+    #[arg(long, default_value_t = MEMBERS as u16, requires = "ensemble", value_parser = clap::value_parser!(u16).range(1..))]
+    pub members: u16,
+    #[command(flatten)]
+    pub output: Output,
+}
+
+/// Output formats.
+#[derive(ValueEnum, Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Format {
+    /// One line per time.
+    Csv,
+    /// One object.
+    Json,
+}

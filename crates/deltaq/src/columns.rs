@@ -1,0 +1,127 @@
+//! Columns of a motion's table: one per coordinate, per velocity and per multiplier.
+
+use std::collections::HashSet;
+
+use anyhow::{Result, bail};
+use equations::{Equations, Outputs};
+use motion::{ErrorEstimate, Sensitivities};
+use scene::{Scene, table_cell};
+use serde_json::{Map, Value, json};
+
+/// Most numbers of an answer that are in memory at once: with their JSON they fit into 2 GB.
+pub const MOST_NUMBERS: usize = 12_000_000;
+
+/// Names of the columns.
+pub struct Columns {
+    coordinates: Vec<String>,
+    multipliers: Vec<String>,
+}
+
+impl Columns {
+    /// Those of a scene in one formulation.
+    pub fn of(scene: &Scene, equations: &Equations) -> Columns {
+        Columns {
+            coordinates: scene.system.coordinates.iter().map(|c| c.name.clone()).collect(),
+            multipliers: equations.multipliers.iter().map(|m| m.name.clone()).collect(),
+        }
+    }
+
+    /// In the order of [`row`], the time first.
+    pub fn names(&self) -> Vec<String> {
+        let velocities = self.coordinates.iter().map(|name| format!("{name}'"));
+        let time = std::iter::once("t".to_string());
+        time.chain(self.coordinates.iter().cloned()).chain(velocities).chain(self.multipliers.iter().cloned()).collect()
+    }
+
+    /// Those of [`error_row`].
+    pub fn error_names(&self) -> Vec<String> {
+        self.coordinates.iter().chain(&self.multipliers).map(|name| format!("error {name}")).collect()
+    }
+
+    /// Adds the columns to an object: one list of numbers per name.
+    pub fn write(&self, object: &mut Value, rows: &[Outputs]) {
+        object["coordinates"] = named_columns(&self.coordinates, rows, |r| &r.coordinates);
+        object["velocities"] = named_columns(&self.coordinates, rows, |r| &r.velocities);
+        object["multipliers"] = named_columns(&self.multipliers, rows, |r| &r.multipliers);
+    }
+
+    /// The error estimates up to each time, as an object likewise.
+    pub fn errors(&self, rows: &[ErrorEstimate]) -> Value {
+        json!({
+            "coordinates": named_columns(&self.coordinates, rows, |r| &r.coordinates),
+            "multipliers": named_columns(&self.multipliers, rows, |r| &r.multipliers),
+        })
+    }
+
+    /// Those of [`derivative_row`]: `dx/dm`, `error dx/dm`.
+    pub fn derivative_names(&self, derived: &Sensitivities) -> Vec<String> {
+        let own = &self.names()[1..];
+        let by = |name: &String| {
+            let derivatives = own.iter().map(move |own| format!("d{own}/d{name}"));
+            derivatives.clone().chain(derivatives.map(|name| format!("error {name}"))).collect::<Vec<_>>()
+        };
+        derived.names.iter().flat_map(by).collect()
+    }
+
+    /// The derivatives by each number and their error estimates, as an object by its name.
+    pub fn derivatives(&self, derived: &Sensitivities) -> Value {
+        let of = |k: usize| {
+            let (mut value, mut errors) = (json!({}), json!({}));
+            self.write(&mut value, &derived.derivatives.iter().map(|row| row[k].clone()).collect::<Vec<_>>());
+            self.write(&mut errors, &derived.errors.iter().map(|row| row[k].clone()).collect::<Vec<_>>());
+            value["error_estimates"] = errors;
+            value
+        };
+        derived.names.iter().enumerate().map(|(k, name)| (name.clone(), of(k))).collect::<Map<_, _>>().into()
+    }
+}
+
+/// The derivatives at one time by each number, and their error estimates, each after a comma.
+pub fn derivative_row(derived: &Sensitivities, i: usize) -> String {
+    let all = |outputs: &Outputs| [&outputs.coordinates[..], &outputs.velocities, &outputs.multipliers].concat();
+    let pairs = derived.derivatives[i].iter().zip(&derived.errors[i]);
+    pairs.map(|(derivatives, errors)| format!(",{},{}", print(&all(derivatives)), print(&all(errors)))).collect()
+}
+
+/// One list of numbers per name.
+pub fn named_columns<R>(names: &[String], rows: &[R], row: fn(&R) -> &[f64]) -> Value {
+    let column = |i: usize| rows.iter().map(|r| row(r)[i]).collect::<Vec<f64>>();
+    names.iter().enumerate().map(|(i, name)| (name.clone(), json!(column(i)))).collect::<Map<_, _>>().into()
+}
+
+/// The error estimates up to one time, between commas.
+pub fn error_row(estimate: &ErrorEstimate) -> String {
+    print(&[&estimate.coordinates[..], &estimate.multipliers].concat())
+}
+
+/// The numbers at one time, between commas.
+pub fn row(t: f64, now: &Outputs) -> String {
+    print(&[&[t], &now.coordinates[..], &now.velocities, &now.multipliers].concat())
+}
+
+/// Numbers with all their digits, between commas.
+pub fn print(numbers: &[f64]) -> String {
+    let mut text = String::with_capacity(20 * numbers.len());
+    for (i, x) in numbers.iter().enumerate() {
+        text += if i == 0 { "" } else { "," };
+        text += &format!("{x:?}");
+    }
+    text
+}
+
+/// The first line of a table.
+///
+/// # Errors
+/// Two columns of one name: nobody could read the table.
+pub fn header(names: &[String]) -> Result<String> {
+    let mut known = HashSet::new();
+    if let Some(twice) = names.iter().find(|name| !known.insert(*name)) {
+        bail!("two columns of the table are called `{twice}`: give one of them another name in the scene");
+    }
+    Ok(names.iter().map(|name| table_cell(name)).collect::<Vec<_>>().join(",") + "\n")
+}
+
+/// A cause as a cell of a table: in one line and quotation marks; empty without one.
+pub fn quoted(cause: &str) -> String {
+    if cause.is_empty() { String::new() } else { format!("\"{}\"", cause.replace('"', "\"\"").replace('\n', " ")) }
+}

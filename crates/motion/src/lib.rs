@@ -1,0 +1,136 @@
+//! # The motion of a system, in several formulations
+//!
+//! Given `L(q, v, t)`, `q ∈ Rⁿ`, and constraints `f(q, v, t) = 0 ∈ Rʰ`, what are the equations of motion?
+//! Chetaev's, the vakonomic and the removed-constraint formulation answer differently where `f` cannot be
+//! integrated; `kappa` is a family between the first two, `first-order` its end at Chetaev, with slip, and
+//! `prescribed` has reactions of the user's own. Their derivations are the front pages of the crates. This
+//! crate puts them into one table and integrates them with one time loop. Whether two motions agree is asked
+//! in the crate `comparison`.
+//!
+//! - [`FORMULATIONS`]: the table: [`CHETAEV`], [`VAKONOMIC`], …; [`formulation`] reads a name.
+//! - [`derive()`], [`solve`]: one motion, with its global error estimate `e(t)`, the difference of two runs.
+//! - [`solve_by_steps`]: one motion by a discrete principle, in equal steps that keep its structure.
+//! - [`prepare`]: the equations compiled and started, for other integrators; [`code()`]: as source text.
+//! - [`Ensemble`]: many starts and parameters of one system at once.
+//! - [`Model`]: a motion as a function of numbers, with derivatives, for fits.
+//! - [`connect()`]: the motions from one point to another, with their conjugate times.
+//!
+//! ```
+//! use motion::{CHETAEV, Settings, choices, solve_choice};
+//!
+//! // a skate on level ice, at 1 m/s and turning at 1 rad/s
+//! let text = r#"
+//! title = "Skate"
+//! [coordinates]
+//! x = { unit = "m", start = 0 }
+//! y = { unit = "m", start = 0 }
+//! phi = { unit = "rad", start = 0 }
+//! [system]
+//! lagrangian = "(x'^2 + y'^2 + phi'^2)/2"
+//! constraints = ["y'*cos(phi) - x'*sin(phi)"]
+//! [start]
+//! velocities = { "x'" = 1, "phi'" = 1 }
+//! [run]
+//! duration = 2
+//! "#;
+//! let scene = scene::Scene::parse("skate", text)?;
+//! let chetaev = choices(&scene).into_iter().find(|choice| choice.formulation == CHETAEV).unwrap();
+//! // Chetaev's skate runs on a circle of radius 1
+//! let q = solve_choice(&scene, &chetaev, &Settings::default())?.at(2.0)?.coordinates;
+//! assert!((q[0] - f64::sin(2.0)).abs() < 1e-9 && (q[1] - 1.0 + f64::cos(2.0)).abs() < 1e-9);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! **What it refuses.** A motion that cannot be started is a [`SolveError`]. Once started, it ends with an
+//! [`Ending`], and the part up to its end is valid. An error estimate that cannot be trusted carries a
+//! [`Doubt`].
+
+mod by_name;
+mod carried;
+mod charts;
+mod choice;
+mod clock;
+mod code;
+mod connect;
+mod constants;
+mod costates;
+mod differences;
+mod direction;
+mod discrete_run;
+mod disturbed;
+mod doubt;
+mod ending;
+mod ensemble;
+mod equations_text;
+mod equidistant;
+mod error;
+mod error_estimate;
+mod form;
+mod grid;
+mod kinks;
+mod last_digits;
+mod later_chart;
+mod lost_digits;
+mod lost_rank;
+mod method;
+mod metric;
+mod model;
+mod motion;
+pub mod numbers;
+#[doc(hidden)]
+pub mod parts;
+mod prepared;
+mod round_off;
+mod sensitivities;
+mod sensitivity_start;
+mod settings;
+mod single_run;
+mod sizes;
+mod start_values;
+mod steps;
+mod table;
+mod trajectory;
+mod trial;
+mod variables;
+mod varying;
+mod wanted;
+mod watch;
+
+pub use by_name::ByName;
+pub use carried::{Carried, Which};
+pub use charts::ChartChange;
+pub use choice::{
+    Choice, choices, choices_among, constants_of, default_constants, derive, derive_at, forms, removal, removal_names,
+    removals,
+};
+pub use code::code;
+pub use connect::{Aim, CONNECT_STARTS, ConjugateTime, Connection, Connections, SecondVariation, connect};
+pub use constants::{constant_names, prepare};
+pub use costates::{Costates, costate_names, given_costates, is_costate};
+pub use direction::Direction;
+pub use doubt::Doubt;
+pub use ending::Ending;
+pub use ensemble::{
+    Ensemble, EnsembleMember, EnsembleOptions, EnsembleStart, MemberMotion, MemberRun, number_of_threads, over_threads,
+};
+pub use equations_text::{EquationStyle, equations_text, shared_text, system_text};
+pub use equidistant::{equidistant, equidistant_value};
+pub use error::SolveError;
+pub use error_estimate::{ErrorEstimate, TRUSTED, error_estimate, error_estimates, relative_to};
+pub use form::{ChosenForm, FORM_WORDS, Form, derive_in_form, formulation_in};
+pub use method::Chosen;
+pub use metric::{Metric, larger, subtract};
+pub use model::{Model, Reading};
+pub use motion::{FormReport, Motion, Seconds, solve, solve_choice, solve_from};
+pub use prepared::Prepared;
+pub use sensitivities::{Sensitivities, sensitivities};
+pub use settings::{CERTAINTY, Setting, Settings, TIGHTER, setting};
+pub use single_run::{SingleRun, outputs};
+pub use steps::{STEP_LIMIT, Stepping, Steps, discrete_of, solve_by_steps};
+pub use symbolic::{Broken, Language, caught};
+pub use table::{
+    CHETAEV, FIRST_ORDER, FORMS, FORMULATIONS, KAPPA, PRESCRIBED, REDUCED_CHETAEV, REDUCED_VAKONOMIC,
+    REMOVED_CONSTRAINT, UnknownFormulation, VAKONOMIC, VAKONOMIC_COSTATE, formulation, is_in_table,
+};
+pub use varying::Varying;
+pub use watch::Breach;

@@ -1,0 +1,376 @@
+//! One motion: equations and start data in, a trajectory with its error estimate out.
+
+use std::sync::Arc;
+
+use equations::{Compiled, Equations, Outputs};
+use integrate::{Method, ProjectionReport, Work};
+use mechanics::ConstantsRule;
+use scene::Scene;
+
+use crate::charts::{self, ChartChange, Course, Runs};
+use crate::choice::removals;
+use crate::clock::Clock;
+use crate::constants::resolve;
+use crate::form::derive_in_form;
+use crate::lost_digits::{self, Looked, RoundOff};
+use crate::method::Chosen;
+use crate::metric::{larger, subtract};
+use crate::trajectory::Trajectory;
+use crate::trial::{FARTHER, NotSuited, TRIAL};
+use crate::wanted::kept_before;
+use crate::watch::{Breach, Watch};
+use crate::{Choice, ChosenForm, Doubt, Ending, Prepared, Setting, Settings, SolveError, setting};
+
+/// Wall-clock seconds spent.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Seconds {
+    /// From system to equations.
+    pub derive: f64,
+    /// From equations to tapes, start values included.
+    pub compile: f64,
+    /// Free constants and time integration, both runs.
+    pub integrate: f64,
+}
+
+/// The form in which the equations of a motion were evaluated, and how often another one replaced it.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct FormReport {
+    /// The form of the formulation.
+    pub chosen: ChosenForm,
+    /// How its acceleration-level equations are solved, and why ([`equations::Plan::why`]).
+    pub why: Vec<String>,
+    /// Evaluations of the kept run in the plain form, because a pivot of the chosen form was small.
+    pub fallbacks: usize,
+}
+
+/// A trajectory with its equations, error estimate, work and checks.
+#[derive(Clone)]
+pub struct Motion {
+    /// The equations behind it.
+    pub equations: Equations,
+    /// Values of the free constants.
+    pub constants: Vec<f64>,
+    /// How it ended.
+    pub ending: Ending,
+    /// Where the tolerance did not decide the steps: the runs' difference is no error estimate then.
+    pub doubt: Option<Doubt>,
+    /// What the user expects to be constant and this motion changes.
+    pub breaches: Vec<Breach>,
+    /// The method, and why; of a motion in equal steps none.
+    pub method: Option<Chosen>,
+    /// Work of the kept run.
+    pub work: Work,
+    /// What projection did in the kept run.
+    pub projection: ProjectionReport,
+    /// Time spent.
+    pub seconds: Seconds,
+    /// The form in which the equations were evaluated.
+    pub form: FormReport,
+    /// Where pivots became small and others took over. Outputs stay those of the first chart.
+    pub charts: Vec<ChartChange>,
+    end: f64,
+    pub(crate) compiled: Compiled,
+    pub(crate) kept: Trajectory,
+    pub(crate) looser: Trajectory,
+    /// The times at which both runs are known, where they are not at all times; besides `end`.
+    pub(crate) wanted: Option<Arc<[f64]>>,
+}
+
+impl Motion {
+    /// Time of the start.
+    pub fn start(&self) -> f64 {
+        self.kept.ends()[0]
+    }
+
+    /// Last time at which both runs can be read off: a little before the singularity where a motion stops.
+    pub fn end(&self) -> f64 {
+        self.end
+    }
+
+    /// Whether the motion reached the time asked for.
+    pub fn is_complete(&self) -> bool {
+        self.ending == Ending::Completed
+    }
+
+    /// Whether at `t` the difference of the two runs is no error estimate.
+    pub fn is_doubted(&self, t: f64) -> bool {
+        self.doubt.as_ref().is_some_and(|doubt| (t - doubt.from) * (self.kept.ends()[1] - self.start()) >= 0.0)
+    }
+
+    /// End points of the steps of the kept run.
+    pub fn step_times(&self) -> Vec<f64> {
+        self.kept.step_times().into_owned()
+    }
+
+    /// Coordinates, velocities, multipliers and invariants at `t`.
+    ///
+    /// # Errors
+    /// [`SolveError::Reading`] where the equations of the instant cannot be solved; [`SolveError::Dense`] of
+    /// a long motion at other times than those of [`Settings::times`].
+    pub fn at(&mut self, t: f64) -> Result<Outputs, SolveError> {
+        self.kept.outputs(&mut self.compiled, t)
+    }
+
+    /// The states `y` at `t` from the kept run, in the order of the states of [`Motion::equations`].
+    ///
+    /// # Errors
+    /// As [`Motion::at`].
+    pub fn states_at(&mut self, t: f64) -> Result<Vec<f64>, SolveError> {
+        self.kept.state(&mut self.compiled, t)
+    }
+
+    /// Difference of the runs' coordinates at `t`: the looser's error, in practice a bound of the kept one's.
+    ///
+    /// # Errors
+    /// As [`Motion::at`].
+    pub fn difference_of_runs(&mut self, t: f64) -> Result<Vec<f64>, SolveError> {
+        Ok(self.at_with_difference(t)?.1)
+    }
+
+    /// [`Motion::at`] and [`Motion::difference_of_runs`] in one.
+    pub fn at_with_difference(&mut self, t: f64) -> Result<(Outputs, Vec<f64>), SolveError> {
+        let (kept, looser) = self.at_in_both_runs(t)?;
+        let difference = subtract(&kept.coordinates, &looser.coordinates);
+        Ok((kept, difference))
+    }
+
+    /// [`Motion::at`] from the kept and the looser run: what both give has its own error estimate.
+    ///
+    /// # Errors
+    /// As [`Motion::at`].
+    pub fn at_in_both_runs(&mut self, t: f64) -> Result<(Outputs, Outputs), SolveError> {
+        let kept = self.at(t)?;
+        Ok((kept, self.looser.outputs(&mut self.compiled, t)?))
+    }
+
+    /// The states at `t` and the sums of terms behind their rates; `None` where these cannot be evaluated.
+    pub(crate) fn look(&mut self, t: f64) -> Option<Looked> {
+        let y = self.states_at(t).ok()?;
+        lost_digits::look(&mut self.compiled, t, &y)
+    }
+
+    /// [`lost_digits::round_off`] of this motion.
+    pub(crate) fn round_off(&mut self, looked: &[Looked], looser: &[Vec<f64>], sizes: &[f64]) -> RoundOff {
+        let Motion { equations, compiled, kept, .. } = self;
+        let names = || lost_digits::names_of_states(equations);
+        // a state that was read off has the root of the motion behind it
+        let mut rates = |t: f64, y: &[f64], rates: &mut [f64]| {
+            kept.state(compiled, t).is_ok() && compiled.rates(t, y, rates).is_ok()
+        };
+        lost_digits::round_off(&mut rates, &names, looked, looser, sizes)
+    }
+
+    /// The states of the looser run.
+    pub(crate) fn looser_state(&mut self, t: f64) -> Option<Vec<f64>> {
+        self.looser.state(&mut self.compiled, t).ok()
+    }
+
+    /// The sum of terms behind each multiplier at `t`, since the time `begin`; `None` where it cannot be
+    /// evaluated.
+    pub(crate) fn terms_of_multipliers(&mut self, begin: f64, t: f64) -> Option<Vec<f64>> {
+        let y = self.states_at(t).ok()?;
+        self.compiled.terms_of_multipliers(begin, t, &y).ok()
+    }
+
+    /// The sum of terms behind each coordinate at `t`, given those behind the states.
+    pub(crate) fn terms_of_coordinates(&mut self, t: f64, y: &[f64], states: &[f64]) -> Option<Vec<f64>> {
+        self.compiled.terms_of_coordinates(t, y, states).ok()
+    }
+
+    /// Name, value at the start and largest deviation from it at `times`, of each invariant.
+    ///
+    /// # Errors
+    /// As [`Motion::at`].
+    pub fn invariant_drift(&mut self, times: &[f64]) -> Result<Vec<(String, f64, f64)>, SolveError> {
+        let start = self.at(self.start())?.invariants;
+        let mut drift = vec![0.0_f64; start.len()];
+        for &t in times {
+            for (d, (now, then)) in drift.iter_mut().zip(self.at(t)?.invariants.iter().zip(&start)) {
+                *d = larger(*d, (now - then).abs());
+            }
+        }
+        let names = self.equations.invariants.iter().map(|i| i.name.clone());
+        Ok(names.zip(start).zip(drift).map(|((name, start), drift)| (name, start, drift)).collect())
+    }
+}
+
+/// Stretches of a motion at whose ends the scene's own constraints are looked at.
+const WATCHED: usize = 32;
+
+/// Integrates `equations` from `setting.start` to `setting.end`, twice, and keeps the tighter run.
+///
+/// # Errors
+/// [`SolveError`] where the motion could not be started; how it ended otherwise is [`Motion::ending`].
+pub fn solve(
+    setting: Setting,
+    equations: Equations,
+    constants: &ConstantsRule,
+    settings: &Settings,
+) -> Result<Motion, SolveError> {
+    let clock = Clock::start();
+    let mut prepared = Prepared::new(setting, equations, settings)?;
+    let compile = clock.seconds();
+    let clock = Clock::start();
+    resolve(&mut prepared, constants, settings, Some(setting), None)?;
+    let (runs, chosen) = run(setting, &mut prepared, settings)?;
+    let Runs { trajectories, changes, ending, work, projection, fallbacks } = runs;
+    let seconds = Seconds { derive: 0.0, compile, integrate: clock.seconds() };
+    let motion = Motion::of(prepared, ending, trajectories, seconds);
+    let mut motion = Motion { work, projection, charts: changes, method: Some(chosen), ..motion };
+    motion.form.fallbacks = fallbacks;
+    let steps = [motion.kept.step_times(), motion.looser.step_times()];
+    let by = motion.method.as_ref().map(|chosen| chosen.method);
+    motion.doubt = Doubt::of([&steps[0], &steps[1]], motion.end, motion.is_complete(), by);
+    if motion.doubt.is_none() && !settings.plain {
+        let mut watch = Watch::new(setting.system, &motion.equations, &[])?;
+        let times = motion.grid(WATCHED);
+        let kept: Vec<Outputs> = times.iter().map_while(|&t| motion.at(t).ok()).collect();
+        let Motion { kept: run, looser, compiled, equations, .. } = &mut motion;
+        motion.doubt = watch.doubt((&times, &kept), [run, looser], compiled, &equations.invariants);
+        motion.breaches = watch.breaches;
+        if motion.doubt.is_none() {
+            motion.count_round_off(setting, &Settings { method: by, ..settings.clone() })?;
+        }
+    }
+    motion.seconds.integrate = clock.seconds();
+    Ok(motion)
+}
+
+/// More steps ahead than this, and other methods are tried.
+const PATIENCE: f64 = 20_000.0;
+/// Both runs of `prepared`, made with the same settings, by the method asked for, or a suitable one:
+///
+/// - by the one that suits the equations;
+/// - where their solution is not smooth, by [`Method::Dop853`];
+/// - where more than 20 000 steps are ahead, 500 are tried by [`Method::Radau5`] from there on; if it comes
+///   ten times farther by them, the equations are stiff, and both runs are by it.
+fn run(setting: Setting, prepared: &mut Prepared, settings: &Settings) -> Result<(Runs, Chosen), SolveError> {
+    let Chosen { mut method, mut why } = prepared.method.clone();
+    let asked = settings.method.is_some();
+    let mut patience = if asked { f64::INFINITY } else { PATIENCE.min(settings.max_steps as f64) };
+    loop {
+        let settings = Settings { method: Some(method), ..settings.clone() };
+        match charts::run(setting, prepared, &settings, patience)? {
+            Course::Run(runs) => return Ok((*runs, Chosen { method, why })),
+            Course::Unsuited(NotSuited::NotSmooth) => {
+                (method, why) = (Method::Dop853, "the motion leaves its Taylor series: it is not smooth".into());
+            }
+            Course::Unsuited(NotSuited::Slow { stiff }) => {
+                patience = f64::INFINITY;
+                if stiff {
+                    method = Method::Radau5;
+                    why = format!("the equations are stiff: by {TRIAL} steps it comes {FARTHER} times farther");
+                }
+            }
+        }
+    }
+}
+
+/// Derives and integrates a choice from the start of the scene, in the form that [`Settings::form`] says.
+///
+/// # Errors
+/// [`SolveError`] where there is no motion.
+///
+/// ```
+/// # let scene = scene::Scene::parse("sledge", include_str!("../../scene/sledge.toml"))?;
+/// use motion::{CHETAEV, Settings, choices, solve_choice};
+/// // the ice sledge turns at a constant rate: phi = 0.3 + t
+/// let chetaev = choices(&scene).into_iter().find(|c| c.formulation == CHETAEV).unwrap();
+/// let mut motion = solve_choice(&scene, &chetaev, &Settings::default())?;
+/// assert!(motion.is_complete());
+/// assert!((motion.at(1.0)?.coordinates[2] - 1.3).abs() < 1e-12);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn solve_choice(scene: &Scene, choice: &Choice, settings: &Settings) -> Result<Motion, SolveError> {
+    if choice.removal.is_none() && choice.formulation.needs_removal() {
+        removals(scene)?;
+    }
+    solve_from(setting(scene), choice, settings)
+}
+
+/// [`solve_choice`] of any system, from any start; a removal has to be in the choice.
+///
+/// # Errors
+/// As [`solve_choice`].
+pub fn solve_from(setting: Setting, choice: &Choice, settings: &Settings) -> Result<Motion, SolveError> {
+    let clock = Clock::start();
+    let (equations, chosen) = derive_in_form(setting.system, setting.start, choice, settings.form)?;
+    let derive = clock.seconds();
+    let mut motion = solve(setting, equations, &choice.constants, settings)?;
+    (motion.seconds.derive, motion.form.chosen) = (derive, chosen);
+    Ok(motion)
+}
+
+impl Motion {
+    /// Truncates the motion: outputs cannot be evaluated after `t`.
+    pub fn end_at(&mut self, t: f64, error: &SolveError) {
+        self.stop_at(t, format!("it cannot be read off behind: {error}"));
+    }
+
+    /// It ends where both runs can be read off, at most where it did.
+    pub(crate) fn read_to_the_end(&mut self) {
+        let Motion { compiled, kept, looser, wanted, .. } = self;
+        let end = readable_end(compiled, kept, looser, wanted.as_deref());
+        if (self.end - end) * (self.end - self.start()) > 0.0 {
+            self.end = end;
+        }
+    }
+
+    /// It ends here, for this cause.
+    pub(crate) fn stop_at(&mut self, t: f64, cause: String) {
+        (self.end, self.ending) = (t, Ending::Stopped { t, cause });
+    }
+
+    /// From the kept and the looser run, in this order; without work and projections.
+    pub(crate) fn of(
+        mut prepared: Prepared,
+        ending: Ending,
+        [mut kept, mut looser]: [Trajectory; 2],
+        seconds: Seconds,
+    ) -> Self {
+        let wanted = kept.thinned_to().or(looser.thinned_to()).cloned();
+        prepared.compiled.give_back();
+        Motion {
+            end: readable_end(&mut prepared.compiled, &mut kept, &mut looser, wanted.as_deref()),
+            wanted,
+            ending,
+            constants: prepared.constants,
+            method: None,
+            work: Work::default(),
+            projection: ProjectionReport::default(),
+            seconds,
+            form: FormReport {
+                chosen: ChosenForm { name: prepared.equations.formulation, why: "asked for".into() },
+                why: prepared.form.why,
+                fallbacks: 0,
+            },
+            charts: Vec::new(),
+            doubt: None,
+            breaches: Vec::new(),
+            kept,
+            looser,
+            equations: prepared.equations,
+            compiled: prepared.compiled,
+        }
+    }
+}
+
+/// Distances before a singularity at which outputs are tried, as fractions of the motion's length.
+const BEFORE_A_STOP: [f64; 5] = [0.0, 1e-12, 1e-9, 1e-6, 1e-3];
+
+fn readable_end(
+    compiled: &mut Compiled,
+    kept: &mut Trajectory,
+    looser: &mut Trajectory,
+    wanted: Option<&[f64]>,
+) -> f64 {
+    let ([start, end], [_, other]) = (kept.ends(), looser.ends());
+    let length = (end - start).abs().min((other - start).abs());
+    let direction = (end - start).signum();
+    let mut readable = |t: f64| [&mut *kept, &mut *looser].into_iter().all(|run| run.outputs(compiled, t).is_ok());
+    let ends = BEFORE_A_STOP.map(|fraction| {
+        let t = start + direction * length * (1.0 - fraction);
+        wanted.filter(|_| fraction > 0.0).map_or(t, |wanted| kept_before(wanted, direction > 0.0, t))
+    });
+    ends.into_iter().find(|&t| readable(t)).unwrap_or(start)
+}

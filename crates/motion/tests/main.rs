@@ -1,0 +1,29 @@
+//! The library as its user meets it: one program, one module per subject.
+
+mod collocation;
+mod cones;
+mod connect;
+mod doubts;
+mod endings;
+mod ends;
+mod ensembles;
+mod equidistant;
+mod instants;
+mod last_digits;
+mod long;
+mod lost_digits;
+mod lost_rank;
+mod metric;
+mod model;
+mod natural;
+mod round_off;
+mod sensitivities;
+mod shared_round_off;
+mod silent;
+mod sizes;
+mod steep;
+mod support;
+mod switches;
+mod two_points;
+mod walls;
+mod wanted;

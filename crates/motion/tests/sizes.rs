@@ -1,0 +1,48 @@
+//! Sizes of states.
+
+use equations::Compiled;
+use motion::parts::{sizes, unbounded_sizes};
+use motion::{Metric, REMOVED_CONSTRAINT, choices, derive_at};
+use scene::Scene;
+
+/// A free particle goes `v T` far; its size by which it is integrated is at most 1.
+#[test]
+fn large_states_have_their_size_where_it_is_unbounded() {
+    for (speed, bounded) in [(3e-7, 3e-7), (0.25, 0.25), (5e8, 5e3)] {
+        let text = format!(
+            "title = \"free\"\n[coordinates]\nx = {{ start = 0 }}\n[system]\nlagrangian = \"x'^2/2\"\n\
+             [start.velocities]\n\"x'\" = {speed:?}\n[run]\nduration = 2\n"
+        );
+        let scene = Scene::parse("free", &text).unwrap_or_else(|e| panic!("{e}"));
+        let equations = derive_at(&scene.system, &scene.start, &choices(&scene)[0]).expect("equations");
+        let mut compiled = Compiled::new(&equations).expect("compiled");
+        let mut metric = Metric::new(&scene.system).expect("a metric");
+        let whole = unbounded_sizes(&mut compiled, &mut metric, 0.0, &[0.0, speed], 2.0);
+        assert_eq!(whole, [2.0 * speed, speed]);
+        let least = sizes(&mut compiled, &mut metric, 0.0, &[0.0, speed], 2.0);
+        assert!((least[1] / bounded - 1.0).abs() < 1e-9, "{speed:e}: {least:?}");
+    }
+}
+
+/// `P' = x` with x from 0 to `v T`: a costate that starts at zero has the size `v T²` that x makes of it.
+#[test]
+fn what_another_state_drives_has_the_size_that_it_makes_of_it() {
+    for speed in [1e-4, 0.1] {
+        let text = format!(
+            "title = \"held\"\n[coordinates]\nx = {{ start = 0 }}\ny = {{ start = 0 }}\n[system]\n\
+             lagrangian = \"(x'^2 + y'^2)/2 - x*y\"\nconstraints = [\"y'\"]\n[start.velocities]\n\
+             \"x'\" = {speed:?}\n[run]\nduration = 2\n"
+        );
+        let scene = Scene::parse("held", &text).unwrap_or_else(|e| panic!("{e}"));
+        let choice = choices(&scene).into_iter().find(|choice| choice.formulation == REMOVED_CONSTRAINT);
+        let equations = derive_at(&scene.system, &scene.start, &choice.expect("a choice")).expect("equations");
+        let mut compiled = Compiled::new(&equations).expect("compiled");
+        let mut metric = Metric::new(&scene.system).expect("a metric");
+        let names: Vec<String> = equations.states.iter().map(|y| equations.graph.name(y.symbol)).collect();
+        let at = |name: &str| names.iter().position(|own| own == name).unwrap_or_else(|| panic!("{names:?}"));
+        let mut y = vec![0.0; names.len()];
+        y[at("x'")] = speed;
+        let found = sizes(&mut compiled, &mut metric, 0.0, &y, 2.0);
+        assert!((found[at("P_y")] / (4.0 * speed) - 1.0).abs() < 1e-3, "{speed}: {names:?} {found:?}");
+    }
+}
