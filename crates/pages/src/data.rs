@@ -8,7 +8,8 @@ use serde_json::json;
 use crate::markdown::link;
 use crate::table::Table;
 
-/// A folder of tables beside a page: one CSV each, and `datapackage.json`, which names files, columns and types.
+/// A folder of tables beside a page: one CSV each, and `datapackage.json`, which names files, columns and
+/// types.
 ///
 /// ```
 /// use pages::{DataPackage, Table};

@@ -21,8 +21,8 @@ const EQUATIONS: usize = 3;
 /// A formula of more letters than this stands in the file of equations only.
 const LONG: usize = 700;
 
-/// Everything about a scene, with paths in the folder of reports: the page, which fits a screen; the pictures;
-/// all tables as CSV; the equations in LaTeX.
+/// Everything about a scene, with paths in the folder of reports: the page, which fits a screen; the
+/// pictures; all tables as CSV; the equations in LaTeX.
 ///
 /// # Errors
 /// Where a motion cannot be read off or a picture cannot be drawn.

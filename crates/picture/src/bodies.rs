@@ -26,9 +26,9 @@ pub struct Bodies {
 ///
 /// Seen from above where everything lies in the plane z = 0, else from an oblique direction. The frame shows
 /// the ground and all of the first motion; another one that runs far away leaves it, and the legend says
-/// when. Who asks for reduced motion, or does not animate, sees bodies on their paths at half time, or earlier
-/// where one would have left the frame. Below the frame stand a scale and an arrow; paths have their names where
-/// these do not meet.
+/// when. Who asks for reduced motion, or does not animate, sees bodies on their paths at half time, or
+/// earlier if one would have left the frame. Below the frame stand a scale and an arrow; paths have their
+/// names if these do not meet.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MovingPicture {
     /// Headline of the picture.

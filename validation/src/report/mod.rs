@@ -27,8 +27,8 @@ pub use referees_section::{CASADI, referees_files, without_referees};
 pub use scaling_page::{scaling_files, scaling_text};
 pub use stability_page::StabilityReport;
 
-/// The scene of the paper whose constraint is misprinted. It is not a rolling ball, so its page stands with the
-/// audit of the paper and not among the scenes.
+/// The scene of the paper whose constraint is misprinted. It is not a rolling ball, so its page stands with
+/// the audit of the paper and not among the scenes.
 pub const AS_PRINTED: &str = "ball-in-cone-as-printed";
 
 /// The folder of the page of a scene.

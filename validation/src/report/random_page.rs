@@ -1,7 +1,5 @@
 //! The page about random systems.
 
-use std::fmt::Write;
-
 use anyhow::Result;
 use serde_json::{Map, Value, json};
 
@@ -19,9 +17,6 @@ const BINS: usize = 31;
 const LOWEST: f64 = 0.95;
 const WIDTH: f64 = 0.1;
 
-/// Claims that do not hold and are listed one by one.
-const LISTED: usize = 20;
-
 /// A page, its pictures, and the shrunk counterexamples as scene files.
 ///
 /// # Errors
@@ -38,8 +33,8 @@ pub fn random_files(batch: &Batch, records: &[Record]) -> Result<Vec<File>> {
         files.push(File { path: path.clone().into(), text: scene.to_toml() });
         counterexamples.push((theorem, path.trim_start_matches("evidence/").to_owned()));
     }
-    let data = data(&summary);
-    let text = page(batch, &summary, records, &counterexamples, &data);
+    let data = data(&summary, &open(batch, records));
+    let text = page(batch, &summary, &counterexamples, &data);
     files.push(File { path: "evidence/random.md".into(), text });
     Ok(files.into_iter().chain(data.files()).collect())
 }
@@ -111,7 +106,6 @@ fn at_stake(summary: &Summary) -> String {
 fn page(
     batch: &Batch,
     summary: &Summary,
-    records: &[Record],
     counterexamples: &[(u8, String)],
     data: &DataPackage,
 ) -> String {
@@ -142,7 +136,7 @@ fn page(
             ("right_called", &right.holds),
             ("three", &worst("growth exponent, mu0 = 0", 3.0)),
             ("two", &worst("growth exponent, mu0 not zero", 2.0)),
-            ("open", &open_words(batch, records, counterexamples)),
+            ("open", &counterexample_words(counterexamples)),
             ("seed", &batch.seed),
             ("kinds", &enumerate(&kinds)),
             ("duration", &DURATION),
@@ -153,7 +147,7 @@ fn page(
 }
 
 /// The tables beside the page.
-fn data(summary: &Summary) -> DataPackage {
+fn data(summary: &Summary, open: &Table) -> DataPackage {
     let mut pairs = Table::new(["pair", ">differ", ">of", ">median time of the gap 1e-3 (s)", ">passed by the end"]);
     for names in &DIVERGES {
         let (differ, of) = counted(summary, names.differs);
@@ -177,6 +171,7 @@ fn data(summary: &Summary) -> DataPackage {
         sizes.row(&[&n, &h, count]);
     }
     let mut data = DataPackage::new("data/random", "Random systems");
+    data.table("open", "Verdicts that are undecided or fail, system by system", open);
     data.table("pairs", "When motions differ, pair by pair", &pairs);
     data.table("counts", "Further counts, about which nothing is claimed", &others);
     data.table("measured", "Further figures: least, median, largest", &measured(summary));
@@ -216,35 +211,27 @@ fn measured(summary: &Summary) -> Table {
     table
 }
 
-fn open_words(batch: &Batch, records: &[Record], counterexamples: &[(u8, String)]) -> String {
-    let mut text = String::from("\n## What does not hold\n\n");
-    let open: Vec<String> = records
-        .iter()
-        .flat_map(|record| record.open.iter().map(move |open| (record, open)))
-        .map(|(record, open)| {
-            let figure =
-                open.figure.map_or(String::new(), |(x, limit)| format!(", {} (limit {})", short(x), short(limit)));
-            let (name, kind, theorem) = (batch.name(record.index), record.kind, label(open.theorem));
-            format!("- `{name}`, {kind}: {theorem}, {}: {}{figure}. {}", open.claim, open.word, open.note)
-        })
-        .collect();
-    if open.is_empty() {
-        text += "Nothing.\n";
+/// Verdicts that are not *holds*, system by system.
+fn open(batch: &Batch, records: &[Record]) -> Table {
+    let columns = ["system", "kind", "theorem", "claim", "verdict", ">figure", ">limit", "note"];
+    let mut table = Table::new(columns);
+    for (record, open) in records.iter().flat_map(|record| record.open.iter().map(move |open| (record, open))) {
+        let [figure, limit] = open.figure.map_or(Default::default(), |(x, limit)| [x, limit].map(short));
+        let (name, word) = (batch.name(record.index), open.word.to_string());
+        table.row(&[&name, &record.kind, &label(open.theorem), &open.claim, &word, &figure, &limit, &open.note]);
     }
-    for line in open.iter().take(LISTED) {
-        let _ = writeln!(text, "{}", line.trim_end());
-    }
-    if open.len() > LISTED {
-        let _ =
-            writeln!(text, "- and {} more: `evidence random --seed {} --format json`", open.len() - LISTED, batch.seed);
-    }
-    for (theorem, path) in counterexamples {
-        let _ = writeln!(text, "\nSmallest system found on which {} fails: [{path}]({path}).", label(*theorem));
-    }
+    table
+}
+
+/// The smallest systems on which a theorem fails.
+fn counterexample_words(counterexamples: &[(u8, String)]) -> String {
     if counterexamples.is_empty() {
-        text += "\nNo counterexample was found; one would be shrunk and stand here as a scene file.\n";
+        return "No counterexample was found; deltaq would shrink one and write it as a scene file.\n".into();
     }
-    text
+    let line = |(theorem, path): &(u8, String)| {
+        format!("- Smallest system found on which {} fails: [{path}]({path}).\n", label(*theorem))
+    };
+    counterexamples.iter().map(line).collect()
 }
 
 const STYLES: [Style; 4] =

@@ -23,8 +23,8 @@ const CERTAINTY: f64 = 10.0;
 /// The page.
 pub const CASADI: &str = "evidence/referees.md";
 
-/// The page and its table. Only bounds are printed, powers of ten, so that nothing changes with the last digit
-/// of a difference.
+/// The page and its table. Only bounds are printed, powers of ten, so that nothing changes with the last
+/// digit of a difference.
 ///
 /// # Errors
 /// Where a motion cannot be read off.
