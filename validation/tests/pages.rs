@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use comparison::{Comparison, Finding, Fit, Fits, FittedMotion, Membership, Verdict, compare_unfitted};
 use integrate::{Method, Projection};
+use motion::{CHETAEV, Ending, Form, Metric, Settings, SolveError, VAKONOMIC, choices, solve_choice};
 use pages::{membership::value as membership_value, scene_files, summary, verdicts};
 use program::File;
 use review::substitution::SUBSTITUTION;
