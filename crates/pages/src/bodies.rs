@@ -58,7 +58,8 @@ const FALLS: f64 = 3.0;
 /// What the picture shows: that only the first motion stays up, or how far the body gets from itself.
 fn message(scene: &Scene, motions: Option<usize>, picture: &MovingPicture) -> String {
     let moved = scene.view.bodies.iter().find(|body| scene.view.is_moved(&scene.system, body));
-    let body = moved.map_or(String::new(), |body| body.name.replace('-', " "));
+    let named = |body: &&mechanics::Body| scene.title.to_lowercase().contains(&body.name.to_lowercase());
+    let body = moved.filter(named).map_or("body".to_owned(), |body| body.name.replace('-', " "));
     let count = match motions {
         None => return format!("The {body} under each formulation"),
         Some(1) => return format!("All formulations give the {body} one motion"),

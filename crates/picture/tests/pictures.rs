@@ -222,5 +222,5 @@ fn panels_share_the_legend_and_the_horizontal_axis() {
     let texts = texts(&panels.to_svg().unwrap());
     assert!(has(&texts, "of y (m)"), "{texts:?}");
     assert_eq!(texts.iter().filter(|text| *text == "Chetaev").count(), 1);
-    assert_eq!(texts.iter().filter(|text| *text == "t (s)").count(), 2, "one per column");
+    assert_eq!(texts.iter().filter(|text| *text == "t (s)").count(), 3, "one per panel");
 }

@@ -103,12 +103,7 @@ fn at_stake(summary: &Summary) -> String {
     )
 }
 
-fn page(
-    batch: &Batch,
-    summary: &Summary,
-    counterexamples: &[(u8, String)],
-    data: &DataPackage,
-) -> String {
+fn page(batch: &Batch, summary: &Summary, counterexamples: &[(u8, String)], data: &DataPackage) -> String {
     let mut claims = Table::new(["", "claim", ">holds", ">fails", ">undecided", ">at stake"]);
     for (theorem, Count { holds, fails, undecided }) in &summary.theorems {
         let at_stake = summary.at_stake.get(theorem).unwrap_or(&0);

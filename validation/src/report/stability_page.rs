@@ -236,6 +236,7 @@ impl StabilityReport {
         match everywhere.len() {
             count if count == all.len() => format!("{what}: every method reaches the end everywhere"),
             0 => format!("{what}: every method stops somewhere, with a reason"),
+            1 => format!("{what}: {} reaches the end everywhere, the others stop", everywhere[0]),
             _ => format!("{what}: {} reach the end everywhere, the others stop", enumerate(&everywhere)),
         }
     }
@@ -254,7 +255,7 @@ impl StabilityReport {
             let style = if i == 0 { Style::Ink } else { Style::Member(i as u8 - 1) };
             let label = if i == 0 { "auto (default)" } else { by.name() };
             let points: Vec<Option<(f64, f64)>> = cells.iter().map(|cell| error(cell)).collect();
-            stops.extend(points.windows(2).filter(|pair| pair[1].is_none()).filter_map(|pair| pair[0]));
+            stops.extend(points.windows(2).filter_map(|pair| pair[0].xor(pair[1])));
             // a line breaks where an answer is refused
             let lines =
                 points.split(Option::is_none).map(|points| points.iter().copied().flatten().collect::<Vec<_>>());
