@@ -1,5 +1,6 @@
-"""Builds the site: `python build.py OUT DOC`, in an environment with requirements.txt; DOC is what `cargo doc` wrote. No page
-asks for anything from elsewhere.
+"""Builds the site: `python build.py OUT DOC OLDER`, in an environment with requirements.txt; DOC is what `cargo doc` wrote, OLDER
+what `evidence reports --ages` prints. No page asks for anything from elsewhere. A measured page that is older than its code is not
+built: a note that says so stands at its place.
 
 Pages are those of the project, at their own places; what they link to is copied beside them. Then every link of every page
 built is followed: one that leads nowhere is an error.
@@ -31,7 +32,17 @@ def listing(folder):
     return files, f"# {folder}\n\n" + "".join(f"- [{file}]({file})\n" for file in files)
 
 
-def stage(source):
+def older(listed):
+    """Notes by the pages of reports that are older than their code: a page and what is wrong with it on each line."""
+    notes = {}
+    for line in listed.splitlines():
+        page, _, why = line.partition("\t")
+        name = Path(page).stem
+        notes[Path("reports") / page] = f"# {name}\n\nThis page is not part of the site: {why}. It is in the repository, under `reports/{page}`.\n"
+    return notes
+
+
+def stage(source, notes):
     """Copies pages and what they link to, folders as lists of their files; the files that are no pages."""
     pages = sorted(path.relative_to(ROOT) for pattern in PAGES for path in ROOT.glob(pattern))
     files, folders = {Path(EXPLORER)}, set()
@@ -49,7 +60,7 @@ def stage(source):
                 files.add(inside)
             return match[0].replace(".ipynb", ".md")
 
-        text = LINK.sub(link, (ROOT / page).read_text("utf-8"))
+        text = LINK.sub(link, notes.get(page) or (ROOT / page).read_text("utf-8"))
         write(source / page, text)
     for notebook in ROOT.glob(NOTEBOOKS):
         place = source / notebook.relative_to(ROOT)
@@ -117,11 +128,11 @@ def complete(page):
     page.write_text(text, "utf-8")
 
 
-def main(out, rust):
+def main(out, rust, listed):
     source = out.with_name(out.name + "-source")
     for folder in (source, out):
         shutil.rmtree(folder, ignore_errors=True)
-    files = stage(source)
+    files = stage(source, older(listed))
     for name, text in python_reference.pages(ROOT / MODULE).items():
         write(source / f"{name}.md", text)
     shutil.copy(HERE / "index.md", source)
@@ -140,4 +151,4 @@ def main(out, rust):
 
 
 if __name__ == "__main__":
-    main(Path(sys.argv[1]).absolute(), Path(sys.argv[2]).absolute())
+    main(Path(sys.argv[1]).absolute(), Path(sys.argv[2]).absolute(), sys.argv[3])

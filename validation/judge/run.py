@@ -20,9 +20,9 @@ ALIKE = 0.05
 TITLE = "# Which law do rigid-body engines integrate?\n\n"
 HEAD = """
 A ball on a turning table, the scene `turntable`: an engine has a table on a driven joint, a ball, a contact with friction, and
-the start of the scene; PyDy has the two constraints. Its motions, 500 samples in 5 s, from 1 s on, went to `deltaq judge`. This is measured, with the settings that
-are named, and no blame: other settings are other numbers. Errors are those of the regression, one standard error. A law
-that leaves more than 1 % of the forces does not fit; what numbers are given then are those of the law that leaves least, Chetaev's.
+the start of the scene; PyDy has the two constraints. Its motions, 500 samples in 5 s, from 1 s on, went to `deltaq judge`. Results depend on the settings
+listed; they are not a criticism of the engines. Errors are those of the regression, one standard error. A law
+that leaves more than 1 % of the forces does not fit; the numbers are then those of the law that leaves least, Chetaev's.
 
 """
 
@@ -36,8 +36,8 @@ Again, in five lines:
 $ cargo build --release --package deltaq
 $ python3 -m venv engines
 $ engines/bin/pip install -r validation/judge/requirements.txt
-$ engines/bin/python validation/judge/run.py target/release/deltaq reports/judge.md
-$ cargo run --release -- reports --stamp judge.md
+$ engines/bin/python validation/judge/run.py target/release/deltaq reports/evidence/judge.md
+$ cargo run --release -- reports --stamp evidence/judge.md
 ```
 """
 

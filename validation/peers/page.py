@@ -3,6 +3,8 @@
 import math
 import re
 
+from data_package import DataPackage
+from picture import curves, drawn, headline
 from problems import MEMBERS
 from race import OURS, TARGETS, short
 
@@ -35,16 +37,15 @@ def ms(seconds):
     return f"{x:.{digits[0]}f}" if digits else short(x, 2)
 
 
-def table(head, rows, column="---:|"):
-    lines = [[""] + head] + rows
-    written = ["| " + " | ".join(cells).lstrip() + " |" for cells in lines]
-    return "\n".join([written[0].replace("|  |", "| |", 1), "|---|" + column * len(head)] + written[1:])
+def markdown(columns, rows):
+    lines = [columns, ["---", *["---:"] * (len(columns) - 1)], *rows]
+    return "".join("| " + " | ".join(cells) + " |\n" for cells in lines)
 
 
-def grid(races, cell, column="---:|"):
-    """A row for every row of the races, a column for every race."""
+def grid(races, cell):
+    """Columns and rows: a row for every row of the races, a column for every race."""
     rows = dict.fromkeys(rung.row for race in races for rung in race.rungs)
-    return table([race.case.title for race in races], [[row] + [cell(race, row) for race in races] for row in rows], column)
+    return ["tool", *(race.case.title for race in races)], [[row, *(cell(race, row) for race in races)] for row in rows]
 
 
 def seconds(rung):
@@ -79,7 +80,7 @@ def settings(races):
         rung = least(race, row, seconds)
         return f"{rung.method}, {short(rung.tolerance)}: {short(rung.error)}" if rung else "–"
 
-    return grid(races, cell, "---|")
+    return grid(races, cell)
 
 
 def by_hand(races):
@@ -96,7 +97,7 @@ def by_hand(races):
         setting = lambda rung: f"{rung.method}, {short(rung.tolerance)}: {short(rung.error)}"
         verdict = f"{ms(ratio / 1e3)}, {'met' if ratio >= 1 else '**missed**'}"
         lines.append([race.case.title, ms(theirs.seconds), ms(ours.seconds), verdict, setting(theirs), setting(ours)])
-    return table(["heyoka, ms", "deltaq, ms", "ratio", "heyoka", "deltaq"], lines)
+    return ["problem", "heyoka (ms)", "deltaq (ms)", "ratio", "heyoka, setting", "deltaq, setting"], lines
 
 
 def set_up(races):
@@ -120,7 +121,42 @@ def derivations(races):
         cells = [f"{ms(race.setups[row])} ms" if row in race.setups else "–" for row in ("SymPy", OURS)]
         refused = [words for row, _, words in race.failures if row == "SymPy"]
         rows.append([race.case.title, refused[0] if refused and cells[0] == "–" else cells[0], cells[1]])
-    return table(["SymPy, `LagrangesMethod`", "deltaq, derivation and compilation"], rows)
+    return ["problem", "SymPy, LagrangesMethod", "deltaq, derivation and compilation"], rows
+
+
+def counted(rows):
+    """How many comparisons meet what was wanted, and of how many."""
+    text = str(rows)
+    met, missed = text.count(", met)"), text.count("**missed**")
+    return f"{met} of {met + missed}"
+
+
+def data(races):
+    """All tables."""
+    scenes = [race for race in races if not race.case.trailers and not race.case.vary]
+    trains = [race for race in races if race.case.trailers and race.rungs]
+    failures = [[race.case.title, *failure] for race in races for failure in race.failures]
+    failures += [[race.case.title, "all", "reference", race.reference] for race in races
+                 if race.reference != "not timed" and isinstance(race.reference, str)]
+    confirmed = [race for race in races if not isinstance(race.reference, str)]
+    checks = [[race.case.title, short(race.reference, 1), short(max(race.checks.values()), 1)] for race in confirmed]
+    targets = " / ".join(map(short, TARGETS))
+    package = DataPackage("data/peers", "The same problems in other tools, timed")
+    package.table("solve", f"Milliseconds of one run to an error of {short(TARGET)} (times those of deltaq)", *beside_ours(scenes, seconds, demanded))
+    package.table("settings", "Method, tolerance and error of these", *settings(scenes))
+    package.table("errors", f"Milliseconds to errors of {targets}", *three(scenes, "trajectory"))
+    package.table("ends", "The same if only the end is wanted", *three(scenes, "end"))
+    package.table("by-hand", "Next to heyoka, reduced by hand", *by_hand(races))
+    package.table("set-up", "Milliseconds of derivation + compilation", *set_up(scenes))
+    package.table("derivation", "The derivation alone, by the tool that has a class for it", *derivations(races))
+    package.table("total", f"From scene file to trajectory, milliseconds (wanted: {TOTAL} times those of deltaq)", *beside_ours(scenes, lambda rung: rung.total, lambda row: TOTAL))
+    package.table("trains-solve", "Car with n trailers: milliseconds of one run", *beside_ours(trains, seconds, demanded))
+    package.table("trains-set-up", "Car with n trailers: derivation + compilation", *set_up(trains))
+    package.table("trains-settings", "Car with n trailers: method, tolerance and error", *settings(trains))
+    package.table("not-measured", "What was not measured, and why", ["problem", "who", "what", "what became of it"], failures)
+    package.table("checks", "Checks of the reference and of the right-hand sides",
+                  ["problem", "our DOP853 at 1e-14 from the reference", "right-hand sides at the start, largest relative difference"], checks)
+    return package
 
 
 def page(races, provenance):
@@ -132,97 +168,30 @@ def page(races, provenance):
 def written(races, provenance):
     """The page; `provenance` has date, commit, seconds, machine, effort, ours and versions."""
     scenes = [race for race in races if not race.case.trailers and not race.case.vary]
-    trains = [race for race in races if race.case.trailers and race.rungs]
-    solve, total = beside_ours(scenes, seconds, demanded), beside_ours(scenes, lambda rung: rung.total, lambda row: TOTAL)
-    met = [(text.count(", met)"), text.count(", met)") + text.count("**missed**")) for text in (solve, total)]
-    failures = [(race.case.title, *failure) for race in races for failure in race.failures]
-    failures += [(race.case.title, "all", "reference", race.reference) for race in races
-                 if race.reference != "not timed" and isinstance(race.reference, str)]
-    words = lambda text: text.replace("|", "\\|").replace("\n", " ")
-    confirmed = [race for race in races if not isinstance(race.reference, str)]
-    on_trains = f"""Milliseconds of one run to an error of {short(TARGET)}.
-
-{beside_ours(trains, seconds, demanded)}
-
-Derivation + compilation, milliseconds:
-
-{set_up(trains)}
-
-Method, tolerance and error:
-
-{settings(trains)}"""
+    columns, rows = beside_ours(scenes, seconds, demanded)
+    _, total = beside_ours(scenes, lambda rung: rung.total, lambda row: TOTAL)
+    pictures = [race for race in races if race.rungs and not race.case.vary]
+    image = lambda race: f"![{headline(race.case.title, drawn(curves([vars(rung) for rung in race.rungs])))}](peers-{race.case.name}.svg)\n\n"
     return f"""# The same problems in other tools
 
-**Solve time: {met[0][0]} of {met[0][1]} comparisons meet what was wanted; from scene file to trajectory: {met[1][0]} of {met[1][1]}.**
+**Solve time meets the target in {counted(rows)} comparisons; the time from scene file to trajectory in {counted(total)}.** The target for one run is the time of heyoka, and a third of the time of any other tool; \
+from scene file to trajectory it is a fiftieth.
 
 {INTRODUCTION}
 ## Solve time to an error of {short(TARGET)}
 
-Milliseconds of one run (times those of ours; wanted: at least 1 for heyoka, 3 for any other).
+Milliseconds of one run (times those of deltaq).
 
-{solve}
+{markdown(columns, rows)}
+{"".join(map(image, pictures[:2]))}{"".join(f"- [{race.case.title}](peers-{race.case.name}.svg){chr(10)}" for race in pictures[2:])}
+## Data
 
-Method, tolerance and error of these:
-
-{settings(scenes)}
-
-To errors of {" / ".join(map(short, TARGETS))}:
-
-{three(scenes, "trajectory")}
-
-The same where only the end is wanted, with the error there:
-
-{three(scenes, "end")}
-
-## Beside heyoka, reduced by hand
-
-Milliseconds of a motion to an error of {short(TARGET)}, without heyoka's time to compile, which is below; wanted: a ratio of at least 1. {MEMBERS} at a \
-time are {MEMBERS} motions from other starts in one call on one thread, heyoka's in its batch mode, ours by `System.ensemble` with one run each; the time is \
-that of one of them, the error the largest of all.
-
-{by_hand(races)}
-
-## Set-up
-
-Milliseconds for the settings above: derivation + compilation.
-
-{set_up(scenes)}
-
-The derivation alone, by the tool that has a class for it (nothing is integrated):
-
-{derivations(races)}
-
-## From scene file to trajectory
-
-Milliseconds for derivation, compilation and one run, of the setting for which the sum is least (times those of ours; wanted: at least {TOTAL}).
-
-{total}
-
-## Car with n trailers
-
-{on_trains if trains else "Not timed in this run: `cargo xtask peers --only trailers`."}
-
-## Error over time
-
-{"".join(f"![{race.case.title}](peers-{race.case.name}.svg){2 * chr(10)}" for race in races if race.rungs and not race.case.vary)}## What was not measured, and why
-
-<details><summary>{len(failures)} settings</summary>
-
-| problem | who | what | what became of it |
-|---|---|---|---|
-{"".join("| " + " | ".join(map(words, failure)) + " |" + chr(10) for failure in failures)}
-</details>
-
-## Checks
-
-| problem | our DOP853 at 1e-14 from the reference | right-hand sides at the start, largest relative difference from ours |
-|---|---:|---:|
-{"".join(f"| {race.case.title} | {short(race.reference, 1)} | {short(max(race.checks.values()), 1)} |{chr(10)}" for race in confirmed)}
+{data(races).list(1)}
 ## How this was made
 
 `cargo xtask peers` on {provenance["date"]}, commit {provenance["commit"]}, in {provenance["seconds"]:.0f} s; {provenance["machine"]}. \
 {provenance["effort"].rounds} turns of at least {provenance["effort"].repeat} s for each time that counts, a limit of {provenance["effort"].limit} s on \
-each step of each tool, one thread.
+each step of each tool, one thread. {MEMBERS} at a time (`by-hand.csv`): {MEMBERS} motions from other starts in one call.
 
 {", ".join(f"{name} {version}" for name, version in provenance["versions"].items())}. Licences: {LICENCES}
 """
@@ -232,21 +201,17 @@ LICENCES = """\
 heyoka MPL-2.0; CasADi LGPL-3.0, with SUNDIALS BSD-3-Clause; NumPy, SciPy, SymPy and mpmath BSD-3-Clause; numba and llvmlite BSD-2-Clause. \
 They are run, and nothing of ours is linked with them."""
 
-INTRODUCTION = r"""Every tool gets the text of the scene (heyoka also equations reduced by hand, and of the car with trailers all others, ours also a text \
-with a place for every body), derives and compiles in its own way, in the best form that we know for it, and must have our right-hand side at the start to 1e-12, or \
-it is not timed. All are driven from Python, ours through its module, each in a process of its own. A trajectory is the coordinates at 21 equidistant \
-times. Its error is the largest of them in the kinetic metric $\sqrt{\Delta q^{\mathsf T} M \Delta q}$ against heyoka's Taylor method in 113 bits at \
-1e-28, which our own integration confirms. A time is the least of repeated runs, tools taking turns; a tolerance is relative and absolute alike, and the \
-fastest setting that reaches the error counts. Free constants of the removed-constraint motion are given to all, ours too. Imports and process starts are \
-not counted. Our set-up is measured as part of a whole; for the others the parts are added up.
+INTRODUCTION = r"""Every tool gets the text of the scene and derives and compiles in its own way, in the best form that we know for it. A tool is timed \
+only if its right-hand side at the start agrees with ours to 1e-12. All run from Python, each in a process of its own.
 
-- **deltaq**: one run of the time loop with projection onto the constraint, dense output everywhere, by the module's own clock, which leaves out the call \
-from Python; `solve` is what users call, with a second run at a hundredth of the tolerance as error estimate.
-- **heyoka**: its own differentiation, elimination in expressions, one function a step or compact mode, with `fast_math`; or closed forms simplified by \
-SymPy, whose time counts as set-up. *Reduced by hand* (`validation/peers/by_hand.py`): quasi-velocities; of the vakonomic sledge the known costates, of the \
-sledge without constraint the cyclic momentum put in, of the cone momenta of the turn rates; angular momenta that never change are numbers. A quantity that the \
-scene does not have is differentiated along our rates for the check. It compiles anew for every tolerance.
-- **SciPy**: `solve_ivp` (DOP853, LSODA, Radau), SymPy's derivation, straight-line code for the right-hand side as Python or by numba; *compiled whole*: \
-DOP853 with SciPy's tableau, step control and dense output as one numba function.
-- **CasADi**: SX expressions; CVODES (Adams, BDF) with the unknowns eliminated, IDAS with the equations as they stand.
+| tool | what it was given | how it runs |
+|---|---|---|
+| deltaq | the scene; for trailers also a text with a place for every body | one run with projection and dense output; `solve` makes a second run at a hundredth of the tolerance as error estimate |
+| heyoka | the scene; closed forms simplified by SymPy, whose time counts as set-up; *reduced by hand*: quasi-velocities, known costates, cyclic momenta (`validation/peers/by_hand.py`) | Taylor, `fast_math`, compiled anew for every tolerance |
+| SciPy | SymPy's derivation, straight-line code | `solve_ivp` (DOP853, LSODA, Radau) in Python or numba; *compiled whole*: DOP853 as one numba function |
+| CasADi | SX expressions | CVODES with the unknowns eliminated, IDAS with the equations as they stand |
+
+A trajectory is the coordinates at 21 equidistant times. Its error is the largest in the kinetic metric $\sqrt{\Delta q^{\mathsf T} M \Delta q}$ against heyoka's Taylor \
+method in 113 bits at 1e-28, which our own integration confirms. A time is the least of repeated runs, tools taking turns; the fastest setting that reaches \
+the error counts. Imports and process starts are not counted.
 """.replace("\\\n", "")

@@ -1,4 +1,4 @@
-"""`cargo xtask peers`: times ours and the peers, writes `reports/peers.md` with its pictures, and everything
+"""`cargo xtask peers`: times ours and the peers, writes `reports/evidence/peers.md` with its pictures, and everything
 that was measured as JSON.
 """
 
@@ -17,7 +17,7 @@ from pathlib import Path
 # scenes are read by the reader of the other referee
 sys.path.insert(0, str(Path(__file__).parents[1] / "casadi"))
 
-from page import page
+from page import data, page
 from picture import picture
 from problems import problems
 from race import QUICK, Effort, Race
@@ -38,11 +38,13 @@ def processor():
 
 def write(folder, files):
     """Whole or not at all: beside their places first and then moved."""
-    folder.mkdir(parents=True, exist_ok=True)
     for name, text in files.items():
-        (folder / f".{name}").write_text(text)
+        path = folder / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.with_name(f".{path.name}").write_text(text)
     for name in files:
-        os.replace(folder / f".{name}", folder / name)
+        path = folder / name
+        os.replace(path.with_name(f".{path.name}"), path)
     print(", ".join(str(folder / name) for name in files))
 
 
@@ -50,7 +52,7 @@ def pictures(measured):
     """Of the problems with one motion at a time, from what was measured, as it is kept."""
     names = {case.title: case.name for case in problems() if not case.vary}
     drawn = [problem for problem in measured if problem["problem"] in names and problem["rungs"]]
-    return {f"peers-{names[problem['problem']]}.svg": picture(problem["problem"], problem["rungs"]) for problem in drawn}
+    return {f"evidence/peers-{names[problem['problem']]}.svg": picture(problem["problem"], problem["rungs"]) for problem in drawn}
 
 
 def main():
@@ -90,7 +92,7 @@ def main():
     text = json.dumps(provenance | {"effort": effort._asdict(), "problems": measured}, indent=1, default=vars)
     write(kept.parent, {kept.name: text + "\n"})
     whole = not arguments.quick and not arguments.only
-    files = {"peers.md": page(races, provenance)} | pictures(json.loads(text)["problems"])
+    files = {"evidence/peers.md": page(races, provenance)} | data(races).files() | pictures(json.loads(text)["problems"])
     return write(arguments.out or (Path("reports") if whole else arguments.target), files)
 
 

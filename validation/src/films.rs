@@ -39,7 +39,7 @@ pub fn files(scenes: &[&str], done: impl Fn(&str) + Sync) -> Result<Vec<File>> {
             Ok(Some(Told { seconds, point, shortest })) => {
                 short += usize::from(shortest.is_some_and(|length| length < 1.0));
                 let tells = if point.value >= EXCLUDED { "excluded at" } else { "cannot tell," };
-                let own = format!("{seconds} s: {tells} {:.1} σ, {} minima", point.value.sqrt(), point.minima);
+                let own = format!("{seconds} s: {tells} {:.0} σ, {} minima", point.value.sqrt(), point.minima);
                 (own, shortest.map_or("none found".into(), |length| format!("{length:.3} s")))
             }
             Ok(None) => continue,
@@ -47,16 +47,16 @@ pub fn files(scenes: &[&str], done: impl Fn(&str) + Sync) -> Result<Vec<File>> {
         };
         table.row(&[name, &own, &shortest]);
     }
-    let mut text = String::from("# The shortest film that decides\n\n");
+    let mut text = String::from("# The shortest recording that decides\n\n");
     let _ = writeln!(
         text,
-        "How long must the motion be filmed before no vakonomic motion fits it? {short} scenes need less than a second.\n\n\
+        "**For {short} scenes less than a second of recording excludes every vakonomic motion that was found.**\n\n\
          The scene's own motion by Chetaev's equations, all coordinates at {RATE} Hz with errors of {SIGMA} m or rad, without \
          noise. Vakonomic motions are fitted to it with start and μ₀ free, parameters as in the scene, from {STARTS} \
-         starts; the film decides where the least χ² that was found is {EXCLUDED} or more. *Its own film* has the duration of the \
-         scene; shortest films are looked for up to eight times that, to 2 %. *None found* is what is expected where a μ₀ \
-         makes the motions the same, and no more than that otherwise. Each length was looked at again from four times as many \
-         starts. A minimum that is missed all the same makes a film look too good: lengths are lower bounds.\n\n\
+         starting guesses. The recording decides if the least χ² found is {EXCLUDED} or more. *Its own film* has the duration of the \
+         scene; shortest films are searched up to eight times that, to 2 %. *None found* is expected if some μ₀ \
+         makes the motions equal. Each length was searched again from four times as many \
+         guesses. A missed minimum makes a recording look too good, so lengths are lower bounds.\n\n\
          `deltaq design SCENE --tell chetaev,vakonomic --free start --film 60Hz,1e-3,10s` asks the same; `--over` looks for \
          motions that decide sooner.\n"
     );
@@ -70,7 +70,7 @@ pub fn files(scenes: &[&str], done: impl Fn(&str) + Sync) -> Result<Vec<File>> {
             others.join(", ")
         );
     }
-    Ok(vec![File { path: "films.md".into(), text }])
+    Ok(vec![File { path: "evidence/films.md".into(), text }])
 }
 
 /// None for a scene without one of the two.

@@ -9,8 +9,7 @@ use anyhow::{Context, Result};
 use equations::Formulation;
 use integrals::{Found, Integrals, Measure, Multiplier, Open, Reduction, Reversed, reversible_scene};
 use motion::{CHETAEV, Choice, VAKONOMIC, default_constants};
-use pages::Table;
-use pages::markdown::inert;
+use pages::{DataPackage, Table};
 use picture::{Axis, HeatMap};
 use program::{File, parallel};
 use scene::{Number, Scene};
@@ -191,16 +190,20 @@ impl Map {
             is(|measure| matches!(measure, Measure::None { .. })),
             is(|measure| matches!(measure, Measure::Open(_))),
         ];
-        let axis = |(name, from, to): (&str, f64, f64)| Axis { range: Some((from, to)), ..Axis::linear(name) };
+        let unit = |name: &str| if name.starts_with('c') { "m" } else { "kg m²" };
+        let axis = |(name, from, to): (&str, f64, f64)| Axis {
+            range: Some((from, to)),
+            ..Axis::linear(format!("{name} ({})", unit(name)))
+        };
         let map = HeatMap {
             title: self.says.into(),
             x: axis(self.x),
             y: axis(self.y),
             columns: VALUES,
-            value: Axis::linear("linear integrals"),
+            value: Axis::linear("integrals linear in the velocities"),
             cells: found.iter().map(linear).collect(),
             marked: found.iter().map(|found| matches!(found.measure, Measure::Local { .. })).collect(),
-            mark: "a measure".into(),
+            mark: "an invariant measure".into(),
         };
         Ok((map.to_svg(), counts))
     }
@@ -220,6 +223,7 @@ fn asked(scene: &Scene, formulation: &'static Formulation) -> Result<Integrals> 
 /// Answers that contradict each other, and files that cannot be read.
 pub fn files(scenes: &[&str], has: &dyn Fn(&str) -> bool, done: impl Fn(&str) + Sync) -> Result<Vec<File>> {
     let (mut text, mut files) = (head(), Vec::new());
+    let mut data = DataPackage::new("data/integrals", "Invariant measures and first integrals");
     if has("scenes") {
         let begun = Instant::now();
         let answers = parallel::map(scenes, |&name| -> Result<_> {
@@ -230,21 +234,24 @@ pub fn files(scenes: &[&str], has: &dyn Fn(&str) -> bool, done: impl Fn(&str) + 
             Ok(both)
         });
         let answers = answers.into_iter().collect::<Result<Vec<_>>>()?;
+        data.table("catalogue", "Measures and integrals of every scene", &catalogue_table(&answers));
+        data.table("open", "Why a question is open, and for which scenes", &reasons(&answers));
         let _ = write!(
             text,
-            "\n## The catalogue\n\n{}\nBoth formulations of {} scenes took {:.0} s on {} threads.\n\n{}",
-            catalogue_table(&answers),
+            "\n## The catalogue\n\n{} Both formulations of {} scenes took {:.0} s on {} threads. {COLUMNS}\n",
+            counted(&answers),
             answers.len(),
             begun.elapsed().as_secs_f64(),
             parallel::threads(),
-            reasons(&answers)
         );
     }
     if has("literature") {
-        text += &literature_text()?;
+        let (sentence, table) = of_literature()?;
+        data.table("literature", "What is known from the literature, and what was found", &table);
+        let _ = write!(text, "\n## The literature\n\n{sentence}\n");
     }
     if has("maps") {
-        text += "\n## Maps\n\nColour: how many integrals are linear in the velocities. A dot: there is a measure.\n";
+        text += MAPS_HEAD;
         for map in &MAPS {
             let begun = Instant::now();
             let (svg, [some, none, open]) = map.drawn().context(map.name)?;
@@ -253,28 +260,29 @@ pub fn files(scenes: &[&str], has: &dyn Fn(&str) -> bool, done: impl Fn(&str) + 
             let path = format!("{}.svg", map.name);
             let _ = writeln!(
                 text,
-                "\n![{}]({path})\n\n{}. Of {} points {some} have a measure, {none} have none, {open} are open; {per_thousand:.0} s per \
-                 thousand points.",
-                map.says,
+                "\n![{}]({path})\n\nOf {} points {some} have a measure, {none} have none, {open} are open; {per_thousand:.0} s per thousand points.",
                 map.says,
                 VALUES * VALUES
             );
             files.push(File { path: path.into(), text: svg });
         }
     }
+    let _ = write!(text, "\n## Data\n\n{}", data.list(0));
     files.insert(0, File { path: "integrals.md".into(), text });
-    Ok(files)
+    Ok(files.into_iter().chain(data.files()).collect())
 }
+
+const MAPS_HEAD: &str = "\n## Maps\n\nColour: the number of independent integrals linear in the velocities. Grey: not decided. A dot: there is an invariant measure.\n";
 
 fn head() -> String {
     "# Invariant measures and integrals\n\n\
-     Is there a measure e^σ(q) dq dp that the flow keeps? How many integrals are linear or quadratic in the velocities? `deltaq integrals SCENE` \
-     answers for the numbers of a scene as they are written. **Near almost every place q:** σ is smooth there, and \
-     integrals have coefficients that are analytic there; both may have periods round angles and be singular elsewhere. \
+     Is there an invariant measure e^σ(q) dq dp, and how many integrals are linear or quadratic in the velocities? `deltaq integrals SCENE` \
+     answers for the parameters of a scene. **Near a generic point q:** σ is smooth there, and \
+     integrals have analytic coefficients; both may be multivalued around angles and singular elsewhere. \
      Without a potential every measure that is smooth and positive near rest is of this kind; with one, densities may depend on p. Weaker \
      measures may exist ([García-Naranjo, Ortega, Ureña 2024](https://arxiv.org/abs/2404.14156)).\n\n\
-     *None* is proved, by a minor that is not zero, and has a certificate (`--certificates`) that `validation/proof/verify.py` reads; \
-     a number is one by ranks at random points, and a bound from above that is proved.\n"
+     *None* is proved by a nonzero minor and has a certificate (`--certificates`) that `validation/proof/verify.py` reads. \
+     Counts are computed by ranks at random points and are proved upper bounds.\n"
         .into()
 }
 
@@ -296,7 +304,7 @@ fn printed(found: &Integrals) -> String {
     }
 }
 
-fn catalogue_table(answers: &[(Integrals, Integrals)]) -> String {
+fn catalogue_table(answers: &[(Integrals, Integrals)]) -> Table {
     let mut table = Table::new(["scene", "measure", "multiplier", "linear", "quadratic", ">printed", ">vakonomic"]);
     for (chetaev, vakonomic) in answers {
         let reversed = chetaev.reversed.as_ref();
@@ -307,17 +315,31 @@ fn catalogue_table(answers: &[(Integrals, Integrals)]) -> String {
         let [_, multiplier, linear, quadratic] = [0, 1, 2, 3].map(|i| &cells[i]);
         table.row(&[&chetaev.scene.name, &measure, multiplier, linear, quadratic, &printed, &of_vakonomic]);
     }
+    table
+}
+
+/// What the columns of the catalogue mean.
+const COLUMNS: &str = "In `catalogue.csv`, *multiplier* says whether dτ = f dt makes the motion over some of the coordinates Hamiltonian (Chaplygin); empty if none \
+    of these have a motion of their own. *Linear* and *quadratic* count integrals of Chetaev's motion, without those that the energy, constants and products make; \
+    quadratic ones are counted for at most 4 coordinates. *Printed*: how many constant combinations were found of how many functions (monomials in velocities times \
+    monomials in coordinates or their sines and cosines); *vakonomic*: the same in (q, v, μ).";
+
+/// How many scenes have a measure, and how many have none.
+fn counted(answers: &[(Integrals, Integrals)]) -> String {
+    let is = |wanted: fn(&Measure) -> bool| {
+        let found = answers.iter().filter_map(|(chetaev, _)| chetaev.reversed.as_ref());
+        found.filter(|found| wanted(&found.measure)).count()
+    };
     format!(
-        "*Multiplier*: whether dτ = f dt makes the motion over some of the coordinates Hamilton's (Chaplygin); a dash: none of these \
-         have a motion of their own. *Linear*, *quadratic*: integrals of Chetaev's motion, those left out that the energy, constants and products make; of scenes \
-         with more than {QUADRATIC} coordinates the quadratic ones are not asked for. *Printed*: of how many functions, monomials in \
-         velocities times monomials in coordinates or their sines and cosines, combinations are constant, products left out; \
-         *vakonomic*: the same in (q, v, μ).\n\n{table}"
+        "**Of {} scenes {} have an invariant measure under Chetaev's equations, and {} have none, which is proved; the others are open.**",
+        answers.len(),
+        is(|measure| matches!(measure, Measure::Local { .. })),
+        is(|measure| matches!(measure, Measure::None { proved: true })),
     )
 }
 
 /// Why anything is open, reason by reason.
-fn reasons(answers: &[(Integrals, Integrals)]) -> String {
+fn reasons(answers: &[(Integrals, Integrals)]) -> Table {
     let mut known: Vec<(String, Vec<&str>)> = Vec::new();
     for (chetaev, vakonomic) in answers {
         let reversed = chetaev.reversed.iter();
@@ -336,14 +358,15 @@ fn reasons(answers: &[(Integrals, Integrals)]) -> String {
             }
         }
     }
-    let line = |(reason, mut names): (String, Vec<&str>)| {
+    let mut table = Table::new(["open because", "scenes"]);
+    for (reason, mut names) in known {
         names.dedup();
-        format!("- {}: {}\n", inert(&reason), names.join(", "))
-    };
-    format!("Open, because\n\n{}", known.into_iter().map(line).collect::<String>())
+        table.row(&[&reason, &names.join(", ")]);
+    }
+    table
 }
 
-fn literature_text() -> Result<String> {
+fn of_literature() -> Result<(String, Table)> {
     let entries = literature()?;
     let mut table = Table::new(["system", "known", "source", "found", "multiplier", "linear"]);
     let found = parallel::map(&entries, Entry::compared);
@@ -357,10 +380,10 @@ fn literature_text() -> Result<String> {
         let measure = measure(&found.measure) + word;
         table.row(&[&entry.name, &entry.claim, &entry.source, &measure, &cells[1], &cells[2]]);
     }
-    Ok(format!(
-        "\n## The literature\n\n{agree} of {} entries agree, {contradict} contradict. The others are affine or have integrable \
-         constraints, and are not decided without an ansatz; what is printed of them is tried by `validation/integrals/referee.py`, \
-         which shares no code with the program.\n\n{table}",
+    let sentence = format!(
+        "**{agree} of {} entries agree, {contradict} contradict.** The others are affine or have integrable constraints and are not decided without an ansatz; \
+         `validation/integrals/referee.py`, which shares no code with deltaq, tests what is printed of them.",
         entries.len()
-    ))
+    );
+    Ok((sentence, table))
 }

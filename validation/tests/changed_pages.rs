@@ -10,7 +10,7 @@ use validation::report::{Compared, without_referees};
 /// The pages and pictures of the reports, those of the main job and of times alike.
 fn pages() -> Vec<(PathBuf, String)> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../reports");
-    let folders = [root.clone(), root.join("scenes")];
+    let folders = ["", "scenes", "evidence", "paper"].map(|name| root.join(name));
     let files = folders
         .iter()
         .flat_map(|folder| fs::read_dir(folder).expect("reports"))
@@ -131,10 +131,8 @@ fn of_a_picture_what_is_written_in_it_counts() {
 
 #[test]
 fn only_what_referees_say_is_left_out() {
-    let page = "# Scene\n\nWith sliders, here.\n";
-    assert_eq!(without_referees(&format!("{page}\n## Referees\n\n| CasADi |\n")), page);
-    let overview = "- A line. [More](a.md).\n- Referees. [More](scenes/sledge.md#referees).\n- B.\n";
-    assert_eq!(without_referees(overview), "- A line. [More](a.md).\n- B.\n");
+    let page = "- A line. [More](a.md).\n- Referees. [More](evidence/referees.md).\n- B.\n";
+    assert_eq!(without_referees(page), "- A line. [More](a.md).\n- B.\n");
 }
 
 #[test]

@@ -6,6 +6,7 @@ mod bench;
 mod benchmark;
 mod casadi;
 mod changed_pages;
+mod committed;
 mod contradictions;
 mod control;
 mod environment;

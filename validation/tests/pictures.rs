@@ -38,5 +38,7 @@ fn what_is_the_same_has_neither_gap_nor_path_of_its_own() {
 #[test]
 fn a_gap_is_drawn_from_where_it_is_certain() {
     let svg = picture("planar-body", "gap").expect("a gap");
-    assert!(svg.contains("vakonomic (no points)") && !svg.contains("turning-frame) (no points)"));
+    assert!(svg.contains("turning-frame), ∝ t") && !svg.contains("no points") && !svg.contains(">vakonomic<"));
+    // the control alone is not drawn
+    assert_eq!(picture("appell-hamel", "gap"), None);
 }

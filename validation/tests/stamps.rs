@@ -2,7 +2,7 @@
 
 use std::fs;
 
-use validation::report::stamp::{PAGES, ages, date, write};
+use validation::report::stamp::{Age, PAGES, ages, date, write};
 
 #[test]
 fn days_are_those_of_the_calendar() {
@@ -26,40 +26,43 @@ fn a_page_is_older_as_soon_as_its_code_changes() {
         fs::create_dir_all(page.parent().expect("a folder")).expect("a folder");
         fs::write(page, "# A page\n\n1 of 3\n").expect("a page");
     }
-    let said = |words: &str| -> Vec<String> {
-        let lines = ages(root, &reports).expect("read");
-        lines
-            .iter()
-            .filter(|line| line.contains(words))
-            .map(|line| line.split([' ', ',']).next().unwrap_or("").into())
-            .collect()
+    let those = |wanted: fn(&Age) -> bool| -> Vec<&str> {
+        let all = ages(root, &reports).expect("read").into_iter();
+        all.filter(|(_, age)| wanted(age)).map(|(page, _)| page).collect()
     };
-    assert_eq!(said("does not say when").len(), PAGES.len());
+    let older = || those(|age| matches!(age, Age::Older(date) if date.starts_with("20")));
+    assert_eq!(those(|age| *age == Age::Unknown).len(), PAGES.len());
     for (page, _) in PAGES {
         write(root, &reports, page).expect("written");
     }
-    assert_eq!((said("older").len(), said("does not say").len()), (0, 0));
-    let all = PAGES.len();
-    assert!(ages(root, &reports).expect("read")[0].starts_with(&format!("{all} of {all} pages")));
+    assert_eq!(those(|age| *age == Age::Current).len(), PAGES.len());
     // once more: the line is one
-    let page = reports.join("engine.md");
+    let page = reports.join("evidence/engine.md");
     let before = fs::read_to_string(&page).expect("a page");
-    write(root, &reports, "engine.md").expect("written");
+    write(root, &reports, "evidence/engine.md").expect("written");
     assert_eq!(fs::read_to_string(&page).expect("a page"), before);
     assert!(before.starts_with("# A page\n\n1 of 3\n\nMeasured on 20"), "{before}");
     // another text, a file more, a file of another name; what is no source does not count
     let source = root.join("crates/symbolic/src");
-    let speaking =
-        ["peers.md", "measured/error-vs-time.md", "measured/scaling.md", "measured/ivp.md", "measured/machine-code.md"];
+    let speaking = [
+        "evidence/peers.md",
+        "measured/error-vs-time.md",
+        "measured/scaling.md",
+        "measured/ivp.md",
+        "measured/machine-code.md",
+    ];
     fs::write(source.join("notes.txt"), "").expect("a file");
-    assert_eq!(said("is older"), Vec::<String>::new());
+    assert_eq!(older(), Vec::<&str>::new());
     fs::write(source.join("deeper/a.rs"), "crates/symbolic/srd").expect("a file");
-    assert_eq!(said("is older"), speaking);
+    assert_eq!(older(), speaking);
     fs::write(source.join("deeper/a.rs"), "crates/symbolic/src").expect("a file");
-    assert_eq!(said("is older"), Vec::<String>::new());
+    assert_eq!(older(), Vec::<&str>::new());
     fs::rename(source.join("deeper/a.rs"), source.join("a.rs")).expect("moved");
-    assert_eq!(said("is older"), speaking);
+    assert_eq!(older(), speaking);
     fs::write(root.join("crates/decision/src/b.rs"), "").expect("a file");
-    assert_eq!(said("is older").len(), speaking.len() + 2);
-    assert!(write(root, &reports, "random.md").is_err_and(|error| error.to_string().contains("engine.md")));
+    assert_eq!(older().len(), speaking.len() + 2);
+    assert!(
+        write(root, &reports, "evidence/random.md")
+            .is_err_and(|error| error.to_string().contains("evidence/engine.md"))
+    );
 }

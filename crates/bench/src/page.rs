@@ -9,8 +9,8 @@ use serde_json::{Value, json};
 
 use crate::{Bench, Entry, Fastest, MEMBERS, Measurements, Series, TARGETS, Throughput, Time};
 use comparison::words::{enumerate, short};
-use pages::Table;
-use pages::markdown::{folded, inert, link};
+use pages::markdown::link;
+use pages::{DataPackage, Table};
 use picture::{Axis, Curve, Panel, Picture, PictureError, Style};
 use program::File;
 
@@ -35,46 +35,65 @@ pub fn bench_headline(benches: &[Bench]) -> String {
     )
 }
 
-/// Page and pictures, with a section on ensembles where any were measured.
+/// Pictures that the page shows; the others are linked.
+const SHOWN: usize = 5;
+
+/// Page, pictures and tables, with those of ensembles where any were measured.
 ///
 /// # Errors
 /// Where a picture cannot be drawn.
 pub fn bench_files(benches: &[Bench], ensembles: &[Throughput]) -> Result<Vec<File>> {
-    let mut files = Vec::new();
-    let mut page = format!("# Error against run time\n\n**{}**\n\n", bench_headline(benches));
-    page += "One run of the integrator from compiled equations, dense output included: the least time of several runs, on one processor (of one run where that is over four times the time of another method with no larger error); what it takes to get to the \
-             equations stands apart. Of each motion there is a table of milliseconds (and evaluations) per method and error. The error is the largest distance from the reference in the kinetic metric $\\sqrt{\\Delta q^T M \\Delta q}$ at 20 times. Times differ from machine to machine \
-             and from run to run; the numbers of evaluations do not. (`solve` and the other reports integrate every motion twice, for the sake of an error estimate.)\n\n\
-             ";
-    page += &usual_section(benches);
-    page += "\n## The fastest setting\n\n";
-    page += &folded("For each motion and error, what reaches it first", &bench_table(benches));
-    page += "\n";
-    page += &ensemble_section(ensembles);
+    let (mut files, mut shown, mut linked) = (Vec::new(), String::new(), String::new());
     for bench in benches {
-        let _ = writeln!(page, "\n## {}\n", inert(&bench.title));
+        let path = format!("error-vs-time/{}.svg", bench.scene);
         match picture(bench) {
-            Ok(text) => {
-                files.push(File { path: format!("error-vs-time/{}.svg", bench.scene).into(), text });
-                let _ =
-                    writeln!(page, "!{}\n", link("Error over run time", &format!("error-vs-time/{}.svg", bench.scene)));
+            Ok(text) if files.len() < SHOWN => {
+                let _ = writeln!(shown, "!{}\n", link(&title(bench), &path));
+                files.push(File { path: path.into(), text });
             }
-            Err(PictureError::NothingToDraw { .. }) => page += "Nothing could be measured.\n",
+            Ok(text) => {
+                let _ = writeln!(linked, "- {}", link(&bench.title, &path));
+                files.push(File { path: path.into(), text });
+            }
+            Err(PictureError::NothingToDraw { .. }) => {}
             Err(error) => return Err(error.into()),
         }
-        for entry in &bench.entries {
-            page += &section(entry);
-        }
     }
+    let mut data = DataPackage::new("data/error-vs-time", "Error against run time of every method");
+    let (usual, sentence) = usual(benches);
+    data.table("default", "The default run at tolerance 1e-10 beside the fastest single run", &usual);
+    data.table("fastest", "For each motion and error, what reaches it first", &fastest_settings(benches));
+    data.table("motions", "What was measured, and the references", &motions(benches));
+    data.table("settings", "For each motion, method and error: milliseconds and evaluations", &settings(benches));
+    data.table("failures", "Settings that failed, with the cause", &failed(benches));
+    let [times, ratios] = ensemble_tables(ensembles);
+    let many = format!(
+        "Many motions at once: microseconds per member (`deltaq bench --ensemble 1e-10` measures {MEMBERS} members)"
+    );
+    data.table("ensembles", &many, &times);
+    data.table("ensemble-ratios", "Many motions at once: ratios", &ratios);
+    let columns = ["scene", "formulation", "both runs (ms)", "error", "single (ms)", "ratio"];
+    let page = format!(
+        "# Error against run time\n\n**{}**\n\n{INTRODUCTION}\n## Without options\n\n{sentence}\n\n{}\n## Pictures\n\n\
+         Work–precision diagrams, lower left is better. Colour and dash: method. The black or white dot is the default run.\n\n{shown}{linked}\n## Data\n\n{}",
+        bench_headline(benches),
+        usual.only(&columns),
+        data.list(0)
+    );
     files.push(File { path: "error-vs-time.md".into(), text: page });
-    Ok(files)
+    Ok(files.into_iter().chain(data.files()).collect())
 }
+
+const INTRODUCTION: &str = "A time is one run of the integrator from compiled equations, dense output included: the least of several runs on one processor. \
+    Set-up time is listed separately, in `fastest.csv`. The error is the largest distance from the reference in the kinetic metric \
+    $\\sqrt{\\Delta q^T M \\Delta q}$ at 20 times. Times differ from machine to machine and from run to run; numbers of evaluations do not.\n";
 
 /// Allowed ratio of both runs to the fastest single one.
 const WANTED: f64 = 2.5;
 
-/// The default run, with only the tolerance given, beside the fastest single run of all forms and settings.
-fn usual_section(benches: &[Bench]) -> String {
+/// The default run, with only the tolerance given, beside the fastest single run of all forms and settings,
+/// and a sentence about it.
+fn usual(benches: &[Bench]) -> (Table, String) {
     let columns = ["scene", "formulation", "form, method", ">both runs (ms)", ">error", ">estimate"];
     let mut table = Table::new(columns.into_iter().chain([">single (ms)", ">ratio"]));
     let (mut within, mut all, mut below) = (0, 0, 0);
@@ -109,18 +128,71 @@ fn usual_section(benches: &[Bench]) -> String {
             ]);
         }
     }
-    format!(
-        "## Without options\n\nNothing is given but a tolerance, 1e-10: form, method and plan are chosen, and both runs made. On {within} of {all} motions that takes at most {WANTED} times \
-         the fastest single run, of all forms, methods and tolerances below, that has this error. The error is over its estimate on {below}.\n\n{}\n",
-        folded(
-            &format!("{all} motions: both runs, their error and estimate, the fastest single run"),
-            &table.to_string()
-        )
-    )
+    let sentence = format!(
+        "With tolerance 1e-10 and no other option deltaq chooses form, method and plan, and makes both runs. On {within} of {all} motions this takes at most {WANTED} \
+         times as long as the fastest single run with this error. The error exceeds its estimate on {below}."
+    );
+    (table, sentence)
+}
+
+/// What was measured, motion by motion.
+fn motions(benches: &[Bench]) -> Table {
+    let columns = ["scene", "motion", ">states", ">from (s)", ">to (s)", "shortened", "reference", ">its error"];
+    let mut table = Table::new(columns.into_iter().chain(["not measured because"]));
+    for (bench, entry) in benches.iter().flat_map(|bench| bench.entries.iter().map(move |entry| (bench, entry))) {
+        let named = [bench.scene.clone(), entry.label.clone()];
+        let rest = match &entry.outcome {
+            Ok(m) => {
+                let shortened = if m.shortened { "a little before the motion's own end" } else { "" };
+                let (from, to, error) = (short(m.span.0), short(m.span.1), format!("{:.1e}", m.reference_error));
+                [m.states.to_string(), from, to, shortened.into(), m.reference.clone(), error, String::new()]
+            }
+            Err(reason) => ["", "", "", "", "", "", reason].map(String::from),
+        };
+        table.cells(named.into_iter().chain(rest));
+    }
+    table
+}
+
+/// For each method and error, milliseconds and evaluations.
+fn settings(benches: &[Bench]) -> Table {
+    let targets =
+        TARGETS.iter().flat_map(|target| [format!(">ms to {target:.0e}"), format!(">evaluations to {target:.0e}")]);
+    let columns = ["scene", "motion", "method"].map(String::from).into_iter();
+    let mut table = Table::new(columns.chain(targets).chain([">least error".to_string()]));
+    for (bench, entry) in benches.iter().flat_map(|bench| bench.entries.iter().map(move |entry| (bench, entry))) {
+        let Ok(m) = &entry.outcome else { continue };
+        for series in &m.series {
+            let found = TARGETS.iter().flat_map(|&target| match m.fastest(target, Some(series.method)) {
+                Some(f) => [short(1e3 * f.seconds), f.work.evaluations.to_string()],
+                None => ["–"; 2].map(String::from),
+            });
+            let least = series.points.iter().filter_map(|p| Some(p.outcome.as_ref().ok()?.error)).reduce(f64::min);
+            let least = least.map_or("–".into(), |e| format!("{e:.1e}"));
+            let named = [bench.scene.clone(), entry.label.clone(), series.method.name().to_string()];
+            table.cells(named.into_iter().chain(found).chain([least]));
+        }
+    }
+    table
+}
+
+/// Settings that failed, those of a method with the same cause together.
+fn failed(benches: &[Bench]) -> Table {
+    let mut table = Table::new(["scene", "motion", "what failed"]);
+    for (bench, entry) in benches.iter().flat_map(|bench| bench.entries.iter().map(move |entry| (bench, entry))) {
+        let Ok(m) = &entry.outcome else { continue };
+        m.series.iter().flat_map(failures).for_each(|what| table.row(&[&bench.scene, &entry.label, &what]));
+    }
+    table
+}
+
+/// The fastest setting for every error, for a terminal.
+pub fn bench_table(benches: &[Bench]) -> String {
+    fastest_settings(benches).to_string()
 }
 
 /// The fastest setting for every error, scene by scene.
-pub fn bench_table(benches: &[Bench]) -> String {
+fn fastest_settings(benches: &[Bench]) -> Table {
     let columns = ["scene", "formulation", ">read, derive, compile (ms)"].map(String::from);
     let mut table = Table::new(columns.into_iter().chain(TARGETS.map(|target| format!("error ≤ {target:.0e}"))));
     for bench in benches {
@@ -139,24 +211,13 @@ pub fn bench_table(benches: &[Bench]) -> String {
             table.cells([bench.scene.clone(), entry.label.clone(), setup].into_iter().chain(found));
         }
     }
-    table.to_string()
+    table
 }
 
 fn fastest(found: Option<Fastest>) -> String {
     found.map_or("not reached".into(), |f| {
         format!("{} ms, {} at {:.0e}", short(1e3 * f.seconds), f.method.name(), f.tolerance)
     })
-}
-
-/// The section on ensembles, where any were measured.
-fn ensemble_section(measured: &[Throughput]) -> String {
-    if measured.is_empty() {
-        return String::new();
-    }
-    format!(
-        "\n## Many motions at once\n\n{}\nSo few members are for a look: `deltaq bench --ensemble 1e-10` measures {MEMBERS}.\n",
-        ensemble_text(measured)
-    )
 }
 
 /// Throughput of ensembles: what was measured, and how.
@@ -173,6 +234,16 @@ pub fn ensemble_text(measured: &[Throughput]) -> String {
         first.threads,
         if measured.iter().all(|m| m.over_cores == 0.0) { "" } else { " (**not so here**)" },
     );
+    let [times, ratios] = ensemble_tables(measured);
+    let _ = write!(text, "Microseconds per member:\n\n{times}\nRatios:\n\n{ratios}");
+    for (label, why) in measured.iter().filter_map(|m| Some((&m.label, m.alone.1.as_ref()?))) {
+        let _ = writeln!(text, "\n{label}, the first that went alone: {why}.");
+    }
+    text
+}
+
+/// Microseconds per member, and ratios.
+fn ensemble_tables(measured: &[Throughput]) -> [Table; 2] {
     let columns = ["formulation", ">members", ">steps, one by one and in lanes", ">start", ">one by one", ">lanes"];
     let mut times = Table::new(columns.into_iter().chain([">all cores"]));
     let columns = ["formulation", ">lanes", ">cores", ">processor time", ">difference", ">alone"];
@@ -187,47 +258,7 @@ pub fn ensemble_text(measured: &[Throughput]) -> String {
         let rest = [efficiency, format!("{:.1e}", m.difference), m.alone.0.to_string()];
         ratios.cells([m.label.clone()].into_iter().chain(over).chain(rest));
     }
-    let _ = write!(text, "Microseconds per member:\n\n{times}\nRatios:\n\n{ratios}");
-    for (label, why) in measured.iter().filter_map(|m| Some((&m.label, m.alone.1.as_ref()?))) {
-        let _ = writeln!(text, "\n{label}, the first that went alone: {why}.");
-    }
-    text
-}
-
-/// A motion, folded away: for each method and error, milliseconds and, in parentheses, evaluations.
-fn section(entry: &Entry) -> String {
-    let mut text = String::new();
-    let m = match &entry.outcome {
-        Ok(m) => m,
-        Err(reason) => return format!("\n{}: not measured: {reason}.\n", entry.label),
-    };
-    let shortened = if m.shortened { ", a little before the motion's own end" } else { "" };
-    let _ = writeln!(
-        text,
-        "{} states, t = {} to {}{shortened}. Reference: {}, error {:.1e}.\n",
-        m.states,
-        short(m.span.0),
-        short(m.span.1),
-        m.reference,
-        m.reference_error
-    );
-    let targets = TARGETS.map(|target| format!(">to {target:.0e}"));
-    let mut table = Table::new(["method".to_string()].into_iter().chain(targets).chain([">least error".to_string()]));
-    for series in &m.series {
-        let found = TARGETS.map(|target| match m.fastest(target, Some(series.method)) {
-            Some(f) => format!("{} ({})", short(1e3 * f.seconds), f.work.evaluations),
-            None => "–".into(),
-        });
-        let least = series.points.iter().filter_map(|p| Some(p.outcome.as_ref().ok()?.error)).reduce(f64::min);
-        let least = least.map_or("–".into(), |e| format!("{e:.1e}"));
-        table.cells([series.method.name().to_string()].into_iter().chain(found).chain([least]));
-    }
-    text += &table.to_string();
-    let failures = m.series.iter().flat_map(failures).collect::<Vec<_>>();
-    if !failures.is_empty() {
-        let _ = writeln!(text, "\nFailed: {}.", failures.join("; "));
-    }
-    format!("\n{}\n", folded(&inert(&entry.label), &text))
+    [times, ratios]
 }
 
 /// Failed settings of a method, those with the same cause together.
@@ -246,16 +277,37 @@ fn failures(series: &Series) -> Vec<String> {
     causes.into_iter().map(|(cause, tolerances)| format!("{name} at {}: {cause}", enumerate(&tolerances))).collect()
 }
 
+/// Which method is fastest on most motions of a scene.
+fn title(bench: &Bench) -> String {
+    let measured = bench.entries.iter().filter_map(|entry| entry.outcome.as_ref().ok());
+    let winners: Vec<&str> =
+        measured.filter_map(|m| m.fastest(HEADLINE_TARGET, None)).map(|fastest| fastest.method.name()).collect();
+    let wins = |name: &str| winners.iter().filter(|other| **other == name).count();
+    match winners.iter().max_by_key(|name| wins(name)) {
+        Some(first) => format!(
+            "{}: {first} is fastest to {HEADLINE_TARGET:.0e} on {} of {} motions",
+            bench.title,
+            wins(first),
+            winners.len()
+        ),
+        None => format!("{}: error against run time", bench.title),
+    }
+}
+
 fn picture(bench: &Bench) -> Result<String, PictureError> {
     let panel = |entry: &Entry| -> Option<Panel> {
         let m = entry.outcome.as_ref().ok()?;
-        let curves: Vec<Curve> = m.series.iter().enumerate().map(|(i, series)| curve(i, series)).collect();
+        let mut curves: Vec<Curve> = m.series.iter().enumerate().map(|(i, series)| curve(i, series)).collect();
+        if let Ok(usual) = &m.usual {
+            let points = vec![(1e3 * usual.seconds, usual.error)];
+            curves.push(Curve { label: "default, both runs".into(), style: Style::Ink, points });
+        }
         let drawn = curves.iter().any(|curve| !curve.points.is_empty());
         let panel = Panel::new(Axis::log("error (m √kg)"), curves);
         drawn.then(|| Panel { title: entry.label.clone(), ..panel })
     };
     let panels = bench.entries.iter().filter_map(panel).collect();
-    Picture::panels(format!("{}: error over run time", bench.title), Axis::log("run time (ms)"), panels, 2).to_svg()
+    Picture::panels(title(bench), Axis::log("run time (ms)"), panels, 2).to_svg()
 }
 
 fn curve(index: usize, series: &Series) -> Curve {

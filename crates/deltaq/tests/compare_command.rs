@@ -189,7 +189,8 @@ fn compare_writes_whole_files() {
     assert!(found.iter().filter(|(name, _)| name.ends_with(".svg")).count() >= 1, "{found:?}");
     // and a list of them
     found.retain(|(name, _)| !name.ends_with(".deltaq"));
-    let whole = |(name, size): &(String, u64)| *size > 100 && (name.ends_with(".md") || name.ends_with(".svg"));
+    let known = [".md", ".svg", ".csv", ".tex", ".json"];
+    let whole = |(name, size): &(String, u64)| *size > 20 && known.iter().any(|ending| name.ends_with(ending));
     assert!(found.iter().all(whole), "{found:?}");
     for (name, _) in found.iter().filter(|(name, _)| name.ends_with(".svg")) {
         let text = fs::read_to_string(name).expect("readable");

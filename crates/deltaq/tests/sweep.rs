@@ -26,7 +26,7 @@ fn the_line_on_which_the_ball_turns_with_the_table_is_found() {
         assert_eq!(row[2], "different", "{row:?}");
     }
     let page = fs::read_to_string(folder.path().join("turntable-sweep.md")).expect("the page");
-    assert!(page.contains("Some do at 3.") && page.contains("- Omega = 0.6, psi' = 0.6: some"), "{page}");
+    assert!(page.contains("at 3 points some do.") && page.contains("- Omega = 0.6, psi' = 0.6: some"), "{page}");
     for kind in ["apart", "decision"] {
         let svg = fs::read_to_string(folder.path().join(format!("turntable-{kind}.svg"))).expect("a picture");
         roxmltree::Document::parse(&svg).expect("XML");

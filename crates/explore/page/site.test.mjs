@@ -14,7 +14,7 @@ const BELOW = "/some/project/";
 const TYPES = { ".html": "text/html", ".js": "text/javascript", ".css": "text/css", ".svg": "image/svg+xml", ".json": "application/json" };
 // References made by cargo have a look of their own, the explorer checks of its own.
 const OTHERS = ["rust", "explore", "explore.html", "_static", "_downloads", "_sources", "_images"];
-const PICTURED = ["index", "README", "docs/guide", "docs/fitting", "docs/python", "docs/install", "docs/tour", "python", "python/System", "reports/README", "reports/stability", "reports/scenes/sledge", "search"];
+const PICTURED = ["index", "README", "docs/guide", "docs/fitting", "docs/python", "docs/install", "docs/tour", "python", "python/System", "reports/README", "reports/evidence/stability", "reports/scenes/sledge", "search"];
 const LOOKS = [["light", 1280, "light"], ["dark", 1280, "dark"], ["phone", 400, "light"]];
 const NARROW = ["narrow", 320, "light"];
 

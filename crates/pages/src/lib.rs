@@ -2,6 +2,7 @@
 //! one JSON value for machines.
 
 mod bodies;
+mod data;
 mod family;
 mod fill;
 mod linear_page;
@@ -13,15 +14,17 @@ mod summary;
 mod sweep_page;
 mod table;
 mod tables;
+mod tex;
 mod verdicts;
 
 pub use bodies::bodies;
 pub use comparison::words::Headline;
 pub use comparison::words::sentence as membership_sentence;
+pub use data::DataPackage;
 pub use fill::fill;
 pub use linear_page::{pairs, sweep_picture, sweep_text};
 pub use pictures::pictures;
-pub use scene_page::{scene_files, scene_page};
+pub use scene_page::scene_files;
 pub use summary::summary;
 pub use sweep_page::{Swept, sweep_files};
 pub use table::Table;

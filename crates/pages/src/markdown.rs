@@ -20,6 +20,33 @@ pub fn inert(text: &str) -> String {
     replaced(&text, ']', |behind| if address(behind) { "\\]\\" } else { "]" })
 }
 
+/// A cell without marks of Markdown, for CSV: links by their text, no emphasis, plain minus signs, nothing
+/// where a dash stands for nothing. Formulas keep their dollars.
+pub(crate) fn plain(cell: &str) -> String {
+    let cell = cell.trim().replace('\u{2212}', "-");
+    if ["–", "-", ""].contains(&&cell[..]) {
+        return String::new();
+    }
+    let mut text = String::new();
+    for (i, part) in cell.split('$').enumerate() {
+        let dollars = if i > 0 { "$" } else { "" };
+        text += dollars;
+        text += &if i % 2 == 0 { unlinked(&part.replace("**", "").replace('`', "")) } else { part.to_owned() };
+    }
+    // emphasis of the whole cell: a star elsewhere is a product
+    let emphasis = text.strip_prefix('*').and_then(|rest| rest.strip_suffix('*')).filter(|inner| !inner.contains('*'));
+    emphasis.map_or(text.clone(), str::to_owned)
+}
+
+/// Text with links by their texts.
+fn unlinked(text: &str) -> String {
+    let Some((before, rest)) = text.split_once("](") else { return text.to_owned() };
+    let (Some((ahead, label)), Some((_, behind))) = (before.rsplit_once('['), rest.split_once(')')) else {
+        return text.to_owned();
+    };
+    format!("{ahead}{label}{}", unlinked(behind))
+}
+
 /// A part of a page that opens where its summary is clicked.
 pub fn folded(summary: &str, body: &str) -> String {
     format!("<details><summary>{summary}</summary>\n\n{body}\n</details>")

@@ -3,7 +3,8 @@
 use std::path::PathBuf;
 
 use anyhow::Result;
-use comparison::{Comparison, Run, Verdict};
+use comparison::words::enumerate;
+use comparison::{Answer, Comparison, Gap, Run, Verdict};
 use equations::Outputs;
 use mechanics::Observables;
 use motion::{CHETAEV, PRESCRIBED, REMOVED_CONSTRAINT, VAKONOMIC};
@@ -54,13 +55,14 @@ pub fn pictures(comparison: &mut Comparison) -> Result<Vec<File>> {
             |m: &Drawn| Curve { label: m.label.clone(), style: m.style, points: m.points.iter().map(value).collect() };
         motions.iter().map(curve).collect()
     };
-    let panels = coordinates
-        .iter()
-        .enumerate()
-        .map(|(i, c)| Panel::new(Axis::linear(format!("{} ({})", c.name, c.unit)), curves(&|now| (now.t, now.q[i]))));
+    let panels = most_telling(comparison).into_iter().map(|i| {
+        let c = &coordinates[i];
+        Panel::new(Axis::linear(format!("{} ({})", c.name, c.unit)), curves(&|now| (now.t, now.q[i])))
+    });
     let title = |what: &str| format!("{}: {what}", comparison.scene.title);
     let columns = if coordinates.len() > 1 { 2 } else { 1 };
-    let over_time = Picture::panels(title("coordinates over time"), Axis::linear("t (s)"), panels.collect(), columns);
+    let (said, time) = (title(&differences(comparison)), Axis::linear("t (s)"));
+    let over_time = Picture::panels(said, time, panels.collect(), columns);
     add("coordinates", over_time.to_svg()?);
     let observables = Observables::of(&comparison.scene.system)?;
     if !observables.names().is_empty() {
@@ -79,13 +81,13 @@ pub fn pictures(comparison: &mut Comparison) -> Result<Vec<File>> {
         let axes = [x, y].map(|i| format!("{} ({})", coordinates[i].name, coordinates[i].unit));
         let mut curves = curves(&|now| (now.q[x], now.q[y]));
         curves.extend(family(comparison, &times, |q| (q[x], q[y]))?);
-        let title = title(&format!("paths from the ring, a dot every {beat} s"));
+        let title = title(&format!("{}; from the ring, a dot every {beat} s", about_paths(comparison)));
         add("path", Picture::plane(title, [&axes[0], &axes[1]], curves, INSTANTS).to_svg()?);
     }
     let gaps = gap_curves(comparison);
     if !gaps.is_empty() {
         let (x, y) = (Axis::log("t − t₀ (s)"), Axis::log("gap in the kinetic metric (m √kg)"));
-        add("gap", Picture::new(title("gap to the Chetaev motion, where it is certain"), x, y, gaps).to_svg()?);
+        add("gap", Picture::new(title(&about_gaps(comparison)), x, y, gaps).to_svg()?);
     }
     Ok(files)
 }
@@ -142,6 +144,64 @@ fn sample(comparison: &mut Comparison, times: &[f64]) -> Result<Vec<Drawn>> {
     Ok(motions)
 }
 
+/// Panels of coordinates, at most.
+const PANELS: usize = 4;
+
+/// Lengths first; where there are two and many coordinates, no angles: those of a rolling body say little.
+fn most_telling(comparison: &Comparison) -> Vec<usize> {
+    let coordinates = &comparison.scene.system.coordinates;
+    let mut order: Vec<usize> = (0..coordinates.len()).collect();
+    order.sort_by_key(|&i| coordinates[i].unit != "m");
+    let lengths = coordinates.iter().filter(|c| c.unit == "m").count();
+    order.truncate(if order.len() > PANELS && lengths > 1 { lengths.min(PANELS) } else { PANELS });
+    order.sort_unstable();
+    order
+}
+
+/// In which coordinates the vakonomic motion, or else that of removal, differs from Chetaev's.
+fn differences(comparison: &Comparison) -> String {
+    let gap = |other| Some(&comparison.pair(comparison.run(CHETAEV)?, comparison.run(other)?)?.gap);
+    let differs = |gap: &&Gap| gap.verdict != Verdict::Same;
+    let found = [(VAKONOMIC, "vakonomic"), (REMOVED_CONSTRAINT, "removed-constraint")];
+    let found = found.into_iter().find_map(|(other, name)| Some((gap(other).filter(differs)?, name)));
+    let Some((gap, name)) = found else { return "all formulations give the same motion".into() };
+    let coordinates = comparison.scene.system.coordinates.iter().zip(&gap.certain_by_coordinate);
+    let certain: Vec<String> = coordinates.filter(|(_, from)| from.is_some()).map(|(c, _)| c.name.clone()).collect();
+    match certain.len() {
+        0 => format!("Chetaev's and the {name} motion"),
+        _ => format!("Chetaev's and the {name} motion differ in {}", enumerate(&certain)),
+    }
+}
+
+/// Whether some `μ₀` makes the vakonomic path Chetaev's.
+fn about_paths(comparison: &Comparison) -> &'static str {
+    let answer = comparison.membership().and_then(|found| found.as_ref().ok()).map(|found| found.answer());
+    match answer {
+        Some(Answer::NoneProved { .. }) => "no μ₀ makes the vakonomic path Chetaev's",
+        Some(Answer::SomeProved | Answer::Some { .. }) => "one μ₀ makes the vakonomic path Chetaev's",
+        _ => "paths of the formulations",
+    }
+}
+
+/// The power of time as which the gap of a run to Chetaev's motion begins.
+fn power(comparison: &Comparison, run: usize) -> Option<String> {
+    let growth = comparison.pair(comparison.run(CHETAEV)?, run)?.growth.as_ref()?;
+    let whole = growth.exponent.round();
+    let superscript = ["⁰", "¹", "²", "³", "⁴", "⁵", "⁶", "⁷", "⁸", "⁹"].get(whole as usize)?;
+    ((growth.exponent - whole).abs() < 0.05).then(|| format!("t{superscript}"))
+}
+
+/// How the gaps begin.
+fn about_gaps(comparison: &Comparison) -> String {
+    let of = |other, name: &str| Some(format!("{} ({name})", power(comparison, comparison.run(other)?)?));
+    let known = [of(VAKONOMIC, "vakonomic"), of(REMOVED_CONSTRAINT, "removed constraint")];
+    let known: Vec<String> = known.into_iter().flatten().collect();
+    match known.len() {
+        0 => "gap to Chetaev's motion".into(),
+        _ => format!("the gap to Chetaev's motion grows as {}", enumerate(&known)),
+    }
+}
+
 /// The gaps as far as they pass the limit, which at every time is the largest of any pair up to then.
 fn gap_curves(comparison: &Comparison) -> Vec<Curve> {
     let start = comparison.scene.start.t;
@@ -162,14 +222,17 @@ fn gap_curves(comparison: &Comparison) -> Vec<Curve> {
             _ => {}
         }
     }
-    if lines.iter().flatten().all(Vec::is_empty) {
+    let control = |i: usize| comparison.runs[i].choice.formulation == &SUBSTITUTION;
+    // the control alone says nothing about the formulations
+    if pairs.iter().zip(&lines).all(|(&(i, _), lines)| control(i) || lines.iter().all(Vec::is_empty)) {
         return Vec::new();
     }
     limit.retain(|(_, limit)| *limit > 0.0 && limit.is_finite());
     let curves = pairs.iter().zip(lines).flat_map(|(&(i, _), lines)| {
         let run = &comparison.runs[i];
-        let curve = move |points| Curve { label: run.choice.label.clone(), style: style(run), points };
-        lines.into_iter().map(curve)
+        let label = power(comparison, i).map_or(String::new(), |power| format!(", ∝ {power}"));
+        let curve = move |points| Curve { label: run.choice.label.clone() + &label, style: style(run), points };
+        lines.into_iter().filter(|points| !points.is_empty()).map(curve)
     });
     let limit = Curve { label: "certainty limit".into(), style: Style::Threshold, points: limit };
     curves.chain([limit]).collect()

@@ -88,11 +88,11 @@ fn page(title: &str, mark: &str, ranges: &[Swept], points: &[Point]) -> String {
     let names: Vec<&str> = ranges.iter().map(|(name, ..)| name.as_str()).collect();
     let title = inert(title);
     let mut text = format!(
-        "# {title} over {}\n\n**Of {} points {} are different, {} the same, {} undecided, {} without a motion. No {mark}: \
-         proved at {proved}. Some do at {}.**\n",
+        "# {title} over {}\n\n**The motions differ at {} of {} points and agree at {}; {} points are undecided, {} have no motion. That no \
+         {mark} is proved at {proved} points; at {} points some do.**\n",
         names.join(" and "),
-        points.len(),
         number("different"),
+        points.len(),
         number("same"),
         number("undecided"),
         number(""),

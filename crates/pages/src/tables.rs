@@ -5,7 +5,7 @@ use comparison::{Comparison, Pair, Verdict};
 use motion::{ChartChange, Ending};
 
 use crate::table::Table;
-use comparison::words::{by_half, enumerate, or_dash, precise, reached, short, unseen};
+use comparison::words::{by_half, or_dash, precise, reached, short, unseen};
 
 /// Times at which invariants and residuals are sampled.
 const SAMPLES: usize = 400;
@@ -26,61 +26,68 @@ pub fn verdict_words(gap: &comparison::Gap) -> String {
     }
 }
 
-/// One line per run: how it was started and how it ended.
-pub(crate) fn runs(comparison: &Comparison) -> Table {
-    let mut table = Table::new(["motion", "free constants", "ended", "error estimate", "method", "steps"]);
-    for (i, run) in comparison.runs.iter().enumerate() {
-        match &run.outcome {
-            Err(error) => table.row(&[&run.choice.label, &"", &format!("refused: {error}"), &"", &"", &""]),
-            Ok(motion) => {
-                let names = motion::constant_names(&motion.equations);
-                let symbol = |name: &String| {
-                    let g = &motion.equations.graph;
-                    g.find_symbol(name).map_or(name.clone(), |s| format!("${}$", g.latex_symbol(s)))
-                };
-                let constants: Vec<String> = names
-                    .iter()
-                    .zip(&motion.constants)
-                    .map(|(n, c)| format!("{} = {}", symbol(n), precise(*c)))
-                    .collect();
-                let rule = match &run.choice.constants {
-                    mechanics::ConstantsRule::Natural { horizon } if !constants.is_empty() => {
-                        format!("; natural at $t_1 = {horizon}$ s")
-                    }
-                    _ => String::new(),
-                };
-                let ended = match &motion.ending {
-                    Ending::Completed => format!("{} s", short(motion.end() - motion.start())),
-                    Ending::Stopped { t, cause } => format!("stopped at {} s: {cause}", precise(*t)),
-                };
-                let chart = |c: &ChartChange| format!("; by {} from {} s on", c.by, precise(c.t));
-                let ended = ended + &motion.charts.iter().map(chart).collect::<String>();
-                let estimate = comparison.estimate(i);
-                let constants = if constants.is_empty() { "none".into() } else { constants.join(", ") };
-                let (estimate, work) = (or_dash(estimate), &motion.work);
-                let method = motion.method.as_ref().map_or("equal steps", |chosen| chosen.method.name());
-                let constants = constants + &rule;
-                table.row(&[&run.choice.label, &constants, &ended, &estimate, &method, &work.steps]);
-            }
-        }
+/// Coordinates, their units and where they start.
+pub(crate) fn start(comparison: &Comparison) -> Table {
+    let scene = &comparison.scene;
+    let mut table = Table::new(["coordinate", "unit", ">start", ">velocity at the start", "velocity"]);
+    for (c, (q, v)) in scene.system.coordinates.iter().zip(scene.start.q.iter().zip(&scene.start.v)) {
+        let rate = format!("{}'", c.name);
+        let supplied = if scene.completion.supplied.contains(&rate) { "by the constraints" } else { "given" };
+        table.row(&[&c.name, &c.unit, &precise(*q), &precise(*v), &supplied]);
     }
     table
 }
 
+/// One line per run: how it was started and how it ended.
+pub(crate) fn runs(comparison: &Comparison) -> Table {
+    let columns = ["motion", "free constants", "rule", ">from (s)", ">to (s)", "stopped because"];
+    let mut table = Table::new(columns.into_iter().chain(["charts", ">error estimate", "form", "method", ">steps"]));
+    for (i, run) in comparison.runs.iter().enumerate() {
+        let label = run.choice.label.clone();
+        let motion = match &run.outcome {
+            Err(error) => {
+                let refused = format!("no motion: {error}");
+                table.cells([&label, "", "", "", "", &refused, "", "", "", "", ""].map(String::from));
+                continue;
+            }
+            Ok(motion) => motion,
+        };
+        let names = motion::constant_names(&motion.equations);
+        let constants = names.iter().zip(&motion.constants).map(|(n, c)| format!("{n} = {}", precise(*c)));
+        let constants = constants.collect::<Vec<_>>().join(", ");
+        let rule = match &run.choice.constants {
+            mechanics::ConstantsRule::Natural { horizon } if !constants.is_empty() => {
+                format!("natural at t1 = {horizon} s")
+            }
+            _ => String::new(),
+        };
+        let cause = match &motion.ending {
+            Ending::Completed => String::new(),
+            Ending::Stopped { cause, .. } => cause.to_string(),
+        };
+        let chart = |c: &ChartChange| format!("by {} from {} s on", c.by, precise(c.t));
+        let charts = motion.charts.iter().map(chart).collect::<Vec<_>>().join("; ");
+        let [from, to] = [motion.start(), motion.end()].map(precise);
+        let method = motion.method.as_ref().map_or("equal steps", |chosen| chosen.method.name());
+        let (form, steps) = (motion.form.chosen.name, motion.work.steps.to_string());
+        let made = [from, to, cause, charts, or_dash(comparison.estimate(i)), form.into(), method.into(), steps];
+        table.cells([label, constants, rule].into_iter().chain(made));
+    }
+    table
+}
+
+/// Columns of pairs that a page shows.
+pub(crate) const SHOWN: [&str; 5] = ["pair", "verdict", "1e-3 after (s)", "largest gap", "errors, both"];
+
 /// One line per pair: the verdict, when thresholds are passed, and how sure it is.
-pub(crate) fn pairs(comparison: &Comparison) -> Table {
-    let columns = ["pair", "verdict", "τ(1e-6)", "τ(1e-3)", "τ(0.1)", "largest gap", "errors, both"];
-    let mut table = Table::new(columns.into_iter().chain(["largest difference by coordinate"]));
-    for pair in &comparison.pairs {
-        let coordinates: Vec<String> = comparison
-            .scene
-            .system
-            .coordinates
-            .iter()
-            .zip(&pair.gap.largest_by_coordinate)
-            .map(|(c, d)| format!("{} {}", c.name, short(*d)))
-            .collect();
-        let [a, b, c] = pair.gap.passes.map(|t| or_dash(t.map(|t| pair.gap.after(t))));
+pub(crate) fn pairs<'a>(comparison: &Comparison, pairs: impl IntoIterator<Item = &'a Pair>) -> Table {
+    let columns = ["pair", "verdict", ">1e-6 after (s)", ">1e-3 after (s)", ">0.1 after (s)", ">largest gap"];
+    let coordinates =
+        comparison.scene.system.coordinates.iter().map(|c| format!(">largest in {} ({})", c.name, c.unit));
+    let columns = columns.into_iter().chain([">errors, both"]).map(String::from).chain(coordinates);
+    let mut table = Table::new(columns);
+    for pair in pairs {
+        let passes = pair.gap.passes.map(|t| or_dash(t.map(|t| pair.gap.after(t))));
         let verdict = match &pair.gap.verdict {
             Verdict::Same => "same".to_string(),
             Verdict::Different if pair.gap.certain_from.is_none() => {
@@ -89,9 +96,10 @@ pub(crate) fn pairs(comparison: &Comparison) -> Table {
             Verdict::Different => "**different**".to_string(),
             Verdict::Undecided { because } => format!("undecided: {because}"),
         };
-        let (largest, errors) = (short(pair.gap.largest), short(pair.gap.estimates[0] + pair.gap.estimates[1]));
-        let names = names(comparison, pair);
-        table.row(&[&names, &verdict, &a, &b, &c, &largest, &errors, &coordinates.join(", ")]);
+        let sizes = [short(pair.gap.largest), short(pair.gap.estimates[0] + pair.gap.estimates[1])];
+        let by_coordinate = pair.gap.largest_by_coordinate.iter().map(|d| short(*d));
+        let cells = [names(comparison, pair), verdict].into_iter().chain(passes).chain(sizes);
+        table.cells(cells.chain(by_coordinate));
     }
     table
 }
@@ -102,28 +110,29 @@ fn names(comparison: &Comparison, pair: &Pair) -> String {
 
 /// How gaps start: measured, and predicted where a prediction exists. Empty where nothing could be fitted.
 pub(crate) fn growth(comparison: &Comparison) -> Table {
-    let columns = ["pair", "exponent", "leading coefficient", "fitted over", "predicted exponent"];
-    let mut table = Table::new(columns.into_iter().chain(["predicted coefficient", "off by", "proved"]));
+    let columns = ["pair", ">exponent", ">leading coefficient", ">fitted from (s)", ">to (s)", ">predicted exponent"];
+    let mut table = Table::new(columns.into_iter().chain([">predicted coefficient", ">off by (%)", "proved"]));
     for pair in &comparison.pairs {
         let Some(growth) = &pair.growth else { continue };
-        let [exponent, length, off, proved] = match &pair.predicted {
+        let predicted = match &pair.predicted {
             None => ["–"; 4].map(String::from),
             Some(p) => {
-                let off = format!("{} %", short(100.0 * growth.deviation_from(p)));
+                let off = short(100.0 * growth.deviation_from(p));
                 [p.exponent.to_string(), precise(p.length), off, if p.proved { "yes" } else { "no" }.into()]
             }
         };
-        let measured = [format!("{:.3}", growth.exponent), precise(growth.length)];
-        let over = format!("{} … {} s", short(growth.from), short(growth.to));
-        table.row(&[&names(comparison, pair), &measured[0], &measured[1], &over, &exponent, &length, &off, &proved]);
+        let measured =
+            [format!("{:.3}", growth.exponent), precise(growth.length), short(growth.from), short(growth.to)];
+        table.cells([names(comparison, pair)].into_iter().chain(measured).chain(predicted));
     }
     table
 }
 
 /// What free constants that a search has found leave of a gap.
 pub(crate) fn fits(comparison: &Comparison) -> Table {
-    let columns = ["motion", "fitted to", "by", "free constants", "largest gap before", "largest gap, best found"];
-    let mut table = Table::new(columns.into_iter().chain(["from half of the starts", "verdict after"]));
+    let columns = ["motion", "fitted to", "by", ">starting guesses", "free constants", ">largest gap before"];
+    let mut table =
+        Table::new(columns.into_iter().chain(["largest gap, best found", "half of the guesses", "verdict after"]));
     for fit in &comparison.fits {
         let label = |i: usize| comparison.runs[i].choice.label.clone();
         let before = comparison.pair(fit.run, fit.target).map(|p| p.gap.largest);
@@ -135,21 +144,19 @@ pub(crate) fn fits(comparison: &Comparison) -> Table {
                 (constants.join(", "), reached(fitted), by_half(fitted), verdict_words(&fitted.gap))
             }
         };
-        let how = match &fit.fitted {
-            _ if fit.by_identity => "identity".into(),
-            Some(fitted) => format!("search from {} starts", fitted.starts),
-            None => "search".into(),
-        };
-        table.row(&[&label(fit.run), &label(fit.target), &how, &constants, &or_dash(before), &left, &half, &verdict]);
+        let how = if fit.by_identity { "identity" } else { "search" };
+        let starts = fit.fitted.as_ref().filter(|_| !fit.by_identity).map_or(String::new(), |f| f.starts.to_string());
+        let before = or_dash(before);
+        table.row(&[&label(fit.run), &label(fit.target), &how, &starts, &constants, &before, &left, &half, &verdict]);
     }
     table
 }
 
-/// Drift of what should be constant, and how far the constraint was left.
-pub(crate) fn invariants(comparison: &mut Comparison) -> Result<Table> {
+/// How far each motion left the constraint, and the drift of what should be constant.
+pub(crate) fn invariants(comparison: &mut Comparison) -> Result<[Table; 2]> {
     let mut metric = motion::Metric::new(&comparison.scene.system)?;
-    let columns = ["motion", "largest constraint residual", "constant by theory: largest deviation"];
-    let mut table = Table::new(columns.into_iter().chain(["largest projection"]));
+    let mut residuals = Table::new(["motion", ">to (s)", ">largest constraint residual", ">largest projection"]);
+    let mut constant = Table::new(["motion", "constant by theory", ">start", ">largest deviation"]);
     for run in &mut comparison.runs {
         let Ok(motion) = &mut run.outcome else { continue };
         let mut residual = 0.0_f64;
@@ -161,16 +168,12 @@ pub(crate) fn invariants(comparison: &mut Comparison) -> Result<Table> {
             let now = motion.at(t)?;
             residual = residual.max(metric.constraint_residual(t, &now.coordinates, &now.velocities));
         }
-        let drifts: Vec<String> = motion
-            .invariant_drift(&times)?
-            .iter()
-            .map(|(name, start, drift)| format!("{name} {} ± {}", precise(*start), short(*drift)))
-            .collect();
+        for (name, start, drift) in motion.invariant_drift(&times)? {
+            constant.row(&[&run.choice.label, &name, &precise(start), &short(drift)]);
+        }
         let projection =
             if motion.projection.projections == 0 { "–".into() } else { short(motion.projection.largest) };
-        let until = if part < 1.0 { format!(", to {} s", short(until)) } else { String::new() };
-        let drifts = if drifts.is_empty() { "nothing".into() } else { enumerate(&drifts) };
-        table.row(&[&format!("{}{until}", run.choice.label), &short(residual), &drifts, &projection]);
+        residuals.row(&[&run.choice.label, &short(until), &short(residual), &projection]);
     }
-    Ok(table)
+    Ok([residuals, constant])
 }

@@ -26,7 +26,9 @@ pub struct Bodies {
 ///
 /// Seen from above where everything lies in the plane z = 0, else from an oblique direction. The frame shows
 /// the ground and all of the first motion; another one that runs far away leaves it, and the legend says
-/// when. Who asks for reduced motion, or does not animate, sees bodies at half time on their paths.
+/// when. Who asks for reduced motion, or does not animate, sees bodies on their paths at half time, or
+/// earlier if one would have left the frame. Below the frame stand a scale and an arrow; paths have their
+/// names if these do not meet.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MovingPicture {
     /// Headline of the picture.
@@ -37,7 +39,14 @@ pub struct MovingPicture {
     pub ground: Vec<Solid>,
     /// The motions: their solids have as many poses each.
     pub motions: Vec<Bodies>,
+    /// Unit of length, for the scale.
+    pub unit: String,
+    /// A direction in space with its name, for an arrow: `downhill`.
+    pub down: (Space, String),
 }
+
+/// Widths of paths in parts of those of curves.
+const PATH: f64 = 0.65;
 
 /// Seconds that a loop takes.
 const PLAY: f64 = 6.0;
@@ -49,6 +58,13 @@ const WIDENED: f64 = 2.0;
 
 /// Azimuth and elevation of the eye where bodies are not in a plane, in radians.
 const OBLIQUE: [f64; 2] = [0.4, 0.5];
+
+/// Height of the strip of the scale, and length of the arrow in it.
+const STRIP: f64 = 30.0;
+const ARROW: f64 = 24.0;
+
+/// Names of paths stand at least so far apart.
+const APART: f64 = 44.0;
 
 const MARGIN: f64 = 16.0;
 /// Within the frame, for the widths of lines.
@@ -92,6 +108,14 @@ impl Window {
     fn meets(self, other: Window) -> bool {
         let apart = |low: Place, high: Place| low.0 > high.0 || low.1 > high.1;
         !apart(self.low, other.high) && !apart(other.low, self.high)
+    }
+
+    /// Whether another one lies in it.
+    fn holds(self, other: Window) -> bool {
+        self.low.0 <= other.low.0
+            && self.low.1 <= other.low.1
+            && other.high.0 <= self.high.0
+            && other.high.1 <= self.high.1
     }
 
     /// Of a solid at a step.
@@ -169,7 +193,8 @@ impl MovingPicture {
         let (placed, rows) = layout::place_legend(entries, WIDTH - 2.0 * MARGIN);
         let legend_top = 8.0 + 20.0 * title.len() as f64;
         let top = legend_top + f64::from(rows) * LEGEND_ROW + 8.0;
-        let bottom = top + sheet.extent.height;
+        let frame = top + sheet.extent.height;
+        let bottom = frame + STRIP;
         let labels: Vec<String> = placed.iter().map(|place| place.text.clone()).collect();
         let mut out =
             opening(&self.title, &format!("Bodies in motion: {}.", labels.join("; ")), (WIDTH, bottom + 34.0));
@@ -187,33 +212,92 @@ impl MovingPicture {
         let shown: Vec<usize> = (0..steps).step_by(stride).collect();
         let (fixed, turning): (Vec<&Solid>, Vec<&Solid>) = self.ground.iter().partition(|s| s.poses.len() == 1);
         out += &format!("<g stroke=\"{INK}\" stroke-opacity=\".6\">\n");
-        sheet.draw(&mut out, &fixed, &[0]);
-        sheet.draw(&mut out, &turning, &shown);
+        sheet.draw(&mut out, &fixed, &[0], 0);
+        sheet.draw(&mut out, &turning, &shown, self.still(sheet, steps));
         out += "</g>\n";
+        let still = self.still(sheet, steps);
+        let mut named = Vec::new();
         for motion in &self.motions {
             let (colour, _) = motion.style.outline();
             let pixels = |run: &[Space]| run.iter().map(|&p| sheet.pixels(sheet.camera.project(p))).collect();
             let is_nowhere = |p: &Space| p.iter().any(|x| !x.is_finite());
             let runs: Vec<Vec<Place>> = motion.path.split(is_nowhere).map(pixels).collect();
             let path = Trace::new(&runs, sheet.extent, Coarseness::steps()[2]).path();
-            let dash = motion.style.strokes().last().map_or("", |stroke| stroke.dash);
+            let (dash, width) = motion.style.strokes().last().map_or(("", 1.0), |stroke| (stroke.dash, stroke.width));
             out += &format!(
-                "<path d=\"{path}\" stroke=\"{colour}\" stroke-width=\"1.6\" stroke-linecap=\"round\" stroke-dasharray=\"{dash}\"/>\n"
+                "<path d=\"{path}\" stroke=\"{colour}\" stroke-width=\"{}\" stroke-linecap=\"round\" stroke-dasharray=\"{dash}\"/>\n",
+                px(PATH * width)
             );
+            let at = motion.path.get(still * (motion.path.len().max(1) - 1) / (steps - 1));
+            named.extend(at.map(|&p| (motion, sheet.pixels(sheet.camera.project(p)))));
         }
+        sheet.names(&mut out, &named);
         for motion in &self.motions {
             let (colour, wide) = motion.style.outline();
             out += &format!("<g stroke=\"{colour}\" stroke-width=\"{wide}\">\n");
-            sheet.draw(&mut out, &motion.solids.iter().rev().collect::<Vec<_>>(), &shown);
+            sheet.draw(&mut out, &motion.solids.iter().rev().collect::<Vec<_>>(), &shown, still);
             out += "</g>\n";
         }
         out += "</svg>\n";
-        self.clock(&mut out, bottom + 20.0);
+        self.scale(&mut out, sheet, frame + STRIP / 2.0);
+        self.clock(&mut out, bottom + 20.0, still as f64 / (steps - 1) as f64);
         out + "</svg>\n"
     }
 
+    /// The step of the still picture: the last one, up to half of them, at which all motions are seen.
+    fn still(&self, sheet: &Sheet, steps: usize) -> usize {
+        let inside = |motion: &Bodies, step: usize| {
+            let within = |s: &Solid| sheet.window.holds(Window::of(s, &sheet.camera, step.min(s.poses.len() - 1)));
+            motion.solids.iter().all(within)
+        };
+        let all = |step: usize| self.motions.iter().all(|motion| inside(motion, step));
+        (1..=steps / 2).rev().find(|&step| all(step)).unwrap_or(steps / 2)
+    }
+
+    /// A bar of a round length, and the arrow; from above, that it is so.
+    fn scale(&self, out: &mut String, sheet: &Sheet, y: f64) {
+        let wanted = 110.0 / sheet.scale;
+        let power = 10_f64.powf(wanted.log10().floor());
+        let length = [1.0, 2.0, 5.0].map(|digit| digit * power).into_iter().rfind(|l| *l <= wanted).unwrap_or(power);
+        let end = MARGIN + length * sheet.scale;
+        let decimals = (-length.log10().floor()).max(0.0) as usize;
+        *out += &format!(
+            "<g font-size=\"{LABEL_SIZE}\" fill=\"{INK}\"><path d=\"M{l} {a}v8m0-4H{r}m0-4v8\" stroke=\"{INK}\" stroke-width=\"1.6\" fill=\"none\"/>\
+             <text x=\"{}\" y=\"{}\">{length:.decimals$} {}</text>",
+            px(end + 8.0),
+            px(y + 4.5),
+            self.unit,
+            l = px(MARGIN),
+            a = px(y - 4.0),
+            r = px(end),
+        );
+        let (direction, name) = &self.down;
+        let (x, up) = sheet.camera.project(*direction);
+        let (size, right) = (x.hypot(up), WIDTH - MARGIN);
+        if size < 0.05 {
+            *out += &format!(
+                "<text x=\"{}\" y=\"{}\" text-anchor=\"end\">seen from above</text></g>\n",
+                px(right),
+                px(y + 4.5)
+            );
+            return;
+        }
+        let (x, down) = (ARROW * x / size, -ARROW * up / size);
+        let (from, angle) = ((right - ARROW / 2.0 - x / 2.0, y - down / 2.0), down.atan2(x).to_degrees());
+        *out += &format!(
+            "<g transform=\"translate({} {}) rotate({})\"><path d=\"M0 0h{}\" stroke=\"{INK}\" stroke-width=\"2\"/>\
+             <path d=\"M{ARROW} 0l-9-5v10z\"/></g><text x=\"{}\" y=\"{}\" text-anchor=\"end\">{name}</text></g>\n",
+            px(from.0),
+            px(from.1),
+            px(angle),
+            ARROW - 6.0,
+            px(right - ARROW - 8.0),
+            px(y + 4.5)
+        );
+    }
+
     /// A point that runs along a line: the time of the motion. All else begins with it.
-    fn clock(&self, out: &mut String, y: f64) {
+    fn clock(&self, out: &mut String, y: f64, still: f64) {
         let (from, to, unit) = &self.time;
         let [from, to] = [from, to].map(|t| format!("{t} {unit}"));
         let left = MARGIN + width(&from, LABEL_SIZE) + 8.0;
@@ -229,7 +313,7 @@ impl MovingPicture {
             px(WIDTH - MARGIN),
             l = px(left),
             r = px(right),
-            m = px((left + right) / 2.0)
+            m = px(left + still * (right - left))
         );
     }
 }
@@ -260,12 +344,35 @@ impl Sheet {
         Trace { lines, dots: Vec::new() }.path() + &circles
     }
 
+    /// Names beside the places of motions, where they do not meet.
+    fn names(&self, out: &mut String, named: &[(&Bodies, Place)]) {
+        let apart = |i: usize, j: usize| {
+            let ((ax, ay), (bx, by)) = (named[i].1, named[j].1);
+            (ax - bx).hypot(ay - by) >= APART
+        };
+        let Extent { width, height } = self.extent;
+        let seen = |(x, y): Place| (0.0..=width).contains(&x) && (0.0..=height).contains(&y);
+        if named.len() < 2 || !(0..named.len()).all(|i| (0..i).all(|j| apart(i, j)) && seen(named[i].1)) {
+            return;
+        }
+        for (motion, (x, y)) in named {
+            let name = motion.label.split([';', '(']).next().unwrap_or_default().trim();
+            let (anchor, x) = if *x > 0.75 * width { ("end", x - 18.0) } else { ("start", x + 18.0) };
+            *out += &format!(
+                "<text x=\"{}\" y=\"{}\" text-anchor=\"{anchor}\" font-size=\"{LABEL_SIZE}\" font-weight=\"600\" fill=\"{}\">{name}</text>\n",
+                px(x),
+                px((y - 12.0).max(12.0)),
+                motion.style.outline().0
+            );
+        }
+    }
+
     /// The solids at the steps, or still if there is one only.
-    fn draw(&self, out: &mut String, solids: &[&Solid], steps: &[usize]) {
+    fn draw(&self, out: &mut String, solids: &[&Solid], steps: &[usize], still: usize) {
         if solids.is_empty() {
             return;
         }
-        let still = self.path(solids, steps[steps.len() / 2]);
+        let still = self.path(solids, still);
         if steps.len() == 1 {
             *out += &format!("<path d=\"{still}\"/>\n");
             return;

@@ -5,7 +5,7 @@ use super::error::PictureError;
 use super::frame::{BOLD, Frame, Framed, LEGEND_ROW, TITLE_SIZE};
 use super::layout::{self, Entry, LABEL_SIZE, Measured, SWATCH, WIDTH};
 use super::plot::{Curve, Picture};
-use super::style::{INK, INKS, Stroke, Style};
+use super::style::{CROSS, INK, INKS, Stroke, Style};
 use super::text::{decimal, escape, fit, px, width};
 use super::trace::{Coarseness, Extent, Place, Trace};
 
@@ -111,8 +111,12 @@ pub(super) fn swatch(out: &mut String, place: &layout::Placed, (left, top): Plac
     let (x, y) = (left + place.x, top + (f64::from(place.row) + 0.5) * LEGEND_ROW);
     out.push_str(&format!("<g transform=\"translate({} {})\">", px(x), px(y)));
     let entry = place.entry;
-    let trace = Trace { lines: vec![vec![(0.0, 0.0), (SWATCH, 0.0)]], dots: Vec::new() };
-    strokes(out, entry.style, &trace);
+    if entry.style == Style::Stops {
+        crosses(out, &[(SWATCH / 2.0, 0.0)]);
+    } else {
+        let trace = Trace { lines: vec![vec![(0.0, 0.0), (SWATCH, 0.0)]], dots: Vec::new() };
+        strokes(out, entry.style, &trace);
+    }
     marks(out, entry, &[(SWATCH / 2.0, 0.0)]);
     out.push_str(&format!(
         "<text x=\"{}\" y=\"4.5\" font-size=\"{LABEL_SIZE}\" fill=\"{INK}\">{}</text></g>\n",
@@ -163,20 +167,18 @@ fn axes(out: &mut String, plot: &Framed) {
         text(out, (w / 2.0, -7.0), "middle", &fit(&plot.plot.title, BOLD * TICK_SIZE, w));
         out.push_str("</g>\n");
     }
-    if let Some(label) = plot.x_label {
-        for tick in &plot.x_ticks.labelled {
-            text(out, (plot.across(tick.at), h + 18.0), "middle", &tick.label);
-        }
-        if let Some(factor) = &plot.x_ticks.factor {
-            text(out, (w, h + 37.0), "end", factor);
-        }
-        out.push_str(&format!(
-            "<text x=\"{}\" y=\"{}\" text-anchor=\"middle\" font-size=\"{LABEL_SIZE}\">{}</text>\n",
-            px(w / 2.0),
-            px(h + 38.0),
-            escape(&fit(label, LABEL_SIZE, w))
-        ));
+    for tick in &plot.x_ticks.labelled {
+        text(out, (plot.across(tick.at), h + 18.0), "middle", &tick.label);
     }
+    if let Some(factor) = &plot.x_ticks.factor {
+        text(out, (w, h + 37.0), "end", factor);
+    }
+    out.push_str(&format!(
+        "<text x=\"{}\" y=\"{}\" text-anchor=\"middle\" font-size=\"{LABEL_SIZE}\">{}</text>\n",
+        px(w / 2.0),
+        px(h + 38.0),
+        escape(&fit(plot.x_label, LABEL_SIZE, w))
+    ));
     let widest = plot.y_ticks.labelled.iter().map(|tick| width(&tick.label, TICK_SIZE));
     out.push_str(&format!("<text transform=\"translate(-{} {}) rotate(-90)\" text-anchor=\"middle\" font-size=\"{LABEL_SIZE}\">{}</text>\n",
         px(widest.fold(0.0, f64::max) + 18.0),
@@ -227,11 +229,15 @@ fn curves(out: &mut String, plot: &Framed, coarseness: Coarseness) {
         let runs = curves.iter().flat_map(|(_, measured)| &measured.runs);
         let runs: Vec<Vec<Place>> = runs.map(|run| run.iter().map(place).collect()).collect();
         if curve.style == Style::Family {
-            band(out, &runs, plot.extent);
+            fan(out, &runs, plot.extent);
             continue;
         }
         if curve.style == Style::Samples {
             samples(out, &runs, plot.extent);
+            continue;
+        }
+        if curve.style == Style::Stops {
+            crosses(out, &runs.concat());
             continue;
         }
         let mut trace = Trace::new(&runs, plot.extent, coarseness);
@@ -263,16 +269,15 @@ fn curves(out: &mut String, plot: &Framed, coarseness: Coarseness) {
     out.push_str("</svg>\n");
 }
 
-/// What lies between neighbours in a family, nowhere darker where it lies on itself.
-fn band(out: &mut String, runs: &[Vec<Place>], extent: Extent) {
-    let Extent { width: w, height: h } = extent;
-    for Stroke { colour, opacity, .. } in Style::Family.strokes() {
-        out.push_str(&format!("<g fill=\"{colour}\" stroke=\"{colour}\" opacity=\"{opacity}\">\n"));
-    }
-    for pair in runs.windows(2) {
-        let around = pair[0].iter().chain(pair[1].iter().rev());
-        let outline = around.map(|&(x, y)| (x.clamp(-w, 2.0 * w), y.clamp(-h, 2.0 * h))).collect();
-        out.push_str(&format!("<path d=\"{}z\"/>\n", Trace::new(&[outline], extent, Coarseness::steps()[3]).path()));
+/// The members of a family as thin lines, the later the stronger.
+fn fan(out: &mut String, runs: &[Vec<Place>], extent: Extent) {
+    for Stroke { colour, width, opacity, .. } in Style::Family.strokes() {
+        out.push_str(&format!("<g fill=\"none\" stroke=\"{colour}\" stroke-width=\"{width}\">\n"));
+        for (i, run) in runs.iter().enumerate() {
+            let path = Trace::new(std::slice::from_ref(run), extent, Coarseness::steps()[3]).path();
+            let shade = 0.15 + (opacity - 0.15) * i as f64 / runs.len() as f64;
+            out.push_str(&format!("<path d=\"{path}\" stroke-opacity=\"{shade:.2}\"/>\n"));
+        }
     }
     out.push_str("</g>\n");
 }
@@ -334,6 +339,14 @@ fn strokes(out: &mut String, style: Style, trace: &Trace) {
             let radius = px(2.0 + width / 2.0);
             out.push_str(&format!("<circle cx=\"{}\" cy=\"{}\" r=\"{radius}\" fill=\"{colour}\"/>\n", px(x), px(y)));
         }
+    }
+}
+
+/// A cross per point.
+fn crosses(out: &mut String, places: &[Place]) {
+    let path: String = places.iter().map(|&(x, y)| format!("M{} {}{CROSS}", px(x), px(y))).collect();
+    for Stroke { colour, width, .. } in Style::Stops.strokes() {
+        out.push_str(&format!("<path d=\"{path}\" fill=\"none\" stroke=\"{colour}\" stroke-width=\"{width}\"/>\n"));
     }
 }
 

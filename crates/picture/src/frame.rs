@@ -9,6 +9,8 @@ use super::trace::{Extent, Place};
 
 /// Font size of the headline, in pixels.
 pub(super) const TITLE_SIZE: f64 = 15.0;
+/// Height of the ticks and the label under a panel, in pixels.
+const UNDER: f64 = 48.0;
 /// How much wider bold text is.
 pub(super) const BOLD: f64 = 1.12;
 /// Height of one row of the legend, in pixels.
@@ -38,8 +40,8 @@ pub(super) struct Framed<'a> {
     pub(super) y: Interval,
     pub(super) x_ticks: Ticks,
     pub(super) y_ticks: Ticks,
-    /// Label of the horizontal axis, where it is written.
-    pub(super) x_label: Option<&'a str>,
+    /// Label of the horizontal axis.
+    pub(super) x_label: &'a str,
     /// Whether the range of the horizontal axis is that of what is compared.
     pub(super) open: bool,
     pub(super) every: usize,
@@ -84,7 +86,7 @@ impl Frame {
         let headed = plots.panels.iter().any(|panel| !panel.title.is_empty());
         let over = if headed || y.iter().zip(&plots.panels).any(has_factor) { 24.0 } else { 14.0 };
         let top = legend_top + f64::from(legend_rows) * LEGEND_ROW + over;
-        let row = height + over;
+        let row = height + over + UNDER;
         let rows = plots.panels.len().div_ceil(plots.columns) as f64;
         Self {
             title,
@@ -94,7 +96,7 @@ impl Frame {
             extent: Extent { width: box_width, height },
             column,
             row,
-            height: top + rows * row - over + 48.0,
+            height: top + rows * row - over,
             x,
             y,
         }
@@ -124,7 +126,7 @@ impl Frame {
                     y,
                     x_ticks: x_ticks.clone(),
                     y_ticks: axis::ticks(plot.y.scale, y, self.extent.height, Direction::Vertical),
-                    x_label: (i + plots.columns >= plots.panels.len()).then_some(plots.x.label.as_str()),
+                    x_label: &plots.x.label,
                     open: plots.x.range.is_none(),
                     every: plots.every,
                     legend,

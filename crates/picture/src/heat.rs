@@ -13,11 +13,18 @@ const LEFT: f64 = 76.0;
 const BAR: f64 = 16.0;
 const WIDTH: f64 = 640.0;
 
+/// At most so many counts have a colour each instead of a scale.
+const MOST_CLASSES: usize = 8;
+
+/// What is written beside the colour of a cell without a number.
+const NOTHING: &str = "not decided";
+
 /// Low to high, each brighter than the one before: legible without colours, too.
 const COLOURS: [(f64, f64, f64); 5] =
     [(68.0, 1.0, 84.0), (59.0, 82.0, 139.0), (33.0, 145.0, 140.0), (94.0, 201.0, 98.0), (253.0, 231.0, 37.0)];
 
-/// A number over a grid of two others. Cells without a number stay empty; some may be marked.
+/// A number over a grid of two others. A few counts have a colour each; cells without a number are grey; some
+/// may be marked.
 ///
 /// ```
 /// use picture::{Axis, HeatMap};
@@ -67,7 +74,7 @@ impl HeatMap {
         out += &format!("<g font-size=\"{TICK_SIZE}\" fill=\"{INK}\">\n");
         if marks {
             let y = top - 14.0;
-            out += &format!("<circle cx=\"{}\" cy=\"{}\" r=\"3\" fill=\"{INK}\"/>\n", px(LEFT + 5.0), px(y - 4.0));
+            dot(&mut out, (LEFT + 5.0, y - 4.0), 3.0);
             text(&mut out, (LEFT + 16.0, y), "start", &self.mark);
         }
         let measured: Vec<Option<f64>> =
@@ -75,28 +82,67 @@ impl HeatMap {
         let finite = || measured.iter().flatten().copied();
         let (low, high) = finite().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), x| (a.min(x), b.max(x)));
         let scale = if low < high { Interval { low, high } } else { Interval { low: low - 0.5, high: low + 0.5 } };
+        let classes = self.classes();
+        let shade = |value: f64| match classes.iter().position(|class| *class == value) {
+            Some(i) => (i as f64 + 0.5) / classes.len() as f64,
+            None => scale.fraction(value),
+        };
         let rows = self.cells.len().div_ceil(self.columns.max(1));
         let (w, h) = (SIDE / self.columns.max(1) as f64, SIDE / rows.max(1) as f64);
         for (i, value) in measured.iter().enumerate() {
             let (x, y) = (LEFT + w * (i % self.columns) as f64, top + SIDE - h * (i / self.columns + 1) as f64);
-            if let Some(value) = value {
-                // a hair more than the cell: no seams between them
-                rectangle(&mut out, (x, y, w + 0.3, h + 0.3), &colour(scale.fraction(*value)));
+            // a hair more than the cell: no seams between them
+            match value {
+                Some(value) => rectangle(&mut out, (x, y, w + 0.3, h + 0.3), &colour(shade(*value))),
+                None => empty(&mut out, (x, y, w, h)),
             }
             if self.marked.get(i) == Some(&true) {
-                let (x, y) = (px(x + w / 2.0), px(y + h / 2.0));
-                let r = px((w.min(h) / 4.0).clamp(1.0, 3.0));
-                out += &format!(
-                    "<circle cx=\"{x}\" cy=\"{y}\" r=\"{r}\" fill=\"#fff\" stroke=\"#000\" stroke-width=\".5\"/>\n"
-                );
+                dot(&mut out, (x + w / 2.0, y + h / 2.0), (w.min(h) / 4.0).clamp(1.0, 3.0));
             }
         }
+        let [left, top_edge, side] = [LEFT, top, SIDE].map(px);
+        out += &format!(
+            "<rect x=\"{left}\" y=\"{top_edge}\" width=\"{side}\" height=\"{side}\" fill=\"none\" stroke=\"{INK}\"/>\n"
+        );
         self.axis(&mut out, &self.x, w, top, Direction::Horizontal);
         self.axis(&mut out, &self.y, h, top, Direction::Vertical);
-        if finite().next().is_some() {
-            self.bar(&mut out, scale, top);
+        let none = measured.iter().any(Option::is_none);
+        match finite().next() {
+            Some(_) if classes.is_empty() => self.bar(&mut out, scale, top, none),
+            _ => self.boxes(&mut out, &classes, top, none),
         }
         out + "</g>\n</svg>\n"
+    }
+
+    /// The values, if they are a few counts: each has a colour of its own then.
+    fn classes(&self) -> Vec<f64> {
+        let mut values: Vec<f64> = self.cells.iter().flatten().copied().collect();
+        values.sort_by(f64::total_cmp);
+        values.dedup();
+        let counts = self.value.scale == Scale::Linear && values.iter().all(|x| x.fract() == 0.0);
+        if counts && values.len() <= MOST_CLASSES { values } else { Vec::new() }
+    }
+
+    /// A box for each class, with its count, and one for cells without a number.
+    fn boxes(&self, out: &mut String, classes: &[f64], top: f64, none: bool) {
+        let x = LEFT + SIDE + 28.0;
+        for (row, line) in wrap(&self.value.label, TICK_SIZE, WIDTH - x - 4.0).iter().enumerate() {
+            text(out, (x, top + 10.0 + 15.0 * row as f64), "start", line);
+        }
+        let first = top + 50.0;
+        let entries = classes
+            .iter()
+            .enumerate()
+            .map(|(i, class)| (Some((i as f64 + 0.5) / classes.len() as f64), class.to_string()));
+        let entries = entries.chain(none.then(|| (None, NOTHING.to_owned())));
+        for (row, (shade, label)) in entries.enumerate() {
+            let y = first + 24.0 * row as f64;
+            match shade {
+                Some(shade) => rectangle(out, (x, y, BAR, BAR), &colour(shade)),
+                None => empty(out, (x, y, BAR, BAR)),
+            }
+            text(out, (x + BAR + 8.0, y + 12.5), "start", &label);
+        }
     }
 
     /// Ticks in the middle of the cells; `cell` is the length of one.
@@ -126,7 +172,7 @@ impl HeatMap {
     }
 
     /// The colours with their values.
-    fn bar(&self, out: &mut String, scale: Interval, top: f64) {
+    fn bar(&self, out: &mut String, scale: Interval, top: f64, none: bool) {
         const PARTS: usize = 48;
         let x = LEFT + SIDE + 28.0;
         let part = SIDE / PARTS as f64;
@@ -145,7 +191,22 @@ impl HeatMap {
             None => self.value.label.clone(),
         };
         text(out, (x, top + SIDE + 38.0), "start", &label);
+        if none {
+            empty(out, (x + 70.0, top, BAR, BAR));
+            text(out, (x + 78.0 + BAR, top + 12.5), "start", NOTHING);
+        }
     }
+}
+
+/// A cell without a number.
+fn empty(out: &mut String, (x, y, w, h): (f64, f64, f64, f64)) {
+    let [x, y, w, h] = [x, y, w, h].map(px);
+    *out += &format!("<rect x=\"{x}\" y=\"{y}\" width=\"{w}\" height=\"{h}\" fill=\"{INK}\" fill-opacity=\".25\"/>\n");
+}
+
+fn dot(out: &mut String, (x, y): (f64, f64), r: f64) {
+    let [x, y, r] = [x, y, r].map(px);
+    *out += &format!("<circle cx=\"{x}\" cy=\"{y}\" r=\"{r}\" fill=\"#fff\" stroke=\"#000\" stroke-width=\".5\"/>\n");
 }
 
 fn colour(fraction: f64) -> String {

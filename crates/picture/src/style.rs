@@ -6,8 +6,7 @@
 /// colour. Narrow lines stand on wide ones. A gap between two formulations alternates their colours.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Style {
-    /// One of a row of motions of the vakonomic family: what lies between neighbours is a band (pale
-    /// vermilion).
+    /// One of a row of motions of the vakonomic family (vermilion, thin, the later in the row the stronger).
     Family,
     /// A limit or threshold (grey, thin, dashed; named at its right end).
     Threshold,
@@ -29,6 +28,10 @@ pub enum Style {
     Member(u8),
     /// A measurement: a dot per point (grey).
     Samples,
+    /// What everything else is compared with (ink, solid).
+    Ink,
+    /// Points at which something ends: a cross per point (ink).
+    Stops,
 }
 
 /// One pass of the pen along a curve.
@@ -53,6 +56,9 @@ pub(super) const MARKS: [&str; 4] = [
     "m0-6.2l5.8 10h-11.6z",
     "m0-6.4l6.4 6.4l-6.4 6.4l-6.4-6.4z",
 ];
+
+/// The same for [`Style::Stops`]: a cross.
+pub(super) const CROSS: &str = "m-5-5l10 10m0-10l-10 10";
 
 pub(super) const INK: &str = "currentColor";
 /// Chetaev.
@@ -104,7 +110,7 @@ impl Style {
     /// The passes of the pen, lowest first.
     pub fn strokes(self) -> Vec<Stroke> {
         match self {
-            Self::Family => vec![Stroke { opacity: 0.2, ..stroke(VERMILION, 9.0, "") }],
+            Self::Family => vec![Stroke { opacity: 0.75, ..stroke(VERMILION, 1.1, "") }],
             Self::Chetaev => vec![stroke(BLUE, 5.4, "")],
             Self::Vakonomic => vec![stroke(VERMILION, 3.0, "12 7")],
             Self::Substituted => vec![stroke(PURPLE, 2.2, "9 4 2 4")],
@@ -118,6 +124,8 @@ impl Style {
                 vec![stroke(colour, 2.2, dash)]
             }
             Self::Threshold => vec![stroke(INK, 1.0, "7 4")],
+            Self::Ink => vec![stroke(INK, 2.8, "")],
+            Self::Stops => vec![stroke(INK, 1.8, "")],
             Self::Samples => vec![Stroke { round: true, ..stroke(INK, 2.6, "0.1 6") }],
         }
     }

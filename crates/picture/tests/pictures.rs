@@ -123,13 +123,16 @@ fn a_runaway_is_cut_and_marked() {
 }
 
 #[test]
-fn a_family_is_a_band_and_sets_no_range() {
+fn a_family_is_a_fan_of_lines_and_sets_no_range() {
     let member = |i: u32| curve(Style::Family, [(0.0, 0.0), (f64::from(i), 50.0)]);
     let near = curve(Style::Chetaev, [(0.0, 0.0), (1.0, 1.0)]);
     let svg = picture((0..30).map(member).chain([near]).collect()).to_svg().unwrap();
     let document = roxmltree::Document::parse(&svg).unwrap();
-    let band = document.descendants().find(|node| node.attribute("opacity") == Some("0.2")).unwrap();
-    assert_eq!(band.children().filter(|node| node.has_tag_name("path")).count(), 29, "between 30 members");
+    let stroked = |node: &roxmltree::Node| node.attribute("stroke-width") == Some("1.1") && node.has_tag_name("g");
+    let fan = document.descendants().find(stroked).unwrap();
+    let shades: Vec<f64> = fan.children().filter_map(|node| node.attribute("stroke-opacity")?.parse().ok()).collect();
+    // every member is a line, the later the stronger
+    assert!(shades.len() == 30 && shades.is_sorted() && shades[0] < shades[29], "{shades:?}");
     assert!(has(&texts(&svg), "1.0") && !has(&texts(&svg), "50"), "{:?}", texts(&svg));
 }
 
@@ -219,5 +222,5 @@ fn panels_share_the_legend_and_the_horizontal_axis() {
     let texts = texts(&panels.to_svg().unwrap());
     assert!(has(&texts, "of y (m)"), "{texts:?}");
     assert_eq!(texts.iter().filter(|text| *text == "Chetaev").count(), 1);
-    assert_eq!(texts.iter().filter(|text| *text == "t (s)").count(), 2, "one per column");
+    assert_eq!(texts.iter().filter(|text| *text == "t (s)").count(), 3, "one per panel");
 }

@@ -86,7 +86,19 @@ pub fn moving<E>(scene: &Scene, motions: Vec<Drawn<'_, E>>) -> Result<Option<Mov
     let states = grid(STEPS).map(|t| (t, scene.start.q.clone()));
     let ground = sample(&mut poses, bodies, |body| !is_moved(body), states);
     let title = format!("{}: bodies in motion", scene.title);
-    Ok(Some(MovingPicture { title, time: (from, to, "s".into()), ground, motions: drawn }))
+    let metres = scene.system.coordinates.iter().any(|c| c.unit == "m");
+    let (unit, down) = (if metres { "m" } else { "" }.into(), down(&ground));
+    Ok(Some(MovingPicture { title, time: (from, to, "s".into()), ground, motions: drawn, unit, down }))
+}
+
+/// The steepest descent on the first body of the ground if its plane is inclined, else straight down.
+fn down(ground: &[Solid]) -> ([f64; 3], String) {
+    let normal = ground.iter().filter_map(|solid| solid.poses.first()).map(|pose| pose.rotation.map(|row| row[2]));
+    let descent = normal.map(|n| [n[2] * n[0], n[2] * n[1], n[2] * n[2] - 1.0]).next();
+    match descent.filter(|d| d[2] < -1e-6 && d[2] > -0.999) {
+        Some(along) => (along, "downhill".into()),
+        None => ([0.0, 0.0, -1.0], "down".into()),
+    }
 }
 
 /// Those of the bodies that are wanted, along `(t, q)`.

@@ -276,8 +276,8 @@ pub(crate) fn chore(outcome: Result<Outcome>) -> ExitCode {
     }
 }
 
-/// Tests the physics engine's crate and writes `reports/engine.md`. No check: what it runs is another
-/// program, at a length of its own.
+/// Tests the physics engine's crate and writes `reports/evidence/engine.md`. Not a check: what it runs is
+/// another program, at a length of its own.
 pub(crate) fn engine() -> Result<Outcome> {
     succeed(cargo().args(["test", "--release", "--package", "engine"]))?;
     succeed(cargo().args(["run", "--release", "--package", "engine"]))

@@ -45,10 +45,10 @@ const CHORES: [Chore; 7] = [
         "moves sliders of a fresh page for five minutes, or in ROUNDS, then times frames; fails if it grows or slows",
         explore::growth,
     ),
-    ("engine", "tests and runs the physics engine, writes reports/engine.md", |_| checks::engine()),
+    ("engine", "tests and runs the physics engine, writes reports/evidence/engine.md", |_| checks::engine()),
     (
         "peers",
-        "times other tools beside ours, writes reports/peers.md; --quick for a look, --redraw for pictures",
+        "times other tools beside ours, writes reports/evidence/peers.md; --quick for a look, --redraw for pictures",
         python::peers,
     ),
 ];

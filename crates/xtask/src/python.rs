@@ -150,7 +150,7 @@ fn installed(python: &Path, wheel: &Path) -> Result<PathBuf> {
     Ok(fresh)
 }
 
-/// Times other tools beside the module, each in Python, and writes `reports/peers.md`.
+/// Times other tools beside the module, each in Python, and writes `reports/evidence/peers.md`.
 pub(crate) fn peers(arguments: &[&str]) -> Result<Outcome> {
     let target = target()?;
     let scripts = Path::new("validation").join("peers");

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use anyhow::Result;
+use anyhow::{Result, ensure};
 
 use crate::tools::{Outcome, cargo, outside, succeed, target};
 use crate::{explore, python};
@@ -14,6 +14,23 @@ const SCRIPTS: &str = "docs/site";
 const EVIDENCE: [&str; 7] =
     ["deltaq-random", "deltaq-referees", "deltaq-validation", "engine", "python", "tests", "xtask"];
 
+/// Measured pages that are older than their code, a line each: they do not belong to the site.
+fn older_pages() -> Result<String> {
+    succeed(cargo().args([
+        "build",
+        "--release",
+        "--workspace",
+        "--exclude",
+        "engine",
+        "--bin",
+        "evidence",
+        "--quiet",
+    ]))?;
+    let output = outside(target()?.join("release").join("evidence")).args(["reports", "--ages"]).output()?;
+    ensure!(output.status.success(), "evidence reports --ages: {}", String::from_utf8_lossy(&output.stderr));
+    Ok(String::from_utf8(output.stdout)?)
+}
+
 /// Builds it into `target/site`: the reference of Rust by `cargo doc`, all else by Sphinx. Then its pages are
 /// looked at in a browser, if there is one.
 pub(crate) fn build() -> Result<Outcome> {
@@ -23,6 +40,6 @@ pub(crate) fn build() -> Result<Outcome> {
     let python = python::make(&target, "site", &Path::new(SCRIPTS).join("requirements.txt"))?;
     let mut run = outside(&python);
     run.arg("-B").arg(Path::new(SCRIPTS).join("build.py")).arg(target.join("site"));
-    succeed(run.arg(target.join("doc")))?;
+    succeed(run.arg(target.join("doc")).arg(older_pages()?))?;
     explore::look_at(&target.join("site"))
 }

@@ -8,7 +8,7 @@
 //! - [`Mapping`]: from a scene to the engine's [`Setup`], from coordinates to a ball's [`Pose`], with signs.
 //! - [`Run`]: one run of the engine.
 //! - [`Study`]: runs at a ladder of steps, their distance to each formulation's motion, the [`Finding`].
-//! - [`files`]: the page `reports/engine.md`, which `cargo xtask engine` writes.
+//! - [`files`]: the page `reports/evidence/engine.md`, which `cargo xtask engine` writes.
 //!
 //! An impulse that takes the sliding velocity to zero does no work on motions that do not slide: d'Alembert's
 //! principle with Chetaev's virtual displacements, step by step. So we expect Chetaev's motion at the

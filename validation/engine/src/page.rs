@@ -9,14 +9,14 @@ use rapier3d_f64::VERSION;
 
 use crate::study::{FAR, Level, NEAR, ORDER, SAMPLES, Study, Target};
 
-/// The page `engine.md` and one picture for each study.
+/// The page `evidence/engine.md` and one picture for each study.
 ///
 /// # Errors
 /// Where a picture cannot be drawn.
 pub fn files(studies: &[Study]) -> Result<Vec<File>, PictureError> {
-    let mut files = vec![File { path: "engine.md".into(), text: page(studies) }];
+    let mut files = vec![File { path: "evidence/engine.md".into(), text: page(studies) }];
     for study in studies {
-        files.push(File { path: picture_name(study).into(), text: picture(study)? });
+        files.push(File { path: format!("evidence/{}", picture_name(study)).into(), text: picture(study)? });
     }
     Ok(files)
 }
@@ -66,11 +66,13 @@ fn headline(studies: &[Study]) -> String {
     };
     match (names(true).as_str(), names(false).as_str()) {
         (all, "") => format!(
-            "On {all} the engine's motion tends to Chetaev's as its time step shrinks, at first order, and to no other."
+            "On {all} the engine's motion converges to Chetaev's, and to no other, at first order in the time step."
         ),
-        ("", none) => format!("On {none} it was not shown that the engine's motion tends to Chetaev's."),
+        ("", none) => format!("On {none} it was not shown that the engine's motion converges to Chetaev's."),
         (some, rest) => {
-            format!("On {some} the engine's motion tends to Chetaev's at first order; on {rest} that was not shown.")
+            format!(
+                "On {some} the engine's motion converges to Chetaev's at first order; on {rest} that was not shown."
+            )
         }
     }
 }
@@ -152,6 +154,16 @@ fn picture(study: &Study) -> Result<String, PictureError> {
     // narrow lines, which do not hide what is below them
     curves.push(curve(format!("to {first}, extrapolated, 1 MHz"), Style::Member(3), &study.yielding, &extrapolated));
     curves.push(curve(format!("to {first}, contacts as shipped"), Style::Member(2), &study.shipped, &as_shipped));
-    let title = format!("{}: the engine's distance from each formulation", study.title);
+    // a line of first order below the others
+    let guide = study
+        .hard
+        .first()
+        .map(|from| study.hard.iter().map(|l| (l.dt, 0.1 * from.distances[0] * l.dt / from.dt)).collect());
+    curves.extend(guide.map(|points| Curve { label: "∝ dt".into(), style: Style::Threshold, points }));
+    let finding = study.finding();
+    let title = match study.targets.len() > 1 && finding.holds() {
+        true => format!("{}: the engine converges to Chetaev's motion and to no other", study.title),
+        false => format!("{}: the engine's distance from the closed solution", study.title),
+    };
     Picture::new(title, Axis::log("dt (s)"), Axis::log("relative distance"), curves).to_svg()
 }

@@ -27,20 +27,16 @@ fn word(verdict: Word) -> &'static str {
     }
 }
 
-/// Comparisons as a table, in Markdown.
-pub fn referee_table(rows: &[Row]) -> String {
-    let columns = ["who", "what was compared", "how many", "largest relative difference", "tolerance", "verdict"];
+/// Comparisons as a table.
+pub fn referee_table(rows: &[Row]) -> Table {
+    let columns = ["scene", "who", "what was compared", ">how many", "largest relative difference"];
+    let columns = columns.into_iter().chain([">tolerance", "verdict", "note"]);
     let mut table = Table::new(columns);
     for row in rows {
-        let verdict = match row.verdict {
-            Word::Agrees => word(row.verdict).to_string(),
-            _ => format!("**{}**", word(row.verdict)),
-        };
-        let note = if row.note.is_empty() { String::new() } else { format!("; {}", row.note) };
-        let (tolerance, verdict) = (format!("{:.0e}", row.tolerance), verdict + &note);
-        table.row(&[&row.who, &row.what, &row.count, &bound(row), &tolerance, &verdict]);
+        let (tolerance, verdict) = (format!("{:.0e}", row.tolerance), word(row.verdict));
+        table.row(&[&row.scene, &row.who, &row.what, &row.count, &bound(row), &tolerance, &verdict, &row.note]);
     }
-    table.to_string()
+    table
 }
 
 /// One sentence about everything.

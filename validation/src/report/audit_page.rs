@@ -1,6 +1,6 @@
 //! The pages about the paper's equations.
 
-use std::fmt::{Display, Write};
+use std::fmt::Display;
 
 use anyhow::Result;
 use serde_json::{Map, Value, json};
@@ -10,15 +10,11 @@ use crate::audit::{
     Constants, Example, Finding, Form, Paper, STATEMENT, Stationarity, Variant, Verdict, cone, refusal,
 };
 use comparison::words::{enumerate, short};
-use pages::markdown::folded;
-use pages::{Table, fill};
+use pages::{DataPackage, Table, fill};
 use program::File;
 
 /// Below this `dI/dε` counts as zero: differences of the perturbed action are good to about 1e-9.
 const STATIONARY: f64 = 1e-8;
-
-/// LaTeX longer than this stands in blocks of its own.
-const SHORT: usize = 130;
 
 /// What the audit found.
 pub struct AuditReport {
@@ -79,21 +75,46 @@ impl AuditReport {
         json!({ "equations": equations, "readings": readings, "stationary": stationary })
     }
 
-    /// The pages.
+    /// The pages and their tables.
     pub fn files(&self) -> Vec<File> {
-        vec![
-            File { path: "paper-audit.md".into(), text: self.page() },
-            File { path: "paper-examples.md".into(), text: self.examples() },
-        ]
+        let data = self.data();
+        let pages = [("paper/audit.md", self.page(&data)), ("paper/examples.md", self.examples())];
+        let pages = pages.map(|(path, text)| File { path: path.into(), text });
+        pages.into_iter().chain(data.files()).collect()
     }
 
-    fn page(&self) -> String {
-        let columns = ["equation", "about", "verdict", ">residual, printed", ">residual, corrected", "checked"];
-        let mut verdicts = Table::new(columns);
+    /// Every equation with its formulas, and every reading that was tried.
+    fn data(&self) -> DataPackage {
+        let columns = ["equation", "about", "verdict", "note", "scan", "as printed", "corrected", "residual, printed"];
+        let along = ["residual, corrected", "checked", "along a motion, printed", "along a motion, corrected"];
+        let mut equations = Table::new(columns.into_iter().chain(along));
+        let mut readings = Table::new(["equation", "also tried", "holds", "residual"]);
+        for f in &self.findings {
+            let [printed, corrected] = [&f.printed, &f.corrected].map(|form| {
+                let lines = form.lines.iter().map(|l| &l.latex).chain(&form.integrals);
+                lines.map(|latex| format!("${latex}$")).collect::<Vec<_>>().join("; ")
+            });
+            let residuals = [&f.printed, &f.corrected].map(form_residual);
+            let along = f.along.as_ref().map_or(Default::default(), |along| [list(&along[0]), list(&along[1])]);
+            let said = [&f.number, &f.title, f.verdict.word(), &f.note, &f.scan].map(String::from);
+            let checked = [checked(f).to_owned()];
+            equations.cells(said.into_iter().chain([printed, corrected]).chain(residuals).chain(checked).chain(along));
+            for v in &f.variants {
+                let word = if v.form.holds() { "yes" } else { "no" };
+                readings.row(&[&f.number, &v.words, &word, &form_residual(&v.form)]);
+            }
+        }
+        let mut data = DataPackage::new("data/paper", "The equations of Gao 2017, each checked");
+        data.table("equations", "Every equation as printed and as corrected, with residuals and notes", &equations);
+        data.table("readings", "Other readings of an equation that were tried", &readings);
+        data
+    }
+
+    fn page(&self, data: &DataPackage) -> String {
+        let mut verdicts = Table::new(["equation", "about", "verdict", ">residual, printed"]);
         for f in &self.findings {
             let word = if f.verdict == Verdict::Holds { "holds".into() } else { format!("**{}**", f.verdict.word()) };
-            let [printed, corrected] = [&f.printed, &f.corrected].map(form_residual);
-            verdicts.row(&[&f.number, &f.title, &word, &printed, &corrected, &checked(f)]);
+            verdicts.row(&[&f.number, &f.title, &word, &form_residual(&f.printed)]);
         }
         let (c, s) = (&self.constants, &self.stationarity);
         let natural = c.natural.iter().map(|[t, x]| format!("$C = {}$ for $t_1 = {}$ s", short(*x), short(*t)));
@@ -118,7 +139,7 @@ impl AuditReport {
         // within the item of the list
         let horizons = horizons.to_string().lines().map(|line| format!("  {line}\n")).collect::<String>();
         let gap_derived = short(s.gap);
-        let equations = self.findings.iter().map(equation).collect::<String>();
+        let list_of_data = data.list(1);
         let numbers: Vec<(&str, String)> = c.numbers.iter().map(|&(name, x)| (name, short(x))).collect();
         let mut values: Vec<(&str, &dyn Display)> = numbers.iter().map(|(name, text)| (*name, text as _)).collect();
         values.extend::<[(&str, &dyn Display); 10]>([
@@ -131,9 +152,9 @@ impl AuditReport {
             ("statement", &STATEMENT),
             ("gap_derived", &gap_derived),
             ("sledge", &sledge),
-            ("equations", &equations),
+            ("data", &list_of_data),
         ]);
-        fill(include_str!("pages/paper-audit.md"), &values)
+        fill(include_str!("pages/audit.md"), &values)
     }
 
     fn examples(&self) -> String {
@@ -144,7 +165,7 @@ impl AuditReport {
             head + &group.form.lines.iter().filter(|_| shown).map(|line| math(&line.latex)).collect::<String>()
         });
         fill(
-            include_str!("pages/paper-examples.md"),
+            include_str!("pages/examples.md"),
             &[
                 ("quantities", &quantities.collect::<String>()),
                 ("cone", &self.cone.equations.iter().map(|line| math(line)).collect::<String>()),
@@ -156,88 +177,12 @@ impl AuditReport {
     }
 }
 
-/// One equation with its formulas, which are folded away but for short corrections.
-fn equation(f: &Finding) -> String {
-    let mut text = format!("\n### {}: {}\n\n", f.number, f.title);
-    let _ = writeln!(text, "**{}.** {}{}\n", capital(f.verdict.word()), f.note, scan(f));
-    let formulas = formulas(f);
-    match f.verdict {
-        _ if formulas.is_empty() => text,
-        Verdict::Misprint if !formulas.contains("```math") => text + &formulas,
-        _ => text + &folded("formulas", &formulas) + "\n",
-    }
-}
-
-/// As printed and as corrected, residuals, other readings.
-fn formulas(f: &Finding) -> String {
-    let mut text = String::new();
-    let long = |form: &Form| form.lines.iter().any(|l| l.latex.len() > SHORT);
-    if f.corrected.lines.is_empty() {
-        text += &blocks("", &f.printed);
-    } else if long(&f.printed) || long(&f.corrected) {
-        text += &blocks("As printed:", &f.printed);
-        text += &blocks(corrected_words(f), &f.corrected);
-    } else {
-        let mut table = Table::new(["as printed", &corrected_words(f).trim_end_matches(':').to_lowercase()]);
-        let forms = [&f.printed, &f.corrected];
-        let [printed, corrected] = forms.map(|form| form.lines.iter().map(|l| &l.latex));
-        for (one, two) in printed.zip(corrected).chain(f.printed.integrals.iter().zip(&f.corrected.integrals)) {
-            table.cells([one, two].map(|latex| format!("${latex}$")));
-        }
-        table.cells(forms.map(|form| format!("residual {}", form_residual(form))));
-        text += &table.to_string();
-    }
-    if let Some([printed, corrected]) = &f.along {
-        let _ = writeln!(
-            text,
-            "\nAlong the computed motion of the scene, largest residuals: {} as printed, {} as corrected (second derivatives are differences of velocities).",
-            list(printed),
-            list(corrected)
-        );
-    }
-    if !f.variants.is_empty() {
-        let mut table = Table::new(["also tried", "holds", ">residual"]);
-        for v in &f.variants {
-            let word = if v.form.holds() { "yes" } else { "no" };
-            table.row(&[&v.words, &word, &form_residual(&v.form)]);
-        }
-        let _ = write!(text, "\n{table}");
-    }
-    text
-}
-
 fn list(numbers: &[f64]) -> String {
     numbers.iter().map(|x| two_digits(*x)).collect::<Vec<_>>().join(", ")
 }
 
 fn math(latex: &str) -> String {
     format!("```math\n{latex}\n```\n")
-}
-
-fn blocks(words: &str, form: &Form) -> String {
-    let mut text = String::new();
-    if form.lines.is_empty() {
-        return text;
-    }
-    if !words.is_empty() {
-        let _ = writeln!(text, "{words}\n");
-    }
-    text.extend(form.lines.iter().map(|l| &l.latex).chain(&form.integrals).map(|line| math(line)));
-    let _ = writeln!(text, "\nResidual {}.\n", form_residual(form));
-    text
-}
-
-fn corrected_words(f: &Finding) -> &'static str {
-    if f.verdict == Verdict::Incomplete { "As completed:" } else { "As corrected:" }
-}
-
-fn scan(f: &Finding) -> String {
-    if f.scan.is_empty() { String::new() } else { format!(" *{}*", f.scan) }
-}
-
-fn capital(word: &str) -> String {
-    let mut letters = word.chars();
-    letters.next().map_or(String::new(), |first| first.to_uppercase().collect::<String>() + letters.as_str())
 }
 
 /// How an equation was checked.

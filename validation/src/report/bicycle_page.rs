@@ -56,8 +56,8 @@ impl BicycleReport {
     /// The first line of the page.
     pub fn headline(&self) -> String {
         format!(
-            "The benchmark bicycle (eight coordinates, five constraints), linearized by the program, has the 44 published \
-             eigenvalues at eleven speeds to {:.0e}; none has a positive real part from {:.9} to {:.9} m/s.",
+            "The linearized benchmark bicycle (eight coordinates, five constraints) reproduces the 44 published eigenvalues \
+             at eleven speeds to {:.0e}, and is linearly stable from {:.6} to {:.6} m/s.",
             self.largest(),
             self.changes[0].1,
             self.changes[1].1
@@ -101,12 +101,12 @@ impl BicycleReport {
                 ("form", &linearization.form),
             ],
         );
+        let [low, high] = [self.changes[0].1, self.changes[1].1];
+        let title =
+            format!("The bicycle is linearly stable from {low:.2} to {high:.2} m/s: eigenvalues over its speed");
         Ok(vec![
-            File { path: "bicycle.md".into(), text: page },
-            File {
-                path: "bicycle.svg".into(),
-                text: sweep_picture("Eigenvalues of a bicycle over its speed", &self.drawn)?,
-            },
+            File { path: "evidence/bicycle.md".into(), text: page },
+            File { path: "evidence/bicycle.svg".into(), text: sweep_picture(&title, &self.drawn)? },
         ])
     }
 }

@@ -56,10 +56,10 @@ pub fn sentence(controls: &[Control]) -> String {
     let called = |word: &'static str| names(&move |control: &&Control| control.word() == word);
     let fails = names(&|control| control.found.as_ref().is_some_and(|found| found.word == Some(Word::Fails)));
     let (title, otherwise) = match &fails[..] {
-        [] => ("The wrong formulation is found out.", String::new()),
+        [] => ("The negative control is detected.", String::new()),
         some => (
-            "The wrong formulation is not found out.",
-            format!(" On {} Maggi's equations say otherwise: a fault of the program.", enumerate(some)),
+            "The negative control is not detected.",
+            format!(" On {} Maggi's equations disagree, which is a fault of deltaq.", enumerate(some)),
         ),
     };
     let wrong = names(&|control| control.found.as_ref().is_some_and(FoundOut::is_wrong)).len();
@@ -67,8 +67,8 @@ pub fn sentence(controls: &[Control]) -> String {
     let residual = right.fold(0.0_f64, |largest, found| largest.max(found.residual));
     let scenes = |count: usize| format!("{count} scene{}", if count == 1 { "" } else { "s" });
     format!(
-        "**{title}** The constraint put into $L$ violates Maggi's equations on \
-         {}: flagged on {}. It is called right on {}, with a residual of at most {}.{otherwise}",
+        "**{title}** Substituting the constraint into $L$ violates Maggi's equations on \
+         {} and is flagged on {}. It is called right on {}, with a residual of at most {}.{otherwise}",
         scenes(wrong),
         called(FLAGGED).len(),
         enumerate(&called(RIGHT)),

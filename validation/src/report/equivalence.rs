@@ -1,7 +1,7 @@
 //! The page of classic systems: is Chetaev's motion vakonomic, at almost every and at exceptional starts?
 
 use std::collections::BTreeMap;
-use std::fmt::{self, Write};
+use std::fmt;
 
 use anyhow::{Context, Result, ensure};
 use comparison::{Answer, Contradicted, Finding, Membership, Pairing, Section, membership};
@@ -12,9 +12,10 @@ use scene::{Number, Scene};
 use serde::Deserialize;
 use serde_json::Value;
 
+use crate::report::folder_of;
 use catalogue::CLASSICS;
 use comparison::words::short;
-use pages::Table;
+use pages::{DataPackage, Table};
 use program::File;
 
 const DATA: &str = include_str!("../../equivalence/pages/systems.toml");
@@ -75,12 +76,15 @@ impl Asked {
         Ok([Found::here(&membership), Found::almost_everywhere(&membership)])
     }
 
-    /// The scene as a link from the folder of reports, with its numbers.
+    /// The scene as a link from the pages of evidence, with its numbers.
     pub(super) fn link(&self) -> String {
         let name = &self.scene;
         let classic = CLASSICS.iter().any(|(known, _)| known == name);
-        let page =
-            if classic { format!("../crates/catalogue/classics/{name}.toml") } else { format!("scenes/{name}.md") };
+        let page = if classic {
+            format!("../../crates/catalogue/classics/{name}.toml")
+        } else {
+            format!("../{}/{name}.md", folder_of(name))
+        };
         let numbers = if self.set.is_empty() { String::new() } else { format!(", {}", numbers(&self.set)) };
         let control = if self.control { ", the constraint put into $L$" } else { "" };
         format!("[{name}]({page}){numbers}{control}")
@@ -189,9 +193,9 @@ fn regular(what: &str, membership: &Membership) -> &'static str {
 
 #[derive(Deserialize)]
 struct Data {
-    /// Paragraphs before the tables, and before the list.
+    /// The paragraphs before the table.
     #[serde(default)]
-    paragraphs: [String; 3],
+    about: String,
     system: Vec<System>,
 }
 
@@ -273,8 +277,9 @@ impl EquivalenceReport {
         let starts: usize = self.data.system.iter().map(|system| system.start.len()).sum();
         let open = if open == 0 { String::new() } else { format!("; {open} open") };
         format!(
-            "Of {} classic systems and variants, {none} have no $\\mu_0$ with which the vakonomic motion is Chetaev's, at almost \
-             every start; {one} have one $\\mu_0$, {more} a set of dimension 1 or more, {every} every $\\mu_0${open}. {starts} further starts, on and beside the exceptional ones, are decided.",
+            "For {none} of {} classic systems and variants no initial multipliers $\\mu_0$ make the vakonomic motion Chetaev's, at almost \
+             every start; for {one} one $\\mu_0$ does, for {more} a set of dimension 1 or more, for {every} every $\\mu_0${open}. In addition \
+             {starts} starts on and next to the exceptional ones are decided.",
             self.rows.len()
         )
     }
@@ -291,32 +296,33 @@ impl EquivalenceReport {
         Value::Object(self.data.system.iter().zip(&self.rows).map(value).collect())
     }
 
-    /// The page.
+    /// The page and its tables.
     pub fn files(&self) -> Vec<File> {
-        let [about, starts, published] = &self.data.paragraphs;
-        let mut text =
-            format!("# Which motions of classic systems are vakonomic?\n\n**{}**\n\n{about}\n", self.headline());
         let systems = || self.data.system.iter().zip(&self.rows);
         let columns = ["system", "scene", ">n", ">h", "almost every start", "start of the scene", "exceptional starts"];
-        let mut table = Table::new(columns);
+        let mut all = Table::new(columns.into_iter().chain(["published"]));
+        let mut shown = Table::new(["system", ">n", ">h", "$\\mu_0$, almost every start", "how this is known"]);
+        let mut starts = Table::new(["system", "start", "numbers", "found"]);
         for (system, row) in systems() {
-            let [n, h] = row.size;
-            let (link, everywhere, here) = (system.asked.link(), &row.almost_everywhere, &row.starts[0]);
-            table.row(&[&row.title, &link, &n, &h, everywhere, here, &system.exceptions]);
-        }
-        let _ = write!(text, "{table}\n{starts}\n");
-        let mut table = Table::new(["system", "start", "numbers", "found"]);
-        for (system, row) in systems() {
+            let ([n, h], (everywhere, here)) = (row.size, (&row.almost_everywhere, &row.starts[0]));
+            let published = system.literature.as_deref().unwrap_or_default();
+            all.row(&[&row.title, &system.asked.link(), &n, &h, everywhere, here, &system.exceptions, &published]);
+            // formulas stand in the table of all
+            let how = everywhere.how.split(", `").next().unwrap_or_default();
+            shown.row(&[&row.title, &n, &h, &everywhere.what, &how]);
             for (start, found) in system.start.iter().zip(&row.starts[1..]) {
-                table.row(&[&row.title, &start.at, &numbers(&start.set), found]);
+                starts.row(&[&row.title, &start.at, &numbers(&start.set), found]);
             }
         }
-        let _ = write!(text, "{table}\n{published}\n");
-        for (system, row) in systems() {
-            if let Some(literature) = &system.literature {
-                let _ = writeln!(text, "- **{}.** {literature}", row.title);
-            }
-        }
-        vec![File { path: "equivalence.md".into(), text }]
+        let mut data = DataPackage::new("data/equivalence", "Which motions of classic systems are vakonomic");
+        data.table("systems", "All systems, with exceptional starts and what was published", &all);
+        data.table("starts", "Starts decided one by one", &starts);
+        let text = format!(
+            "# Which motions of classic systems are vakonomic?\n\n**{}**\n\n{}\n{shown}\n## Data\n\n{}",
+            self.headline(),
+            self.data.about,
+            data.list(1)
+        );
+        [File { path: "evidence/equivalence.md".into(), text }].into_iter().chain(data.files()).collect()
     }
 }

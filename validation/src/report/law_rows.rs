@@ -75,7 +75,7 @@ pub fn exponents(before: Option<&Row>, row: &Row) -> [String; 3] {
 
 /// The table of these rows, with exponents.
 pub fn table(rows: &[Row]) -> Table {
-    let columns = ["scene", ">$\\kappa$", ">Chetaev – family", ">as", ">law – family", ">as", ">Chetaev – slip", ">as"];
+    let columns = ["scene", ">kappa", ">Chetaev – family", ">as", ">law – family", ">as", ">Chetaev – slip", ">as"];
     let mut table = Table::new(columns);
     for (i, row) in rows.iter().enumerate() {
         let power = exponents(i.checked_sub(1).map(|i| &rows[i]), row);

@@ -2,7 +2,6 @@
 
 use equations::Formulation;
 use std::collections::{BTreeMap, HashMap};
-use std::fmt::Write;
 
 use anyhow::{Context, Result, ensure};
 use motion::{CHETAEV, Settings, choices, formulation, solve_choice};
@@ -13,7 +12,7 @@ use serde_json::Value;
 
 use crate::report::equivalence::{Asked, Found, Written};
 use comparison::words::short;
-use pages::Table;
+use pages::{DataPackage, Table};
 use program::File;
 
 const DATA: &str = include_str!("../../equivalence/pages/claims.toml");
@@ -244,34 +243,31 @@ impl LiteratureReport {
         Value::Object(self.claims.iter().map(word).collect())
     }
 
-    /// The page.
+    /// The page and its tables.
     pub fn files(&self) -> Vec<File> {
-        let mut text = format!("# Published claims, computed\n\n**{}**\n\n{}\n", self.headline(), self.about);
-        let (mut all, mut each) = (Table::new([">", "source", "about", "word"]), String::new());
-        for (i, (claim, found)) in self.claims.iter().zip(&self.found).enumerate() {
-            let Claim { source, read, about, remark, .. } = claim;
-            let says = claim.question.as_ref().unwrap_or(&claim.says);
-            all.row(&[&(i + 1), source, about, &format!("**{}**", claim.word())]);
-            let condition = claim.condition.as_ref().map_or(String::new(), |condition| format!(" if {condition}"));
-            let word = match claim.word() {
-                ANSWERED => remark.clone(),
-                "contradicted" => format!("**contradicted in the reading given here**{condition}. {remark}"),
-                word => format!("**{word}**{condition}. {remark}"),
-            };
-            let _ = writeln!(each, "\n## {}. {source}: {about}\n\n{says} {read}", i + 1);
-            if !word.is_empty() {
-                let _ = writeln!(each, "\n{}", word.trim_end());
-            }
-            let head = if claim.question.is_some() { "looked for" } else { "the claim says" };
-            let mut table = Table::new(["asked", head, "found"]);
+        let mut shown = Table::new([">", "source", "about", "word"]);
+        let columns = [">claim", "source", "what was read", "about", "says", "word", "condition", "remark"];
+        let (mut all, mut cases) = (Table::new(columns), Table::new([">claim", "asked", "the claim says", "found"]));
+        for ((claim, found), i) in self.claims.iter().zip(&self.found).zip(1..) {
+            let Claim { source, read, about, remark, condition, .. } = claim;
+            let (says, word) = (claim.question.as_ref().unwrap_or(&claim.says), claim.word());
+            shown.row(&[&i, source, about, &format!("**{word}**")]);
+            let condition = condition.as_deref().unwrap_or_default();
+            let read = read.trim_matches(['*', '(', ')']);
+            all.row(&[&i, source, &read, about, says, &word, &condition, remark]);
             for (case, found) in claim.case.iter().zip(found) {
-                table.row(&[&case.question(), &case.claimed, found]);
-            }
-            if !table.is_empty() {
-                let _ = write!(each, "\n{table}");
+                cases.row(&[&i, &case.question(), &case.claimed, found]);
             }
         }
-        text += &(all.to_string() + &each);
-        vec![File { path: "literature.md".into(), text }]
+        let mut data = DataPackage::new("data/literature", "Published claims and what was computed about them");
+        data.table("claims", "What each source says, the word that follows and why", &all);
+        data.table("cases", "What was computed for each claim", &cases);
+        let text = format!(
+            "# Published claims, computed\n\n**{}**\n\n{}\n{shown}\n## Data\n\n{}",
+            self.headline(),
+            self.about,
+            data.list(1)
+        );
+        [File { path: "evidence/literature.md".into(), text }].into_iter().chain(data.files()).collect()
     }
 }

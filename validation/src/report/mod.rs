@@ -22,9 +22,18 @@ pub use differences::Compared;
 pub use equivalence::EquivalenceReport;
 pub use ivp_page::ivp_files;
 pub use literature::LiteratureReport;
-pub use overview::overview;
+pub use overview::{overview, summary};
 pub use random_page::{random_complaint, random_files, random_headline, random_verdicts, word as theorem_word};
 pub use realization_page::{ADDED_MASS, Approach, BOTH, FRICTION, RealizationReport};
-pub use referees_section::{CASADI, referees_section, without_referees};
+pub use referees_section::{CASADI, referees_files, without_referees};
 pub use scaling_page::{scaling_files, scaling_text};
 pub use stability_page::StabilityReport;
+
+/// The scene of the paper whose constraint is misprinted. It is not a rolling ball, so its page stands with
+/// the audit of the paper and not among the scenes.
+pub const AS_PRINTED: &str = "ball-in-cone-as-printed";
+
+/// The folder of the page of a scene.
+pub fn folder_of(scene: &str) -> &'static str {
+    if scene == AS_PRINTED { "paper" } else { "scenes" }
+}

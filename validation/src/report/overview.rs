@@ -6,12 +6,15 @@ use mechanics::Integrability;
 use motion::{CHETAEV, REMOVED_CONSTRAINT, VAKONOMIC};
 
 use crate::report::control::{self, Control};
+use crate::report::{AS_PRINTED, CASADI};
 use comparison::words::{enumerate, reached, short};
 use pages::{Table, fill, membership};
 
-/// One page: verdict matrix, findings, further pages (`further`: a line and a path), how to regenerate.
+/// One page: verdict matrix, findings, further pages (`further`: a line and a path), how to regenerate. The
+/// scene that belongs to the paper's audit is left out.
 pub fn overview(comparisons: &[Comparison], further: &[(&str, &str)]) -> String {
-    let controls: Vec<Option<Control>> = comparisons.iter().map(Control::on).collect();
+    let comparisons = &of_scenes(comparisons)[..];
+    let controls: Vec<Option<Control>> = comparisons.iter().map(|c| Control::on(c)).collect();
     let matrix = matrix(comparisons, &controls);
     let controls: Vec<Control> = controls.into_iter().flatten().collect();
     let findings =
@@ -25,6 +28,37 @@ pub fn overview(comparisons: &[Comparison], further: &[(&str, &str)]) -> String 
             ("further", &further.iter().map(|(line, path)| format!("- {line} [More]({path}).\n")).collect::<String>()),
         ],
     )
+}
+
+/// A page to cite: question, method, six results, each with its condition and how it is known, limits.
+pub fn summary(comparisons: &[Comparison], further: &[(&str, &str)]) -> String {
+    let comparisons = &of_scenes(comparisons)[..];
+    let controls: Vec<Control> = comparisons.iter().filter_map(|c| Control::on(c)).collect();
+    let of = |page: &str| further.iter().find(|(_, path)| path.ends_with(page)).map_or("*Not run.*", |(line, _)| line);
+    let pairs = comparisons.iter().flat_map(|c| &c.pairs).filter_map(|p| p.predicted.as_ref());
+    let (predicted, proved) = pairs.fold((0, 0), |(all, proved), p| (all + 1, proved + usize::from(p.proved)));
+    fill(
+        include_str!("pages/summary.md"),
+        &[
+            ("scenes", &headline(comparisons)),
+            ("classics", &of("equivalence.md")),
+            ("realization", &of("realization.md")),
+            ("growth", &predictions(comparisons).unwrap_or_default()),
+            ("predicted", &predicted),
+            ("proved", &proved),
+            ("random", &of("random.md")),
+            ("audit", &of("audit.md")),
+            ("stability", &of("stability.md")),
+            ("referees", &of(CASADI)),
+            ("control", &control::sentence(&controls)),
+            ("version", &env!("CARGO_PKG_VERSION")),
+        ],
+    )
+}
+
+/// All but the scene of the paper's audit.
+fn of_scenes(comparisons: &[Comparison]) -> Vec<&Comparison> {
+    comparisons.iter().filter(|c| c.scene.name != AS_PRINTED).collect()
 }
 
 /// A sign for a pair of motions.
@@ -46,8 +80,8 @@ fn fit_of<'a>(comparison: &'a Comparison, run: &Formulation, target: &Formulatio
     comparison.fits.iter().find(|f| f.run == run && f.target == target)
 }
 
-fn matrix(comparisons: &[Comparison], controls: &[Option<Control>]) -> Table {
-    let columns = ["scene", "integrable", "Chetaev, vakonomic", "Chetaev, removed", "vakonomic, removed"];
+fn matrix(comparisons: &[&Comparison], controls: &[Option<Control>]) -> Table {
+    let columns = ["scene", "holonomic", "Chetaev, vakonomic", "Chetaev, removed", "vakonomic, removed"];
     let mut table = Table::new(columns.into_iter().chain(["$\\mu_0$", ">closest", "control"]));
     for (c, control) in comparisons.iter().zip(controls) {
         let closest = match fit_of(c, VAKONOMIC, CHETAEV).map(|f| &f.fitted) {
@@ -84,9 +118,10 @@ fn names<'a>(comparisons: impl Iterator<Item = &'a Comparison>) -> Vec<String> {
     comparisons.map(|c| format!("`{}`", c.scene.name)).collect()
 }
 
-fn headline(comparisons: &[Comparison]) -> String {
+fn headline(comparisons: &[&Comparison]) -> String {
     let same = comparisons.iter().filter(|c| all_same(c)).count();
-    let apart = names(comparisons.iter().filter(|c| verdict_of(c, CHETAEV, VAKONOMIC) == Some(&Verdict::Different)));
+    let apart =
+        names(comparisons.iter().copied().filter(|c| verdict_of(c, CHETAEV, VAKONOMIC) == Some(&Verdict::Different)));
     let count = |wanted: fn(&Answer) -> bool| {
         comparisons
             .iter()
@@ -94,9 +129,9 @@ fn headline(comparisons: &[Comparison]) -> String {
             .count()
     };
     format!(
-        "Chetaev's and the vakonomic motion part on {} of {} scenes; on {} of these it is proved that no choice of the \
-         free multipliers brings them together, on {} a choice that does is known. On {same} scenes no difference between \
-         the three formulations is above the error estimates.",
+        "The d'Alembert–Lagrange (Chetaev) and the vakonomic motion differ on {} of {} scenes. On {} of these it is proved that \
+         no initial multipliers reconcile them; for {} we give multipliers that do. On {same} scenes no difference between \
+         the three formulations exceeds the error estimates.",
         apart.len(),
         comparisons.len(),
         count(|answer| matches!(answer, Answer::NoneProved { .. })),
@@ -105,23 +140,24 @@ fn headline(comparisons: &[Comparison]) -> String {
 }
 
 /// At most 40 words each.
-fn findings(comparisons: &[Comparison], controls: &[Control]) -> Vec<String> {
+fn findings(comparisons: &[&Comparison], controls: &[Control]) -> Vec<String> {
     let mut findings = Vec::new();
-    let integrable: Vec<&Comparison> = comparisons.iter().filter(|c| c.integrability.is_integrable()).collect();
+    let is_holonomic = |c: &&Comparison| c.integrability.is_integrable();
+    let integrable: Vec<&Comparison> = comparisons.iter().copied().filter(is_holonomic).collect();
     let agreeing = names(integrable.iter().copied().filter(|c| all_same(c)));
     findings.push(format!(
-        "**Where the constraint can be integrated, the formulations agree on the scenes tried.** Frobenius' test finds \
-         {} scenes integrable or free of constraints; all formulations agree on {}.",
+        "**Holonomic constraints: the formulations agree.** Frobenius' test finds {} scenes holonomic or unconstrained; all \
+         formulations agree on {}.",
         integrable.len(),
         enumerate(&agreeing)
     ));
-    let nonintegrable: Vec<&Comparison> = comparisons.iter().filter(|c| !c.integrability.is_integrable()).collect();
+    let nonintegrable: Vec<&Comparison> = comparisons.iter().copied().filter(|c| !is_holonomic(c)).collect();
     let decided =
         |wanted: fn(&Answer) -> bool| names(nonintegrable.iter().copied().filter(|c| membership::is(c, wanted)));
     findings.extend(constants_of_removal(&integrable));
     findings.push(format!(
-        "**Vakonomic is a family, Chetaev one motion.** Where the constraint cannot be integrated, some $\\mu_0$ gives \
-         Chetaev's motion on {}; none does on {} scenes: proved for their start and almost every other.",
+        "**The vakonomic equations have a family of motions, Chetaev's equations one.** If the constraint is nonholonomic, some \
+         $\\mu_0$ gives Chetaev's motion on {}; none does on {} scenes, proved for their start and almost every other.",
         enumerate(&decided(|answer| matches!(answer, Answer::SomeProved | Answer::Some { .. }))),
         decided(|answer| matches!(answer, Answer::NoneProved { .. })).len(),
     ));
@@ -141,18 +177,18 @@ fn constants_of_removal(integrable: &[&Comparison]) -> Option<String> {
     let (scene, fitted, gap) = fitted.max_by(|a, b| a.2.total_cmp(&b.2))?;
     let constants: Vec<String> = fitted.constants.iter().map(|(name, x)| format!("{name} = {}", short(*x))).collect();
     let left = match fitted.gap.verdict {
-        Verdict::Same => "close it".to_string(),
-        _ => format!("leave {}", reached(fitted)),
+        Verdict::Same => "it is Newton's".to_string(),
+        _ => format!("a gap of {} remains", reached(fitted)),
     };
     Some(format!(
-        "**Removal needs its constants fixed even there.** On `{scene}`, whose parameters are not coordinates, the scene's \
-         constants leave a gap of {} to Newton's motion; {} {left}.",
+        "**Removal needs its constants fixed even there.** On `{scene}`, whose parameters are not coordinates, the motion with \
+         the default constants differs from Newton's by up to {} m √kg; with {} {left}.",
         short(gap),
-        constants.join(", ")
+        enumerate(&constants)
     ))
 }
 
-fn parametrizations(comparisons: &[Comparison]) -> String {
+fn parametrizations(comparisons: &[&Comparison]) -> String {
     let (mut has, mut lacks, mut apart) = (0, Vec::new(), 0);
     for c in comparisons {
         let run = |i: usize| &c.runs[i].choice;
@@ -169,17 +205,16 @@ fn parametrizations(comparisons: &[Comparison]) -> String {
     }
     let otherwise = match &lacks[..] {
         [] => String::new(),
-        lacks => format!(" (not on {})", enumerate(lacks)),
+        lacks => format!(" (not those of {})", enumerate(lacks)),
     };
     format!(
-        "**Removal by coordinates has the vakonomic motions and no others; other parameters may have more.** With \
-         variables of its own and all costates, {has} of {} removals have the vakonomic motion{otherwise}. {apart} pairs of \
-         removals of one constraint part.",
+        "**Removal by coordinates yields exactly the vakonomic family.** {has} of {} removals with variables of their own \
+         and all costates contain the vakonomic motion{otherwise}. In {apart} cases two removals of one constraint disagree.",
         has + lacks.len(),
     )
 }
 
-fn predictions(comparisons: &[Comparison]) -> Option<String> {
+fn predictions(comparisons: &[&Comparison]) -> Option<String> {
     let mut worst: Option<(f64, &str)> = None;
     let mut count = 0;
     for c in comparisons {
@@ -195,7 +230,7 @@ fn predictions(comparisons: &[Comparison]) -> Option<String> {
     }
     worst.map(|(off, name)| {
         format!(
-            "**How motions begin to part is predictable.** Taylor coefficients of the accelerations at the start give the \
+            "**The initial growth of the gap is predicted.** Taylor coefficients of the accelerations at the start give the \
              leading term of the gap for {count} pairs, within {} % of the measured one (worst: `{name}`).",
             short(100.0 * off)
         )

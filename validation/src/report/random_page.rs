@@ -1,15 +1,13 @@
 //! The page about random systems.
 
-use std::fmt::Write;
-
 use anyhow::Result;
 use serde_json::{Map, Value, json};
 
 use comparison::words::{enumerate, or_dash, short};
-use pages::{Table, fill};
+use pages::{DataPackage, Table, fill};
 use picture::{Axis, Curve, Panel, Picture, Style};
 use program::File;
-use random::{Batch, Count, DIVERGES, DURATION, LARGEST, NEAREST, Record, Summary, theorem_title};
+use random::{Batch, Count, DIVERGES, DURATION, NEAREST, Record, Summary, theorem_title};
 
 /// The part of the verdicts on a theorem that may be undecided.
 const UNDECIDED: f64 = 0.02;
@@ -19,9 +17,6 @@ const BINS: usize = 31;
 const LOWEST: f64 = 0.95;
 const WIDTH: f64 = 0.1;
 
-/// Claims that do not hold and are listed one by one.
-const LISTED: usize = 20;
-
 /// A page, its pictures, and the shrunk counterexamples as scene files.
 ///
 /// # Errors
@@ -29,17 +24,19 @@ const LISTED: usize = 20;
 pub fn random_files(batch: &Batch, records: &[Record]) -> Result<Vec<File>> {
     let summary = Summary::of(records);
     let mut files = vec![
-        File { path: "random-times.svg".into(), text: times(&summary)? },
-        File { path: "random-exponents.svg".into(), text: exponents(&summary)? },
+        File { path: "evidence/random-times.svg".into(), text: times(&summary)? },
+        File { path: "evidence/random-exponents.svg".into(), text: exponents(&summary)? },
     ];
     let mut counterexamples = Vec::new();
     for (theorem, scene) in batch.counterexamples(records) {
-        let path = format!("counterexamples/{}.toml", scene.name);
+        let path = format!("evidence/counterexamples/{}.toml", scene.name);
         files.push(File { path: path.clone().into(), text: scene.to_toml() });
-        counterexamples.push((theorem, path));
+        counterexamples.push((theorem, path.trim_start_matches("evidence/").to_owned()));
     }
-    files.push(File { path: "random.md".into(), text: page(batch, &summary, records, &counterexamples) });
-    Ok(files)
+    let data = data(&summary, &open(batch, records));
+    let text = page(batch, &summary, &counterexamples, &data);
+    files.push(File { path: "evidence/random.md".into(), text });
+    Ok(files.into_iter().chain(data.files()).collect())
 }
 
 /// The verdicts for machines: a word a theorem.
@@ -87,7 +84,7 @@ fn headline(summary: &Summary) -> String {
     };
     let undecided = 100.0 * total.undecided as f64 / total.total().max(1) as f64;
     format!(
-        "On {} random systems {verdict}; {} of {} verdicts on theorems ({} %) are undecided.",
+        "On {} random systems {verdict} (T1 to T14); {} of {} verdicts ({} %) are undecided.",
         summary.systems,
         total.undecided,
         total.total(),
@@ -100,13 +97,13 @@ fn at_stake(summary: &Summary) -> String {
     let (total, at_stake) = (summary.total().total(), summary.total_at_stake());
     let share = 100.0 * at_stake as f64 / total.max(1) as f64;
     format!(
-        "{at_stake} of the {total} verdicts ({} %) are on systems on which something is at stake: two of Chetaev's motion, the vakonomic \
-         one and that of coordinate removal certainly differ. On the others formulations agree, and claims are easier to keep.",
+        "{at_stake} of the {total} verdicts ({} %) concern systems on which at least two of Chetaev's, the vakonomic and the \
+         coordinate-removal motion differ (*at stake*; the others are easier).",
         short(share)
     )
 }
 
-fn page(batch: &Batch, summary: &Summary, records: &[Record], counterexamples: &[(u8, String)]) -> String {
+fn page(batch: &Batch, summary: &Summary, counterexamples: &[(u8, String)], data: &DataPackage) -> String {
     let mut claims = Table::new(["", "claim", ">holds", ">fails", ">undecided", ">at stake"]);
     for (theorem, Count { holds, fails, undecided }) in &summary.theorems {
         let at_stake = summary.at_stake.get(theorem).unwrap_or(&0);
@@ -115,34 +112,12 @@ fn page(batch: &Batch, summary: &Summary, records: &[Record], counterexamples: &
     let (flagged, wrong) = counted(summary, "the wrong formulation is wrong, and flagged");
     let right = summary.claims.get(&12).and_then(|claims| claims.get("right in Chaplygin's integrable form"));
     let right = right.copied().unwrap_or_default();
-    let mut pairs = Table::new(["pair", ">differ", ">of", ">median $\\tau(10^{-3})$", ">passed by the end"]);
-    for names in &DIVERGES {
-        let (differ, of) = counted(summary, names.differs);
-        let times = observed(summary, names.passes);
-        let median = or_dash(times.get(times.len() / 2).copied());
-        let pair = names.passes.trim_start_matches("tau(1e-3), ");
-        pairs.row(&[&pair, &differ, &of, &median, &times.len()]);
-    }
     let worst = |what: &str, exponent: f64| {
         let values = observed(summary, what);
         let off = values.iter().fold(0.0_f64, |a, x| a.max((x - exponent).abs()));
         format!("{} systems, off by at most {}", values.len(), short(off))
     };
-    let mut others = Table::new(["", "what", ">so on", ">of"]);
-    for (theorem, what, values) in counts(summary) {
-        let so = values.iter().filter(|x| **x == 1.0).count();
-        others.row(&[&label(theorem), &what, &so, &values.len()]);
-    }
     let kinds: Vec<String> = summary.kinds.iter().map(|(kind, count)| format!("{count} {kind}")).collect();
-    let mut features = Table::new(["what they have besides", ">systems"]);
-    for (name, count) in &summary.features {
-        features.row(&[name, count]);
-    }
-    let mut sizes = Table::new(["", ">$h = 0$", ">1", ">2", ">3", ">4", ">5", ">6", ">7", ">8", ">9"]);
-    for n in 2..=LARGEST {
-        let count = |h: usize| summary.sizes.get(&format!("{n}, {h}")).map_or("–".into(), |count| count.to_string());
-        sizes.cells([format!("$n = {n}$")].into_iter().chain((0..LARGEST).map(count)));
-    }
     fill(
         include_str!("pages/random.md"),
         &[
@@ -154,20 +129,50 @@ fn page(batch: &Batch, summary: &Summary, records: &[Record], counterexamples: &
             ("part", &short(100.0 * flagged as f64 / wrong.max(1) as f64)),
             ("right", &right.total()),
             ("right_called", &right.holds),
-            ("pairs", &pairs),
             ("three", &worst("growth exponent, mu0 = 0", 3.0)),
             ("two", &worst("growth exponent, mu0 not zero", 2.0)),
-            ("counts", &others),
-            ("measured", &measured(summary)),
-            ("open", &open_words(batch, records, counterexamples)),
+            ("open", &counterexample_words(counterexamples)),
             ("seed", &batch.seed),
             ("kinds", &enumerate(&kinds)),
-            ("features", &features),
             ("duration", &DURATION),
             ("shortened", &summary.shortened),
-            ("sizes", &sizes),
+            ("data", &data.list(1)),
         ],
     )
+}
+
+/// The tables beside the page.
+fn data(summary: &Summary, open: &Table) -> DataPackage {
+    let mut pairs = Table::new(["pair", ">differ", ">of", ">median time of the gap 1e-3 (s)", ">passed by the end"]);
+    for names in &DIVERGES {
+        let (differ, of) = counted(summary, names.differs);
+        let times = observed(summary, names.passes);
+        let median = or_dash(times.get(times.len() / 2).copied());
+        let pair = names.passes.trim_start_matches("tau(1e-3), ");
+        pairs.row(&[&pair, &differ, &of, &median, &times.len()]);
+    }
+    let mut others = Table::new(["theorem", "what", ">so on", ">of"]);
+    for (theorem, what, values) in counts(summary) {
+        let so = values.iter().filter(|x| **x == 1.0).count();
+        others.row(&[&label(theorem), &what, &so, &values.len()]);
+    }
+    let mut features = Table::new(["feature", ">systems"]);
+    for (name, count) in &summary.features {
+        features.row(&[name, count]);
+    }
+    let mut sizes = Table::new([">coordinates", ">constraints", ">systems"]);
+    for (size, count) in &summary.sizes {
+        let (n, h) = size.split_once(", ").unwrap_or((size, ""));
+        sizes.row(&[&n, &h, count]);
+    }
+    let mut data = DataPackage::new("data/random", "Random systems");
+    data.table("open", "Verdicts that are undecided or fail, system by system", open);
+    data.table("pairs", "When motions differ, pair by pair", &pairs);
+    data.table("counts", "Further counts, about which nothing is claimed", &others);
+    data.table("measured", "Further figures: least, median, largest", &measured(summary));
+    data.table("features", "Features of the systems, each drawn alone", &features);
+    data.table("sizes", "Systems by numbers of coordinates and constraints", &sizes);
+    data
 }
 
 /// Observations that are counted: 0 or 1. What the table of pairs shows already is left out.
@@ -188,8 +193,8 @@ fn counted(summary: &Summary, what: &str) -> (usize, usize) {
 }
 
 /// Figures that are neither counts nor shown in a picture.
-fn measured(summary: &Summary) -> String {
-    let mut table = Table::new(["", "what", ">least", ">median", ">largest", ">of"]);
+fn measured(summary: &Summary) -> Table {
+    let mut table = Table::new(["theorem", "what", ">least", ">median", ">largest", ">of"]);
     for (theorem, by) in &summary.observed {
         let is_shown = |what: &str| *theorem == 8 || *theorem == 9 || what == NEAREST;
         let is_count = |values: &[f64]| values.iter().all(|x| *x == 0.0 || *x == 1.0);
@@ -198,38 +203,30 @@ fn measured(summary: &Summary) -> String {
             table.row(&[&label(*theorem), what, &least, &median, &most, &values.len()]);
         }
     }
-    format!("\n{table}")
+    table
 }
 
-fn open_words(batch: &Batch, records: &[Record], counterexamples: &[(u8, String)]) -> String {
-    let mut text = String::from("\n## What does not hold\n\n");
-    let open: Vec<String> = records
-        .iter()
-        .flat_map(|record| record.open.iter().map(move |open| (record, open)))
-        .map(|(record, open)| {
-            let figure =
-                open.figure.map_or(String::new(), |(x, limit)| format!(", {} (limit {})", short(x), short(limit)));
-            let (name, kind, theorem) = (batch.name(record.index), record.kind, label(open.theorem));
-            format!("- `{name}`, {kind}: {theorem}, {}: {}{figure}. {}", open.claim, open.word, open.note)
-        })
-        .collect();
-    if open.is_empty() {
-        text += "Nothing.\n";
+/// Verdicts that are not *holds*, system by system.
+fn open(batch: &Batch, records: &[Record]) -> Table {
+    let columns = ["system", "kind", "theorem", "claim", "verdict", ">figure", ">limit", "note"];
+    let mut table = Table::new(columns);
+    for (record, open) in records.iter().flat_map(|record| record.open.iter().map(move |open| (record, open))) {
+        let [figure, limit] = open.figure.map_or(Default::default(), |(x, limit)| [x, limit].map(short));
+        let (name, word) = (batch.name(record.index), open.word.to_string());
+        table.row(&[&name, &record.kind, &label(open.theorem), &open.claim, &word, &figure, &limit, &open.note]);
     }
-    for line in open.iter().take(LISTED) {
-        let _ = writeln!(text, "{}", line.trim_end());
-    }
-    if open.len() > LISTED {
-        let _ =
-            writeln!(text, "- and {} more: `evidence random --seed {} --format json`", open.len() - LISTED, batch.seed);
-    }
-    for (theorem, path) in counterexamples {
-        let _ = writeln!(text, "\nSmallest system found on which {} fails: [{path}]({path}).", label(*theorem));
-    }
+    table
+}
+
+/// The smallest systems on which a theorem fails.
+fn counterexample_words(counterexamples: &[(u8, String)]) -> String {
     if counterexamples.is_empty() {
-        text += "\nNo counterexample was found; one would be shrunk and stand here as a scene file.\n";
+        return "No counterexample was found; deltaq would shrink one and write it as a scene file.\n".into();
     }
-    text
+    let line = |(theorem, path): &(u8, String)| {
+        format!("- Smallest system found on which {} fails: [{path}]({path}).\n", label(*theorem))
+    };
+    counterexamples.iter().map(line).collect()
 }
 
 const STYLES: [Style; 4] =
@@ -251,7 +248,7 @@ fn times(summary: &Summary) -> Result<String> {
     });
     let x = Axis { range: Some((0.0, DURATION)), ..Axis::linear("t (s)") };
     let y = Axis { range: Some((0.0, 1.0)), ..Axis::linear("part of the systems") };
-    let title = "Nonintegrable random systems: when the gap passes 1e-3";
+    let title = "Most pairs of formulations differ by 1e-3 within a second (nonintegrable random systems)";
     Ok(Picture::new(title, x, y, curves.collect()).to_svg()?)
 }
 

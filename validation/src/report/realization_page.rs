@@ -12,7 +12,7 @@ use serde_json::{Map, Value, json};
 
 use super::law_rows;
 use comparison::words::short;
-use pages::{Table, fill};
+use pages::{DataPackage, Table, fill};
 use picture::{Axis, Curve, Picture, Style};
 use program::File;
 use program::parallel;
@@ -137,9 +137,9 @@ impl RealizationReport {
         let within = rates.iter().filter(|r| RATE.contains(r)).count();
         let (least, most) = rates.iter().fold((f64::INFINITY, 0.0_f64), |(a, b), &r| (a.min(r), b.max(r)));
         format!(
-            "Friction leads to Chetaev's motion, added mass to vakonomic ones, on the augmented system to removed-constraint \
-             ones, both together to `kappa` (κ = friction over mass): in {within} of {} cases the distance falls as 1/N \
-             (measured exponents {} to {}).",
+            "Viscous friction converges to Chetaev's motion, added mass to a vakonomic one; added mass on the augmented system to a \
+             removed-constraint one, and both together to the family `kappa`. In {within} of {} cases the distance falls as 1/N \
+             (fitted exponents {} to {}).",
             rates.len(),
             short(least),
             short(most)
@@ -164,22 +164,30 @@ impl RealizationReport {
     pub fn files(&self) -> Result<Vec<File>> {
         let mut files = Vec::new();
         for (name, approaches) in &self.scenes {
-            files.push(File { path: format!("realization-{name}.svg").into(), text: picture(name, approaches)? });
+            let path = format!("evidence/realization-{name}.svg").into();
+            files.push(File { path, text: picture(name, approaches)? });
         }
-        files.push(File { path: "realization.md".into(), text: self.page() });
-        Ok(files)
+        let data = self.data();
+        files.push(File { path: "evidence/realization.md".into(), text: self.page(&data) });
+        Ok(files.into_iter().chain(data.files()).collect())
     }
 
-    fn page(&self) -> String {
-        let scene = |(name, approaches): &(String, Vec<Approach>)| {
-            let mut table = Table::new(["realization", ">$N = 10^2$", ">$10^3$", ">$10^4$", ">$10^5$", ">rate"]);
-            for a in approaches {
-                let cells = a.distances.iter().map(|d| if d.is_nan() { STOPS.into() } else { short(*d) });
-                let rate = a.rate().map_or(a.word().into(), short);
-                table.cells([a.name.to_string()].into_iter().chain(cells).chain([rate]));
-            }
-            format!("\n## {name}\n\n![Distance over strength](realization-{name}.svg)\n\n{table}")
-        };
+    /// Distances on scenes, and the family beside the first-order law.
+    fn data(&self) -> DataPackage {
+        let columns = ["scene", "realization", ">distance at N = 1e2", ">at 1e3", ">at 1e4", ">at 1e5", "rate"];
+        let mut scenes = Table::new(columns);
+        for (name, a) in self.scenes.iter().flat_map(|(name, all)| all.iter().map(move |a| (name, a))) {
+            let cells = a.distances.iter().map(|d| if d.is_nan() { STOPS.into() } else { short(*d) });
+            let rate = a.rate().map_or(a.word().into(), short);
+            scenes.cells([name.clone(), a.name.to_string()].into_iter().chain(cells).chain([rate]));
+        }
+        let mut data = DataPackage::new("data/realization", "Friction and added mass of strength N");
+        data.table("scenes", "Distances from the limit at each strength, and the rate from 1e3 to 1e4", &scenes);
+        data.table("first-order", "The family kappa beside the first-order law", &law_rows::table(&self.law));
+        data
+    }
+
+    fn page(&self, data: &DataPackage) -> String {
         let columns = ["realization", ">least rate", ">median", ">largest", ">systems", ">too close to tell", ">stop"];
         let mut random = Table::new(columns);
         for name in [FRICTION, ADDED_MASS, BOTH, AUGMENTED] {
@@ -193,11 +201,10 @@ impl RealizationReport {
             include_str!("pages/realization.md"),
             &[
                 ("headline", &self.headline()),
-                ("scenes", &self.scenes.iter().map(scene).collect::<String>()),
                 ("count", &COUNT),
                 ("seed", &SEED),
                 ("random", &random),
-                ("law", &law_rows::table(&self.law)),
+                ("data", &data.list(1)),
             ],
         )
     }
@@ -284,7 +291,18 @@ fn picture(name: &str, approaches: &[Approach]) -> Result<String> {
         style: a.style,
         points: STRENGTHS.iter().copied().zip(a.distances.iter().copied()).collect(),
     };
-    let (x, y) = (Axis::log("strength N"), Axis::log("distance in the kinetic metric (m √kg)"));
-    let curves = approaches.iter().map(curve).collect();
-    Ok(Picture::new(format!("{name}: realizations"), x, y, curves).to_svg()?)
+    let first = approaches.iter().find_map(|a| a.distances.first().copied().filter(|d| d.is_finite()));
+    // a line of slope -1 below the others
+    let guide = first.map(|d| STRENGTHS.map(|n| (n, 0.1 * d * STRENGTHS[0] / n)).to_vec());
+    let guide = guide.map(|points| Curve { label: "∝ 1/N".into(), style: Style::Threshold, points });
+    let (x, y) =
+        (Axis::log("strength N (s⁻¹ of friction, kg/kg of mass)"), Axis::log("distance from the limit (m √kg)"));
+    let rates: Vec<f64> = approaches.iter().filter_map(Approach::rate).collect();
+    let falls = rates.len() == approaches.len() && rates.iter().all(|rate| RATE.contains(rate));
+    let title = match falls {
+        true => format!("{name}: every realization converges to its formulation as 1/N"),
+        false => format!("{name}: distance of the realizations from their formulations"),
+    };
+    let curves = approaches.iter().map(curve).chain(guide).collect();
+    Ok(Picture::new(title, x, y, curves).to_svg()?)
 }

@@ -1,8 +1,12 @@
-//! The section of a scene page that says what the referees found.
+//! The page about independent implementations of the same equations.
+
+use std::collections::BTreeMap;
 
 use anyhow::Result;
 use comparison::Comparison;
 use motion::{CHETAEV, Metric};
+use pages::{DataPackage, Table, fill};
+use program::File;
 
 use crate::casadi_job::{Outcome, Row, Word, referee_table};
 use referees::maggi::{Maggi, Motion};
@@ -16,39 +20,48 @@ const SAME: f64 = 1e-8;
 /// A difference counts as none, too, under this multiple of the error estimates.
 const CERTAINTY: f64 = 10.0;
 
-/// The place in the reports that the overview's line about CasADi leads to.
-pub const CASADI: &str = "scenes/sledge.md#referees";
+/// The page.
+pub const CASADI: &str = "evidence/referees.md";
 
-/// The section, in Markdown; empty where there is nothing to say. Only bounds are printed, powers of ten, so
-/// that the page does not change with the last digit of a difference.
+/// The page and its table. Only bounds are printed, powers of ten, so that nothing changes with the last
+/// digit of a difference.
 ///
 /// # Errors
 /// Where a motion cannot be read off.
-pub fn referees_section(comparison: &mut Comparison, casadi: Option<&Outcome>) -> Result<String> {
+pub fn referees_files<'a>(
+    comparisons: impl Iterator<Item = &'a mut Comparison>,
+    casadi: &Outcome,
+) -> Result<Vec<File>> {
     let mut rows = Vec::new();
-    rows.extend(maggi(comparison)?);
-    if let Some(outcome) = casadi {
-        rows.extend(outcome.rows().iter().filter(|row| row.scene == comparison.scene.name).cloned());
+    for comparison in comparisons {
+        rows.extend(maggi(comparison)?);
     }
-    let mut text = String::from("\n## Referees\n\n");
-    text += "Other derivations of the same equations, by programs that share no derivation with this one.\n\n";
-    if let Some(Outcome::NotRun(reason)) = casadi {
-        text += &format!("CasADi and SymPy: *not run: {reason}.*\n\n");
+    rows.extend(casadi.rows().iter().cloned());
+    let mut by_who: BTreeMap<&str, [usize; 2]> = BTreeMap::new();
+    for row in &rows {
+        let [agree, all] = by_who.entry(&row.who).or_default();
+        (*agree, *all) = (*agree + usize::from(row.verdict == Word::Agrees), *all + 1);
     }
-    if rows.is_empty() {
-        return Ok(if matches!(casadi, Some(Outcome::NotRun(_))) { text } else { String::new() });
-    }
-    text += &referee_table(&rows);
-    text += "\nRates are compared at random states near the start, each relative to the largest rate or multiplier of its instant; motions by coordinate, relative to \
-             the way; the curves of stationary action come from the discretized action itself, without an equation of motion.\n";
-    Ok(text)
+    let mut table = Table::new(["who", ">agree", ">of"]);
+    by_who.iter().for_each(|(who, [agree, all])| table.row(&[who, agree, all]));
+    let mut data = DataPackage::new("data/referees", "Independent implementations of the same equations");
+    data.table("comparisons", "Every comparison, with its largest relative difference", &referee_table(&rows));
+    let not_run = match casadi {
+        Outcome::NotRun(reason) => format!("CasADi and SymPy: *not run: {reason}.*\n\n"),
+        Outcome::Ran(_) => String::new(),
+    };
+    let agree = rows.iter().filter(|row| row.verdict == Word::Agrees).count();
+    let (count, list) = (rows.len(), data.list(1));
+    let text = fill(
+        include_str!("pages/referees.md"),
+        &[("agree", &agree), ("count", &count), ("not_run", &not_run), ("table", &table), ("data", &list)],
+    );
+    Ok([File { path: CASADI.into(), text }].into_iter().chain(data.files()).collect())
 }
 
-/// A committed page without what referees say that are other programs: on pages of scenes their section is
-/// the last one, on the overview a line leads there.
+/// A page without the lines that lead to what other programs say.
 pub fn without_referees(page: &str) -> String {
-    let before = page.split("\n## Referees\n").next().unwrap_or(page);
-    before.lines().filter(|line| !line.contains(CASADI)).map(|line| format!("{line}\n")).collect()
+    page.lines().filter(|line| !line.contains(CASADI)).map(|line| format!("{line}\n")).collect()
 }
 
 /// Chetaev's motion by Maggi's equations, in the kinetic metric and relative to the way.

@@ -1,25 +1,25 @@
 //! The page about stiff and extreme cases.
 
-use std::collections::BTreeMap;
-use std::fmt::Write;
-
 use anyhow::Result;
 use diffsol_methods::EVERY;
-use discrete::Composition;
-use integrate::Method;
 use serde_json::{Map, Value, json};
 
 use crate::stability::{
     Answering, CASES, Case, Cell, LONG_RUNS, LongRun, MAX_STEPS, MILLION, Texts, Verdict, long_runs, run, tolerance,
 };
-use comparison::words::short;
-use pages::markdown::folded;
-use pages::{Table, fill};
+use comparison::words::{enumerate, short};
+use pages::{DataPackage, Table, fill};
 use picture::{Axis, Curve, Picture, Style};
 use program::File;
 
-/// Cases that are drawn, with the formulation that is.
-const DRAWN: [(&str, &str); 2] = [("viscous", "Newton, with friction"), ("added-mass", "Newton, with added mass")];
+/// Cases that are drawn, the formulation that is, and what becomes hard.
+const DRAWN: [(&str, &str, &str); 5] = [
+    ("viscous", "Newton, with friction", "Friction of strength N"),
+    ("added-mass", "Newton, with added mass", "Added mass of strength N"),
+    ("cone-apex", "Chetaev", "Ball that passes the apex of its cone at distance d"),
+    ("dependent", "Chetaev", "Constraints that differ by d"),
+    ("sledge-k", "vakonomic", "Vakonomic sledge of radius of gyration k"),
+];
 
 /// Every method on some cases.
 pub struct StabilityReport {
@@ -88,7 +88,7 @@ impl StabilityReport {
     /// The first line of the page.
     pub fn headline(&self) -> String {
         format!(
-            "Stiff and extreme cases, {} answers of {} methods and of structure-preserving steps: {} accurate, {} inaccurate and said so, {} refused with time and cause, {} wrong.",
+            "No answer is silently wrong: of {} answers of {} methods and of structure-preserving steps on stiff and extreme cases, {} are accurate, {} inaccurate but flagged, {} stopped with a reason, {} wrong.",
             self.answers(),
             EVERY.len(),
             self.count("accurate"),
@@ -114,34 +114,46 @@ impl StabilityReport {
         json!({ "wrong": self.count("wrong"), "cases": cases, "million_steps": runs })
     }
 
-    /// The page and its pictures.
+    /// The page, its pictures, and every answer as a table.
     ///
     /// # Errors
     /// Where a picture cannot be drawn.
     pub fn files(&self) -> Result<Vec<File>> {
-        let mut files = vec![File { path: "stability.md".into(), text: self.page() }];
-        for (name, formulation) in DRAWN.into_iter().filter(|(name, _)| self.has(name)) {
-            files.push(File { path: picture_name(name).into(), text: self.picture(name, formulation)? });
+        let data = self.data();
+        let mut files = vec![File { path: "evidence/stability.md".into(), text: self.page(&data) }];
+        for (case, ..) in DRAWN.iter().filter(|(name, ..)| self.has(name)) {
+            files.push(File { path: format!("evidence/{}", picture_name(case)).into(), text: self.picture(case)? });
         }
-        Ok(files)
+        Ok(files.into_iter().chain(data.files()).collect())
     }
 
-    fn page(&self) -> String {
+    fn page(&self, data: &DataPackage) -> String {
         let asked = Answering::methods().filter_map(|by| match by {
             Answering::Method(method) => Some(format!("{} {:.0e}", by.name(), tolerance(method))),
             Answering::Steps(_) => None,
         });
         let tolerances: Vec<String> = asked.collect();
-        let cases = CASES.iter().filter(|case| self.has(case.name)).map(|case| self.section(case));
+        let drawn = DRAWN.iter().filter(|(name, ..)| self.has(name));
+        let images = drawn.map(|(name, ..)| format!("![{}]({})\n\n", self.title(name), picture_name(name)));
+        let auto = |word: Option<&str>| {
+            let auto = self.cells.iter().filter(|cell| cell.method == Answering::Method(None));
+            auto.filter(|cell| word.is_none_or(|word| cell.verdict.word() == word)).count()
+        };
+        let flagged = auto(Some("admitted")) + auto(Some("refused"));
         fill(
             include_str!("pages/stability.md"),
             &[
                 ("headline", &self.headline()),
+                ("auto_accurate", &auto(Some("accurate"))),
+                ("auto", &auto(None)),
+                ("auto_flagged", &flagged),
+                ("auto_wrong", &auto(Some("wrong"))),
                 ("max_steps", &MAX_STEPS),
+                ("million", &MILLION),
                 ("tolerances", &tolerances.join(", ")),
+                ("pictures", &images.collect::<String>()),
                 ("summary", &self.summary()),
-                ("cases", &cases.collect::<String>()),
-                ("long_runs", &self.long_runs()),
+                ("data", &data.list(1)),
             ],
         )
     }
@@ -150,74 +162,40 @@ impl StabilityReport {
         self.cells.iter().any(|cell| cell.case == case)
     }
 
-    fn long_runs(&self) -> String {
-        if self.runs.is_empty() {
-            return String::new();
+    /// Every answer, every long run, and what each case is about.
+    fn data(&self) -> DataPackage {
+        let columns = ["case", "variable", ">value", "formulation", "method", "verdict", ">error", ">estimate"];
+        let mut answers = Table::new(columns.into_iter().chain([">stopped at (s)", "cause"]));
+        for cell in &self.cells {
+            let asked = [cell.case, variable(cell.case)].map(String::from).into_iter().chain([short(cell.point)]);
+            let by = [cell.formulation.clone(), cell.method.name().into()];
+            answers.cells(asked.chain(by).chain(judged(&cell.verdict)));
         }
-        let columns = ["motion", "method", ">steps", ">energy", ">trend", ">constraint"];
-        let mut table = Table::new(columns.into_iter().chain([">error", ">estimate"]));
+        let columns = ["scene", "formulation", ">duration (s)", "method", ">steps", ">energy", ">trend", ">constraint"];
+        let judgement = ["verdict", ">error", ">estimate", ">stopped at (s)", "cause"];
+        let mut long = Table::new(columns.into_iter().chain(judgement));
         for run in &self.runs {
-            let estimate = match run.verdict {
-                Verdict::Accurate { estimate, .. }
-                | Verdict::Admitted { estimate, .. }
-                | Verdict::Wrong { estimate, .. } => short(estimate),
-                Verdict::Refused { .. } => String::new(),
-            };
-            let motion = format!("{}, {}, {} s", run.scene, run.formulation, short(run.duration));
-            let run_of = [motion, run.stepping.name().into()];
+            let asked = [run.scene.to_owned(), run.formulation.clone(), short(run.duration)];
+            let by = [run.stepping.name().to_owned(), run.steps.to_string()];
             let lost = [run.energy, run.trend, run.constraint].map(short);
-            let judgement = [words(&run.verdict), estimate];
-            table.cells(run_of.into_iter().chain([run.steps.to_string()]).chain(lost).chain(judgement));
+            long.cells(asked.into_iter().chain(by).chain(lost).chain(judged(&run.verdict)));
         }
-        fill(include_str!("pages/million-steps.md"), &[("million", &MILLION), ("table", &table)])
-    }
-
-    fn section(&self, case: &Case) -> String {
-        let cells: Vec<&Cell> = self.cells.iter().filter(|cell| cell.case == case.name).collect();
-        let Texts { about, reference, variable } = &case.texts;
-        let mut page = format!("\n## {}\n\n{about}\n\n*Reference*: {reference}.\n\n", case.name);
-        if DRAWN.iter().any(|(name, _)| *name == case.name) {
-            let _ = writeln!(page, "![Error over {variable}]({})\n", picture_name(case.name));
+        let mut cases = Table::new(["case", "variable", "about", "reference"]);
+        for case in CASES.iter().filter(|case| self.has(case.name)) {
+            let Texts { about, reference, variable } = &case.texts;
+            cases.row(&[&case.name, variable, about, reference]);
         }
-        let count = if matches!(cells[0].method, Answering::Method(_)) {
-            Answering::methods().count()
-        } else {
-            Composition::ALL.len()
-        };
-        let mut answers = String::new();
-        let mut lines: Vec<&[&Cell]> = cells.chunks(count).collect();
-        let order: Vec<&str> = lines.iter().map(|line| &line[0].formulation[..]).collect();
-        lines.sort_by_key(|line| order.iter().position(|name| *name == line[0].formulation));
-        for lines in lines.chunk_by(|a, b| a[0].formulation == b[0].formulation) {
-            let methods = cells[..count].iter().map(|cell| format!(">{}", cell.method.name()));
-            let mut table = Table::new([format!(">{variable}")].into_iter().chain(methods));
-            for line in lines {
-                let words = line.iter().map(|cell| words(&cell.verdict));
-                table.cells([short(line[0].point)].into_iter().chain(words));
-            }
-            let _ = writeln!(answers, "{}\n\n{table}", lines[0][0].formulation);
-        }
-        let mut causes: BTreeMap<String, (usize, &str)> = BTreeMap::new();
-        for cell in &cells {
-            if let Verdict::Refused { cause, .. } = &cell.verdict {
-                causes.entry(kind_of(cause)).or_insert((0, clause_of(cause))).0 += 1;
-            }
-        }
-        if !causes.is_empty() {
-            let of = |(count, first): (usize, &str)| match count {
-                1 => format!("- once: {first}\n"),
-                _ => format!("- {count} times, first: {first}\n"),
-            };
-            let _ = write!(answers, "Causes of refusals:\n\n{}", causes.into_values().map(of).collect::<String>());
-        }
-        let _ = writeln!(page, "{}", folded(&format!("{} answers", cells.len()), &answers));
-        page
+        let mut data = DataPackage::new("data/stability", "Stiff and extreme cases: every answer of every method");
+        data.table("answers", "Every answer, with error, estimate and cause of a stop", &answers);
+        data.table("cases", "What each case is about, and its reference", &cases);
+        data.table("million-steps", "Drift of energy and constraint over long runs", &long);
+        data
     }
 
     /// How many answers of each case have which verdict.
     fn summary(&self) -> Table {
         let words = ["accurate", "admitted", "refused", "wrong"];
-        let columns = ["case", ">answers", ">accurate", ">said so", ">refused", ">wrong", ">`auto` accurate"];
+        let columns = ["case", ">answers", ">accurate", ">flagged", ">stopped", ">wrong", ">`auto` accurate"];
         let mut table = Table::new(columns);
         let mut row = |case: &str, answers: &[(&Verdict, bool)]| {
             let of = |word: &str| answers.iter().filter(|(verdict, _)| verdict.word() == word).count().to_string();
@@ -225,7 +203,7 @@ impl StabilityReport {
             let accurate = auto.iter().filter(|(verdict, _)| verdict.word() == words[0]).count();
             let auto = if auto.is_empty() { "–".into() } else { format!("{accurate} of {}", auto.len()) };
             let counts = [answers.len().to_string()].into_iter().chain(words.map(of));
-            table.cells([format!("[{case}](#{case})")].into_iter().chain(counts).chain([auto]));
+            table.cells([case.to_owned()].into_iter().chain(counts).chain([auto]));
         };
         for case in CASES.iter().filter(|case| self.has(case.name)) {
             let cells = self.cells.iter().filter(|cell| cell.case == case.name);
@@ -238,32 +216,63 @@ impl StabilityReport {
         table
     }
 
-    fn picture(&self, name: &str, formulation: &str) -> Result<String> {
-        let of = |(i, method): (usize, &Method)| {
-            let cells = self.cells.iter().filter(|c| {
-                c.case == name && c.formulation == formulation && c.method == Answering::Method(Some(*method))
-            });
-            let points = cells.map(|cell| match cell.verdict {
-                Verdict::Accurate { error, .. } | Verdict::Admitted { error, .. } | Verdict::Wrong { error, .. } => {
-                    Some((cell.point, error))
-                }
-                Verdict::Refused { .. } => None,
-            });
-            // a line breaks where an answer is refused
-            let points: Vec<Option<(f64, f64)>> = points.collect();
-            let curve = |points: &[Option<(f64, f64)>]| Curve {
-                label: method.name().into(),
-                style: Style::Member(i as u8),
-                points: points.iter().copied().flatten().collect(),
-            };
-            points.split(Option::is_none).map(curve).collect::<Vec<Curve>>()
+    /// The cells of a case that is drawn, by method.
+    fn drawn<'a>(&'a self, name: &str) -> Vec<(Answering, Vec<&'a Cell>)> {
+        let formulation = DRAWN.iter().find(|(case, ..)| *case == name).map_or("", |(_, formulation, _)| formulation);
+        let of = |by: Answering| {
+            let cells = self.cells.iter().filter(|c| c.case == name && c.formulation == formulation && c.method == by);
+            (by, cells.collect())
         };
-        let title = format!("{name}: true error, lines where nothing is refused");
-        let (x, y) = (Axis::log(variable(name)), Axis::log("error over distance"));
-        let curves = EVERY.iter().enumerate().flat_map(of).collect();
-        Ok(Picture::new(title, x, y, curves).to_svg()?)
+        Answering::methods().map(of).collect()
+    }
+
+    /// What a picture shows: which methods answer everywhere.
+    fn title(&self, name: &str) -> String {
+        let what = DRAWN.iter().find(|(case, ..)| *case == name).map_or(name, |(_, _, what)| what);
+        let all = self.drawn(name);
+        let answers = |cells: &[&Cell]| cells.iter().all(|cell| !matches!(cell.verdict, Verdict::Refused { .. }));
+        let everywhere: Vec<String> =
+            all.iter().filter(|(_, cells)| answers(cells)).map(|(by, _)| by.name().to_owned()).collect();
+        match everywhere.len() {
+            count if count == all.len() => format!("{what}: every method reaches the end everywhere"),
+            0 => format!("{what}: every method stops somewhere, with a reason"),
+            1 => format!("{what}: {} reaches the end everywhere, the others stop", everywhere[0]),
+            _ => format!("{what}: {} reach the end everywhere, the others stop", enumerate(&everywhere)),
+        }
+    }
+
+    fn picture(&self, name: &str) -> Result<String> {
+        let all = self.drawn(name);
+        let error = |cell: &Cell| match cell.verdict {
+            Verdict::Accurate { error, .. } | Verdict::Admitted { error, .. } | Verdict::Wrong { error, .. } => {
+                // what is under round-off stands on the axis
+                Some((cell.point, error.max(LEAST)))
+            }
+            Verdict::Refused { .. } => None,
+        };
+        let (mut curves, mut stops) = (Vec::new(), Vec::new());
+        for (i, (by, cells)) in all.iter().enumerate() {
+            let style = if i == 0 { Style::Ink } else { Style::Member(i as u8 - 1) };
+            let label = if i == 0 { "auto (default)" } else { by.name() };
+            let points: Vec<Option<(f64, f64)>> = cells.iter().map(|cell| error(cell)).collect();
+            stops.extend(points.windows(2).filter_map(|pair| pair[0].xor(pair[1])));
+            // a line breaks where an answer is refused
+            let lines =
+                points.split(Option::is_none).map(|points| points.iter().copied().flatten().collect::<Vec<_>>());
+            let curve = |points| Curve { label: label.into(), style, points };
+            curves.extend(lines.filter(|points| !points.is_empty()).map(curve));
+        }
+        stops.sort_by(|a, b| a.0.total_cmp(&b.0));
+        if !stops.is_empty() {
+            curves.push(Curve { label: "stops beyond, with a reason".into(), style: Style::Stops, points: stops });
+        }
+        let (x, y) = (Axis::log(variable(name)), Axis::log("largest error over distance travelled"));
+        Ok(Picture::new(self.title(name), x, y, curves).to_svg()?)
     }
 }
+
+/// Errors below are drawn here.
+const LEAST: f64 = 1e-16;
 
 fn picture_name(case: &str) -> String {
     format!("stability-{case}.svg")
@@ -273,16 +282,22 @@ fn variable(case: &str) -> &'static str {
     CASES.iter().find(|c| c.name == case).map_or("", |c| &c.texts.variable)
 }
 
-fn words(verdict: &Verdict) -> String {
-    match verdict {
-        Verdict::Accurate { error, .. } => short(*error),
-        Verdict::Admitted { error, .. } => format!("*{}*", short(*error)),
-        Verdict::Refused { t: Some(t), .. } => format!("to {}", short(*t)),
-        Verdict::Refused { t: None, .. } => "refused".into(),
-        Verdict::Wrong { error, estimate, .. } => {
-            format!("**wrong**: {}, estimate {}", short(*error), short(*estimate))
+/// Verdict, error, estimate, time and cause of a stop: the last columns of a table.
+fn judged(verdict: &Verdict) -> [String; 5] {
+    let (numbers, cause) = match verdict {
+        Verdict::Accurate { error, estimate } | Verdict::Admitted { error, estimate } => {
+            ([Some(*error), Some(*estimate), None], "")
         }
-    }
+        Verdict::Refused { t, cause } => ([None, None, *t], &cause[..]),
+        Verdict::Wrong { error, estimate, t } => ([Some(*error), Some(*estimate), Some(*t)], ""),
+    };
+    let [error, estimate, t] = numbers.map(|x| x.map_or(String::new(), short));
+    let word = match verdict.word() {
+        "admitted" => "flagged",
+        "refused" => "stopped",
+        word => word,
+    };
+    [word.into(), error, estimate, t, cause.lines().next().unwrap_or_default().into()]
 }
 
 fn figures(verdict: &Verdict) -> String {
@@ -294,17 +309,4 @@ fn figures(verdict: &Verdict) -> String {
         Verdict::Refused { t: Some(t), cause } => format!("at t = {t:.6e}: {cause}"),
         Verdict::Wrong { error, estimate, t } => format!("at t = {t:.3e}: error {error:.1e}, estimate {estimate:.1e}"),
     }
-}
-
-/// The first clause of a cause, without the place in a scene.
-fn clause_of(cause: &str) -> &str {
-    let first = cause.lines().next().unwrap_or_default();
-    let clause = first.split_once(": ").filter(|(place, _)| place.contains(':')).map_or(first, |(_, rest)| rest);
-    clause.split("; ").next().unwrap_or_default()
-}
-
-/// The first clause of a cause without its figures: what causes of one kind have in common.
-fn kind_of(cause: &str) -> String {
-    let figure = |word: &&str| !word.starts_with(|c: char| c.is_ascii_digit());
-    clause_of(cause).split(' ').filter(figure).collect::<Vec<_>>().join(" ")
 }

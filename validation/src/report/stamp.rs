@@ -11,11 +11,14 @@ const BEGINS: &str = "Measured on ";
 
 /// Pages in the folder of reports, and the folders of sources that they speak of.
 pub const PAGES: [(&str, &[&str]); 11] = [
-    ("films.md", &["crates/fit/src", "crates/vakonomic/src", "crates/chetaev/src"]),
-    ("judge.md", &["validation/judge", "crates/judge/src", "crates/first-order/src"]),
-    ("engine.md", &["validation/engine/src", "crates/chetaev/src", "crates/integrate/src", "crates/motion/src"]),
+    ("evidence/films.md", &["crates/fit/src", "crates/vakonomic/src", "crates/chetaev/src"]),
+    ("evidence/judge.md", &["validation/judge", "crates/judge/src", "crates/first-order/src"]),
     (
-        "peers.md",
+        "evidence/engine.md",
+        &["validation/engine/src", "crates/chetaev/src", "crates/integrate/src", "crates/motion/src"],
+    ),
+    (
+        "evidence/peers.md",
         &[
             "validation/peers",
             "crates/symbolic/src",
@@ -66,7 +69,7 @@ pub const PAGES: [(&str, &[&str]); 11] = [
     ),
 ];
 
-/// Puts the line under a page of the folder of reports, in the place of an older one.
+/// Puts the line under a page of the folder of reports, instead of an older one.
 ///
 /// # Errors
 /// A page that is not among these; files that cannot be read or written.
@@ -74,7 +77,7 @@ pub fn write(root: &Path, reports: &Path, page: &str) -> Result<()> {
     let path = reports.join(page);
     let Some((_, folders)) = PAGES.iter().find(|(name, _)| *name == page) else {
         let known: Vec<&str> = PAGES.iter().map(|(name, _)| *name).collect();
-        bail!("{page} is no page that says when it was measured; those are {}", known.join(", "));
+        bail!("{page} is not a page that says when it was measured; those are {}", known.join(", "));
     };
     let text = fs::read_to_string(&path).with_context(|| format!("cannot read {}", path.display()))?;
     let (body, _) = split(&text);
@@ -84,27 +87,34 @@ pub fn write(root: &Path, reports: &Path, page: &str) -> Result<()> {
         .with_context(|| format!("cannot write {}", path.display()))
 }
 
-/// A line about every page that is older than its code, or does not say how old it is, and one about the
-/// others.
+/// How a page relates to the code that it speaks of.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Age {
+    /// Measured with this code.
+    Current,
+    /// Measured on that day with other code.
+    Older(String),
+    /// It does not say when it was measured.
+    Unknown,
+    /// There is no such page.
+    Missing,
+}
+
+/// The age of every page.
 ///
 /// # Errors
 /// Where sources cannot be read.
-pub fn ages(root: &Path, reports: &Path) -> Result<Vec<String>> {
-    let (mut lines, mut current) = (Vec::new(), 0);
-    for (page, folders) in PAGES {
-        let Ok(text) = fs::read_to_string(reports.join(page)) else {
-            lines.push(format!("{page} is not there"));
-            continue;
+pub fn ages(root: &Path, reports: &Path) -> Result<Vec<(&'static str, Age)>> {
+    let age = |(page, folders): (&'static str, &[&str])| {
+        let Ok(text) = fs::read_to_string(reports.join(page)) else { return Ok((page, Age::Missing)) };
+        let age = match split(&text).1 {
+            Some((_, kept)) if kept == digest(root, folders)? => Age::Current,
+            Some((date, _)) => Age::Older(date.into()),
+            None => Age::Unknown,
         };
-        let now = digest(root, folders)?;
-        match split(&text).1 {
-            Some((_, digest)) if digest == now => current += 1,
-            Some((date, _)) => lines.push(format!("{page}, of {date}, is older than the code that it speaks of")),
-            None => lines.push(format!("{page} does not say when it was measured, and with which code")),
-        }
-    }
-    lines.push(format!("{current} of {} pages that were measured are as new as the code they speak of", PAGES.len()));
-    Ok(lines)
+        Ok((page, age))
+    };
+    PAGES.into_iter().map(age).collect()
 }
 
 fn line(date: &str, folders: &[&str], digest: u64) -> String {

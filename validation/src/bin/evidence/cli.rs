@@ -200,9 +200,12 @@ pub struct IntegralsArguments {
 /// `evidence reports`.
 #[derive(Args, Debug)]
 pub struct ReportsArguments {
-    /// Compare only; nothing is written. Says, too, which pages of times are older than their code.
-    #[arg(long, required_unless_present = "stamp", conflicts_with = "stamp")]
+    /// Compare only; nothing is written. Also says which pages of times are older than their code.
+    #[arg(long, required_unless_present_any = ["stamp", "ages"], conflicts_with_all = ["stamp", "ages"])]
     pub check: bool,
+    /// Only list the measured pages that are older than their code, or do not say how old they are.
+    #[arg(long, conflicts_with = "stamp")]
+    pub ages: bool,
     /// Pages that the main job does not write, and that were measured now: their last line says when, and
     /// with which code.
     #[arg(long, value_name = "PAGE,…", value_delimiter = ',')]

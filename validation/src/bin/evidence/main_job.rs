@@ -22,7 +22,7 @@ use pages::{Headline, scene_files, verdicts};
 use program::{Answer, File, TextOrJson, parallel, pretty, write_all, write_own};
 use validation::casadi_job::{self, Outcome};
 use validation::kept_references;
-use validation::report::{CASADI, overview, referees_section};
+use validation::report::{CASADI, folder_of, overview, referees_files, summary};
 
 /// A compared scene with its page and pictures.
 pub struct SceneReport {
@@ -58,8 +58,6 @@ fn finished<T>(job: ScopedJoinHandle<'_, T>) -> T {
 pub(crate) struct Results {
     pub(crate) comparisons: Vec<Comparison>,
     scene_files: Vec<File>,
-    /// What referees say of scenes, by the paths of their pages, on which it stands last.
-    referees: Vec<(PathBuf, String)>,
     parts: Vec<Part>,
     /// Times, which no two machines share.
     measured: Option<Part>,
@@ -97,9 +95,18 @@ impl Results {
             Some(Outcome::NotRun(reason)) => Some(reason.to_string()),
             _ => None,
         };
-        let (comparisons, scene_files, referees) = Default::default();
-        let mut results = Results { comparisons, scene_files, referees, parts, measured, casadi_not_run };
-        results.add_referee(casadi.as_ref(), scenes, asked(&Section::ErrorVsTime))?;
+        let mut results = Results { comparisons: Vec::new(), scene_files: Vec::new(), parts, measured, casadi_not_run };
+        for report in scenes {
+            let name = &report.comparison.scene.name;
+            results.scene_files.extend(report.files.into_iter().map(|file| in_its_folder(file, name)));
+            results.comparisons.push(report.comparison);
+        }
+        if let Some(outcome) = &casadi {
+            let headline = format!("Independent implementations: {}.", casadi_job::headline(outcome));
+            let verdicts = casadi_job::verdict_words(outcome).map(|words| ("casadi", words));
+            let files = referees_files(results.comparisons.iter_mut(), outcome)?;
+            results.parts.insert(0, Part { page: CASADI, headline, verdicts, files });
+        }
         Ok(results)
     }
 
@@ -113,30 +120,6 @@ impl Results {
         Ok(Part { page: "error-vs-time.md", headline, verdicts: None, files })
     }
 
-    /// The pages of scenes with what the referee says of them, and where times are to be found.
-    fn add_referee(&mut self, casadi: Option<&Outcome>, scenes: Vec<SceneReport>, times: bool) -> Result<()> {
-        if let Some(outcome) = casadi {
-            let headline = casadi_job::headline(outcome);
-            let headline = format!("Referees that share no derivation with this program: {headline}.");
-            let verdicts = casadi_job::verdict_words(outcome).map(|words| ("casadi", words));
-            self.parts.insert(0, Part { page: CASADI, headline, verdicts, files: Vec::new() });
-        }
-        for mut report in scenes {
-            let section = referees_section(&mut report.comparison, casadi)?;
-            if let Some(page) = report.files.iter_mut().find(|f| f.path.extension().is_some_and(|e| e == "md")) {
-                let name = &report.comparison.scene.name;
-                page.text += &format!("\nWith sliders, in a browser: [this scene](../explore.html#scene={name}).\n");
-                if times {
-                    page.text += "\nWhich method reaches which error in which time: [error against run time](../measured/error-vs-time.md).\n";
-                }
-                self.referees.push((page.path.clone(), section));
-            }
-            self.scene_files.extend(report.files);
-            self.comparisons.push(report.comparison);
-        }
-        Ok(())
-    }
-
     pub(crate) fn verdicts(&self) -> Value {
         let mut verdicts = verdicts(&self.comparisons);
         for (name, words) in self.parts.iter().filter_map(|part| part.verdicts.clone()) {
@@ -147,16 +130,11 @@ impl Results {
 
     /// Pages and pictures of every section that ran, but for those of times.
     pub(crate) fn files(&self) -> Vec<File> {
-        let mut files = self.scene_files.clone();
-        for (path, section) in &self.referees {
-            files.iter_mut().filter(|file| file.path == *path).for_each(|page| page.text += section);
-        }
-        files.into_iter().chain(self.parts.iter().flat_map(|part| part.files.clone())).collect()
+        self.scene_files.iter().chain(self.parts.iter().flat_map(|part| &part.files)).cloned().collect()
     }
 
-    /// Nothing of what referees say is on any page.
+    /// What other programs say is on no page.
     pub(crate) fn leave_out_referees(&mut self) {
-        self.referees.clear();
         self.parts.retain(|part| part.page != CASADI);
     }
 
@@ -165,10 +143,24 @@ impl Results {
         self.parts.iter().map(|part| (&part.headline[..], part.page)).collect()
     }
 
-    /// The page that every other one is reached from.
-    pub(crate) fn overview(&self) -> File {
-        File { path: "README.md".into(), text: overview(&self.comparisons, &self.further()) }
+    /// The page that every other one is reached from, and the page to cite.
+    pub(crate) fn overview(&self) -> [File; 2] {
+        let (scenes, further) = (&self.comparisons, self.further());
+        let pages = [("README.md", overview(scenes, &further)), ("SUMMARY.md", summary(scenes, &further))];
+        pages.map(|(path, text)| File { path: path.into(), text })
     }
+}
+
+/// A file of a scene in the folder of its page, which says where else to look.
+fn in_its_folder(mut file: File, scene: &str) -> File {
+    if file.path.extension().is_some_and(|e| e == "md") {
+        file.text += &format!("- With sliders, in a browser: [explore](../explore.html#scene={scene})\n");
+        file.text += &format!("- Independent implementations: [referees](../{CASADI})\n");
+    }
+    if let Ok(rest) = file.path.strip_prefix("scenes") {
+        file.path = Path::new(folder_of(scene)).join(rest);
+    }
+    file
 }
 
 /// What is said to somebody who starts the program somewhere without saying what to do.
@@ -214,7 +206,7 @@ pub(crate) fn run(arguments: &JobArguments, quiet: bool) -> Result<String> {
     results.comparisons.iter().try_for_each(Comparison::is_sound)?;
     let mut files = results.files();
     if complete {
-        files.push(results.overview());
+        files.extend(results.overview());
         let text = pretty("verdicts", &results.verdicts());
         files.push(File { path: "verdicts.json".into(), text });
     }

@@ -6,7 +6,8 @@ use anyhow::{Context, Result, bail};
 use clap::ValueEnum;
 use pages::difference_of_verdicts;
 use serde_json::Value;
-use validation::report::{Compared, stamp, without_referees};
+use validation::report::stamp::{self, Age};
+use validation::report::{Compared, without_referees};
 
 use crate::cli::{ReportsArguments, Section};
 use crate::main_job::{Results, sources};
@@ -41,12 +42,12 @@ fn check(arguments: &ReportsArguments) -> Result<String> {
         bail!("{} is out of date at {difference}; {MEND}", folder.join("verdicts.json").display());
     }
     let mut compared = Compared::default();
-    for file in results.files().into_iter().chain([results.overview()]) {
-        let mut old = read(&file.path)?;
+    for file in results.files().into_iter().chain(results.overview()) {
+        let mut both = [read(&file.path)?, file.text];
         if left_out {
-            old = without_referees(&old);
+            both = both.map(|text| without_referees(&text));
         }
-        if let Err(difference) = compared.page(&old, &file.text) {
+        if let Err(difference) = compared.page(&both[0], &both[1]) {
             bail!("{} is out of date: {difference}; {MEND}", folder.join(&file.path).display());
         }
     }
@@ -63,19 +64,24 @@ fn check(arguments: &ReportsArguments) -> Result<String> {
     Ok(agrees + &ages(&arguments.out)?)
 }
 
-/// Which pages that the main job does not write are older than the code they speak of: no fault, but to be
-/// known.
+/// Which pages that the main job does not write are older than the code they speak of, a line each: not a
+/// fault, but the site leaves them out.
 fn ages(folder: &Path) -> Result<String> {
     let Some(root) = sources() else { return Ok(String::new()) };
-    let lines = stamp::ages(&root, folder)?;
-    Ok(lines.iter().map(|line| format!("{line}\n")).collect())
+    let line = |(page, age): (&str, Age)| match age {
+        Age::Current => String::new(),
+        Age::Older(date) => format!("{page}\tmeasured on {date} with older code\n"),
+        Age::Unknown => format!("{page}\tdoes not say when it was measured, and with which code\n"),
+        Age::Missing => format!("{page}\tis not there\n"),
+    };
+    Ok(stamp::ages(&root, folder)?.into_iter().map(line).collect())
 }
 
 /// Writes under these pages when they were measured, which is now, and with which code, which is that of the
 /// sources.
 fn stamp(arguments: &ReportsArguments) -> Result<String> {
     let root =
-        sources().context("only pages of the project's own reports have such a line: this is no folder of it")?;
+        sources().context("only pages of the project's own reports have such a line: this is not a folder of it")?;
     for page in &arguments.stamp {
         stamp::write(&root, &arguments.out, page)?;
     }
@@ -84,5 +90,9 @@ fn stamp(arguments: &ReportsArguments) -> Result<String> {
 
 /// Runs the command.
 pub(crate) fn run(arguments: &ReportsArguments) -> Result<String> {
-    if arguments.check { check(arguments) } else { stamp(arguments) }
+    match (arguments.check, arguments.ages) {
+        (true, _) => check(arguments),
+        (_, true) => ages(&arguments.out),
+        _ => stamp(arguments),
+    }
 }

@@ -43,38 +43,38 @@ fn random_systems(quiet: bool) -> Result<Vec<Part>> {
     let records = batch.run(0..RANDOM_SYSTEMS, None, quiet)?;
     let verdicts = Some(("random", random_verdicts(&batch, &records)));
     let (headline, files) = (random_headline(&records), random_files(&batch, &records)?);
-    Ok(vec![Part { page: "random.md", headline, verdicts, files }])
+    Ok(vec![Part { page: "evidence/random.md", headline, verdicts, files }])
 }
 
 fn realization(quiet: bool) -> Result<Vec<Part>> {
     let report = RealizationReport::new(quiet)?;
     let (headline, verdicts) = (report.headline(), Some(("realization", report.verdicts())));
-    Ok(vec![Part { page: "realization.md", headline, verdicts, files: report.files()? }])
+    Ok(vec![Part { page: "evidence/realization.md", headline, verdicts, files: report.files()? }])
 }
 
 fn paper_audit(_: bool) -> Result<Vec<Part>> {
     let report = AuditReport::new()?;
     let (headline, verdicts) = (report.headline(), Some(("paper audit", report.verdicts())));
-    Ok(vec![Part { page: "paper-audit.md", headline, verdicts, files: report.files() }])
+    Ok(vec![Part { page: "paper/audit.md", headline, verdicts, files: report.files() }])
 }
 
 fn equivalence(quiet: bool) -> Result<Vec<Part>> {
     let report = EquivalenceReport::new(quiet)?;
     let (headline, verdicts) = (report.headline(), Some(("equivalence", report.verdicts())));
-    let systems = Part { page: "equivalence.md", headline, verdicts, files: report.files() };
+    let systems = Part { page: "evidence/equivalence.md", headline, verdicts, files: report.files() };
     let report = LiteratureReport::new(quiet)?;
     let (headline, verdicts) = (report.headline(), Some(("literature", report.verdicts())));
-    Ok(vec![systems, Part { page: "literature.md", headline, verdicts, files: report.files() }])
+    Ok(vec![systems, Part { page: "evidence/literature.md", headline, verdicts, files: report.files() }])
 }
 
 fn bicycle(_: bool) -> Result<Vec<Part>> {
     let report = BicycleReport::new()?;
     let (headline, verdicts) = (report.headline(), Some(("bicycle", report.verdicts())));
-    Ok(vec![Part { page: "bicycle.md", headline, verdicts, files: report.files()? }])
+    Ok(vec![Part { page: "evidence/bicycle.md", headline, verdicts, files: report.files()? }])
 }
 
 fn stability(quiet: bool) -> Result<Vec<Part>> {
     let report = StabilityReport::new(|_| true, quiet)?;
     let (headline, verdicts) = (report.headline(), Some(("stability", report.verdicts())));
-    Ok(vec![Part { page: "stability.md", headline, verdicts, files: report.files()? }])
+    Ok(vec![Part { page: "evidence/stability.md", headline, verdicts, files: report.files()? }])
 }
