@@ -164,9 +164,9 @@ fn disc_section() -> decision::Section {
 #[test]
 fn constants_that_are_decided_beside_their_motion() {
     let mut disc = disc();
-    disc.fit(crate::Fits::None, &Settings::default()).expect("no fit");
+    disc.fit(comparison::Fits::None, &Settings::default()).expect("no fit");
     let asked = (disc.run(VAKONOMIC), disc.run(CHETAEV));
-    let is = |d: &crate::Decided| (Some(d.family), Some(d.curve)) == asked;
+    let is = |d: &comparison::Decided| (Some(d.family), Some(d.curve)) == asked;
     let place = disc.decided.iter().position(is).expect("a decision");
     let fitted = disc.decided[place].witness.as_ref().expect("a motion").as_ref().expect("a motion");
     assert!(fitted.gap.largest < 1e-9, "{:?}", fitted.constants);
@@ -187,7 +187,7 @@ fn constants_that_are_decided_beside_their_motion() {
 #[test]
 fn none_beside_constants_that_a_search_found() {
     let mut sledge = sledge();
-    sledge.fit(crate::Fits::All, &Settings::default()).expect("fits");
+    sledge.fit(comparison::Fits::All, &Settings::default()).expect("fits");
     assert_eq!(sledge.contradictions(), Vec::new());
     let asked = (sledge.run(VAKONOMIC), sledge.run(CHETAEV));
     let fit = sledge.fits.iter_mut().find(|fit| (Some(fit.run), Some(fit.target)) == asked).expect("a fit");

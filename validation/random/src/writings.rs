@@ -21,10 +21,16 @@ const fn writing(name: &'static str, adds: usize, keeps_gaps: bool, of: fn(&Tabl
     Writing { name, adds, keeps_gaps, of }
 }
 
+/// The writing with `√(q²)`.
+pub const ROOTS: &str = "roots";
+
+/// Coordinates that start this far from zero have it.
+pub const FROM_ZERO: f64 = 0.25;
+
 /// All of them.
 pub const WRITINGS: [Writing; 8] = [
     writing("signs", 0, true, signs),
-    writing("roots", 0, false, roots),
+    writing(ROOTS, 0, false, roots),
     writing("slave", 1, true, slave),
     writing("unit vectors", 1, false, unit_vectors),
     writing("quaternions", 1, false, quaternions),
@@ -165,10 +171,10 @@ fn signs(scene: &Table) -> Option<Table> {
 fn roots(scene: &Table) -> Option<Table> {
     let mut scene = scene.clone();
     let root = |name: &str, primes: usize| {
-        let start = decimal(&scene, name).filter(|start| primes == 0 && start.abs() > 0.25)?;
+        let start = decimal(&scene, name).filter(|start| primes == 0 && start.abs() > FROM_ZERO)?;
         Some(format!("({}sqrt({name}^2))", if start < 0.0 { "-" } else { "" }))
     };
-    let text = scene["system"]["constraints"].clone();
+    let text = scene["system"].get("constraints")?.clone();
     let written: Vec<Value> =
         text.as_array()?.iter().map(|f| renamed(f.as_str().unwrap_or(""), &root).into()).collect();
     let changed = text.as_array()? != &written;

@@ -118,7 +118,7 @@ pub(super) fn writing_of_the_family(case: &mut Case) -> Result<(), CheckError> {
     Ok(())
 }
 
-/// Counts a control, and whether the motion is another; of systems whose constraints are integrable it is none.
+/// Counts a control, and whether the motion is another; of integrable systems it is none.
 fn other_motion(case: &mut Case, control: usize, which: Which, mut motion: Motion) -> Result<(), CheckError> {
     let mut own = case.motion(which).clone();
     let gap = case.gap_of(&mut own, &mut motion)?;

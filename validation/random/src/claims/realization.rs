@@ -100,7 +100,8 @@ fn own_error(motion: &mut Motion, metric: &mut Metric) -> Result<f64, SolveError
     Ok(largest)
 }
 
-/// The last two distances must be about ten apart or more; `measured` gives distance and own error at powers of ten.
+/// The last two distances must be about ten apart or more; `measured` gives distance and own error at
+/// powers of ten.
 ///
 /// # Errors
 /// Those of `measured`.
