@@ -38,14 +38,14 @@ fn said(comparisons: &[Comparison], words: &[&str]) {
 fn the_control_is_flagged_where_it_is_wrong_and_called_right_where_it_is_right() {
     let comparisons = ["sledge", "particle", "disc", "heisenberg"].map(|name| compared(name, |_, _| {}));
     let found = "violates Maggi's equations on 2 scenes";
-    let flagged = ": flagged on 2. It is called right on `disc` and `heisenberg`";
-    said(&comparisons, &["**The wrong formulation is found out.**", found, flagged, "| flagged |", "| right here |"]);
+    let flagged = " and is flagged on 2. It is called right on `disc` and `heisenberg`";
+    said(&comparisons, &["**The negative control is detected.**", found, flagged, "| flagged |", "| right here |"]);
 }
 
 #[test]
 fn a_wrong_control_that_is_not_flagged_is_a_fault_of_the_program() {
     let blind = compared("sledge", |chetaev, control| chetaev.outcome = Ok(motion(control)));
-    let words = ["**The wrong formulation is not found out.**", "On `sledge` Maggi's equations say otherwise"];
+    let words = ["**The negative control is not detected.**", "On `sledge` Maggi's equations disagree"];
     said(&[blind], &[words[0], words[1], "| wrong, and not flagged |"]);
 }
 
@@ -58,7 +58,7 @@ fn a_right_control_that_is_flagged_is_a_fault_of_the_program() {
         let scene = Scene::parse_with("disc", &text, &[("duration".to_owned(), 0.5)]).expect("a scene");
         chetaev.outcome = solve_choice(&scene, &chetaev.choice, &Settings::default());
     };
-    let words = ["**The wrong formulation is not found out.**", "On `disc` Maggi's equations say otherwise"];
+    let words = ["**The negative control is not detected.**", "On `disc` Maggi's equations disagree"];
     said(&[compared("disc", other)], &[words[0], words[1], "| flagged, though right |"]);
 }
 
@@ -69,6 +69,6 @@ fn residuals_are_those_of_controls_that_are_right() {
         Control { name: name.into(), is_same: !flagged, found: Some(found) }
     };
     let said = sentence(&[control("a", true, 0.3), control("b", false, 2e-14), control("c", false, 1e-15)]);
-    assert!(said.contains(" on 1 scene: flagged on 1. "), "{said}");
+    assert!(said.contains(" on 1 scene and is flagged on 1. "), "{said}");
     assert!(said.ends_with("called right on b and c, with a residual of at most 2.0e-14."), "{said}");
 }

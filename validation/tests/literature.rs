@@ -42,7 +42,7 @@ fn the_word_follows_from_what_was_found() {
     let asked =
         format!("[[claim]]\nsource = 'a'\nread = ''\nabout = 'b'\nquestion = 'Is it?'\nword = 'contradicted'\n{mixed}");
     let asked = LiteratureReport::of(&asked, true).expect("a page");
-    let page = asked.files().remove(0).text;
+    let page: String = asked.files().into_iter().map(|file| file.text).collect();
     assert!(page.contains("**answered**") && page.contains("Is it?") && !page.contains("contradicted"), "{page}");
     let told = claim("confirmed", &mixed).expect_err("a word that does not follow");
     assert!(told.contains("it is contradicted"), "{told}");

@@ -21,7 +21,7 @@ fn rates_are_counted_where_they_can_be_told_and_by_how_near_they_are_to_1() {
     let report = RealizationReport { scenes, random, law: Vec::new() };
     let headline = report.headline();
     assert!(
-        headline.ends_with(": in 2 of 4 cases the distance falls as 1/N (measured exponents 0.699 to 2)."),
+        headline.ends_with(" In 2 of 4 cases the distance falls as 1/N (fitted exponents 0.699 to 2)."),
         "{headline}"
     );
     assert_eq!(report.random_rates(ADDED_MASS), (Vec::new(), [1, 2]));

@@ -87,14 +87,18 @@ impl StabilityReport {
 
     /// The first line of the page.
     pub fn headline(&self) -> String {
+        let wrong = match self.count("wrong") {
+            0 => "No answer is silently wrong".to_owned(),
+            1 => "One answer is silently wrong".to_owned(),
+            wrong => format!("{wrong} answers are silently wrong"),
+        };
         format!(
-            "No answer is silently wrong: of {} answers of {} methods and of structure-preserving steps on stiff and extreme cases, {} are accurate, {} inaccurate but flagged, {} stopped with a reason, {} wrong.",
+            "{wrong}: of {} answers of {} methods and of structure-preserving steps on stiff and extreme cases, {} are accurate, {} inaccurate but flagged, {} stopped with a reason.",
             self.answers(),
             EVERY.len(),
             self.count("accurate"),
             self.count("admitted"),
-            self.count("refused"),
-            self.count("wrong")
+            self.count("refused")
         )
     }
 
