@@ -1,6 +1,5 @@
 //! What contacts cannot exert: the reaction of a motion along velocities that no contact sees.
 
-use mechanics::SingularValues;
 use nalgebra::DMatrix;
 use scene::Scene;
 use symbolic::{Evaluator, Expr};
@@ -27,7 +26,7 @@ pub struct Beyond {
 
 /// The generalized reaction of a motion is `R = d/dt ∂L/∂v − ∂L/∂q − Q`. Forces `F` at contacts, where `s` is
 /// the slip, give `(∂s/∂v)ᵀ F`: `R` is of this form iff `R·w = 0` for all `w` with `∂s/∂v w = 0`. The largest
-/// `R·w` for the shortest `w` with one coordinate of rate 1, at instants of the motion; `None` if it vanishes
+/// `R·w` for `w` with one free coordinate of rate 1, at instants of the motion; `None` if it vanishes
 /// everywhere.
 ///
 /// # Errors
@@ -62,7 +61,7 @@ pub fn beyond_contacts(scene: &Scene, motion: &mut Motion) -> Result<Option<Beyo
         let reaction: Vec<f64> = (0..n).map(|i| rate[i] - now[n + i] - now[2 * n + i]).collect();
         let parts = [&rate[..], &now[n..3 * n]].concat();
         size = parts.iter().fold(size, |size, x| size.max(x.abs()));
-        for (i, w) in unseen(&DMatrix::from_row_slice(columns.rows(), n, &now[3 * n..])) {
+        for (i, w) in unseen(DMatrix::from_row_slice(columns.rows(), n, &now[3 * n..])) {
             let force: f64 = reaction.iter().zip(&w).map(|(r, w)| r * w).sum();
             if force.is_finite() && largest.as_ref().is_none_or(|found| force.abs() > found.force.abs()) {
                 largest = Some(Beyond { coordinate: system.coordinates[i].name.clone(), force, t });
@@ -72,13 +71,34 @@ pub fn beyond_contacts(scene: &Scene, motion: &mut Motion) -> Result<Option<Beyo
     Ok(largest.filter(|found| found.force.abs() > NOTHING * size))
 }
 
-/// Of each coordinate that can move where `slips` vanish, the shortest such direction of rate 1 there.
-fn unseen(slips: &DMatrix<f64>) -> impl Iterator<Item = (usize, Vec<f64>)> + use<> {
-    /// A coordinate that moves less than this part of a direction is held.
-    const HELD: f64 = 0.1;
-    let free = SingularValues::of(slips).on_kernel(1e-9 * slips.amax());
-    (0..free.ncols()).filter_map(move |i| {
-        let direction = free.column(i) / free[(i, i)];
-        (free[(i, i)] > HELD).then(|| (i, direction.as_slice().to_vec()))
-    })
+/// The kernel of `slips`, a vector for each coordinate that it leaves free, of rate 1 there.
+fn unseen(mut slips: DMatrix<f64>) -> Vec<(usize, Vec<f64>)> {
+    let (rows, n) = slips.shape();
+    let limit = 1e-9 * slips.amax();
+    let mut pivots: Vec<usize> = Vec::new();
+    for row in 0..rows {
+        let rest = slips.rows(row, rows - row);
+        let (below, column) = rest.iamax_full();
+        if rest[(below, column)].abs() <= limit {
+            break;
+        }
+        slips.swap_rows(row, row + below);
+        let scale = 1.0 / slips[(row, column)];
+        slips.row_mut(row).scale_mut(scale);
+        let pivot = slips.row(row).clone_owned();
+        for other in (0..rows).filter(|other| *other != row) {
+            let factor = slips[(other, column)];
+            let reduced = slips.row(other) - &pivot * factor;
+            slips.set_row(other, &reduced);
+        }
+        pivots.push(column);
+    }
+    let free = (0..n).filter(|i| !pivots.contains(i));
+    let vector = |i: usize| {
+        let mut w = vec![0.0; n];
+        w[i] = 1.0;
+        pivots.iter().enumerate().for_each(|(row, &pivot)| w[pivot] = -slips[(row, i)]);
+        (i, w)
+    };
+    free.map(vector).collect()
 }

@@ -8,7 +8,7 @@ use scene::Scene;
 use crate::fit::CLOSE;
 use crate::fit::search::{Aim, Found, search};
 use crate::gap::{Gap, Verdict, compare_motions};
-use crate::runs::{Decided, Pair, Run};
+use crate::runs::{Decided, FittedMotion, Pair, Run};
 use crate::{Answer, costates_of, multipliers_of};
 use motion::{
     CHETAEV, Choice, Metric, Motion, REMOVED_CONSTRAINT, Setting, Settings, SolveError, VAKONOMIC, constant_names,
@@ -36,28 +36,6 @@ pub struct Fit {
     pub fitted: Option<FittedMotion>,
     /// Whether constants follow from the target's without a search ([`costates_of`], [`multipliers_of`]).
     pub by_identity: bool,
-}
-
-/// A motion with fitted constants.
-pub struct FittedMotion {
-    /// Names and values of the constants.
-    pub constants: Vec<(String, f64)>,
-    /// The gap that remains.
-    pub gap: Gap,
-    /// From how many values of the constants the gap was made smaller, of which the best is told; 0 for an
-    /// identity.
-    pub starts: usize,
-    /// The largest gap that was found from the first half of these starts; infinite where these lead to no
-    /// motion over the whole horizon.
-    pub by_half: f64,
-}
-
-impl FittedMotion {
-    /// Whether half of the starts find the same gap to one percent; where nothing is left, nothing has to be
-    /// settled.
-    pub fn is_settled(&self) -> bool {
-        self.gap.verdict != Verdict::Different || self.by_half <= 1.01 * self.gap.largest
-    }
 }
 
 /// Fits one run's free constants to another wherever the two differ: vakonomic to Chetaev, the first removed

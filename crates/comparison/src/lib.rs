@@ -73,11 +73,11 @@ pub use contradiction::{Beside, Change, Contradicted, Contradiction, hold, holds
 pub use decision::{Finding, PlainScene, Section};
 pub use first_trace::{FirstTrace, first_trace};
 pub use fit::best_fit;
-pub use fits::{Fit, Fits, FittedMotion};
+pub use fits::{Fit, Fits};
 pub use gap::{Gap, GapPoint, Sampling, THRESHOLDS, Verdict, compare_motions, compare_motions_by};
 pub use growth::{Growth, LeadingTerm, growth};
 pub use integrability::{integrability, integrals_by_ranks};
 pub use membership::{Answer, Membership, Pairing, certificate, costates_of, membership, multipliers_of};
 pub use motion::band::SAME_ESTIMATE;
-pub use runs::{Decided, Pair, Run};
+pub use runs::{Decided, FittedMotion, Pair, Run};
 pub use sweep::{Sweep, SweepPoint};

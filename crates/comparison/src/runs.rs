@@ -4,8 +4,7 @@ use equations::Formulation;
 use mechanics::ConstantsRule;
 use scene::Scene;
 
-use crate::fits::FittedMotion;
-use crate::gap::Gap;
+use crate::gap::{Gap, Verdict};
 use crate::growth::{Growth, LeadingTerm};
 use crate::{Membership, Pairing, costates_of};
 use motion::is_in_table;
@@ -31,6 +30,28 @@ pub struct Pair {
     pub growth: Option<Growth>,
     /// Predicted leading term, if the first has Taylor series and the second no constants found by a search.
     pub predicted: Option<LeadingTerm>,
+}
+
+/// A motion with fitted constants.
+pub struct FittedMotion {
+    /// Names and values of the constants.
+    pub constants: Vec<(String, f64)>,
+    /// The gap that remains.
+    pub gap: Gap,
+    /// From how many values of the constants the gap was made smaller, of which the best is told; 0 for an
+    /// identity.
+    pub starts: usize,
+    /// The largest gap that was found from the first half of these starts; infinite where these lead to no
+    /// motion over the whole horizon.
+    pub by_half: f64,
+}
+
+impl FittedMotion {
+    /// Whether half of the starts find the same gap to one percent; where nothing is left, nothing has to be
+    /// settled.
+    pub fn is_settled(&self) -> bool {
+        self.gap.verdict != Verdict::Different || self.by_half <= 1.01 * self.gap.largest
+    }
 }
 
 /// Whether one motion belongs to the family of another formulation.

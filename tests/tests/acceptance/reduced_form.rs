@@ -81,7 +81,9 @@ fn reduced_rates_are_those_by_maggi_on_random_systems() {
         let equations = equations.map_err(|e| TestCaseError::fail(e.to_string()))?;
         let (rates, velocities) = differences(scene, &equations.leave_out_unneeded(), &scene.start);
         worst.set(worst.get().max(rates));
-        prop_assert!(rates < 1e-8 && velocities < 1e-10, "{rates:e}, {velocities:e}\n{}", scene.to_toml());
+        // the last digit of a coordinate far from the origin moves more
+        let far = scene.start.q.iter().fold(1e3_f64, |far, q| far.max(q.abs())) / 1e3;
+        prop_assert!(rates < 1e-8 * far && velocities < 1e-10, "{rates:e}, {velocities:e}\n{}", scene.to_toml());
         Ok(())
     });
     println!("largest difference {:.1e}", worst.get());
