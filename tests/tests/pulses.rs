@@ -277,7 +277,7 @@ fn every_method_and_ensembles_end_a_step_at_breakpoints() {
     let run = ensemble.run(&[member], &[10.0], &EnsembleOptions::default()).remove(0).expect("a run");
     assert!((run.states[0][2] - 1.25).abs() < 1e-9, "{:?}", run.states);
     let steps = Steps { step: 0.3, composition: Composition::Second };
-    let error = solve_by_steps(&scene, choice, steps, &Settings::default()).err().expect("refused");
+    let error = solve_by_steps(&scene, choice, steps, &Settings::default()).expect_err("refused");
     assert!(matches!(error, SolveError::Breakpoint { t: 5.5 | 5.0, .. }), "{error}");
 }
 

@@ -49,7 +49,7 @@ fn solve(scene: &Scene, formulation: &'static Formulation, constants: ConstantsR
 
 #[track_caller]
 fn refused(outcome: Result<Motion, SolveError>) -> SolveError {
-    let error = outcome.err().expect("not refused");
+    let error = outcome.expect_err("not refused");
     println!("{error}");
     error
 }
@@ -173,7 +173,7 @@ fn constraints_that_nothing_removes() {
     let comparison =
         compare(scene.clone(), choices(&scene), Vec::new(), &Settings::default()).unwrap_or_else(|e| panic!("{e}"));
     let removed = comparison.run(REMOVED_CONSTRAINT).expect("a run that says why not");
-    let error = comparison.runs[removed].outcome.as_ref().err().expect("refused");
+    let error = comparison.runs[removed].outcome.as_ref().expect_err("refused");
     assert!(matches!(error, SolveError::Removal(RemovalError::NotLinear { constraint: 1, .. })), "{error}");
     let (chetaev, vakonomic) = (comparison.run(CHETAEV), comparison.run(VAKONOMIC));
     assert!(chetaev.zip(vakonomic).is_some_and(|(a, b)| comparison.pair(a, b).is_some()));
@@ -207,7 +207,7 @@ fn dependent_constraints_at_the_start() {
         let error = refused(motion::solve(setting(&scene), equations, &ConstantsRule::Zero, &Settings::default()));
         assert!(matches!(error, SolveError::AtStart(EvaluationFailure::Singular { .. })), "{error}");
     }
-    let error = compare(scene.clone(), choices(&scene), Vec::new(), &Settings::default()).err().expect("not refused");
+    let error = compare(scene.clone(), choices(&scene), Vec::new(), &Settings::default()).expect_err("not refused");
     assert!(matches!(error, SolveError::Removal(RemovalError::Dependent { .. })), "{error}");
     // a scene leaves out what follows from the others, and refuses what depends at the start only
     let edge = "\"y'*cos(phi) - x'*sin(phi)\"";

@@ -321,7 +321,7 @@ pub(crate) fn compare(
     wanted: &Wanted,
     settings: &motion::Settings,
 ) -> Result<Compared, motion::SolveError> {
-    let is_wanted = |own: &Formulation| wanted.only.as_ref().is_none_or(|only| only.iter().any(|other| *other == own));
+    let is_wanted = |own: &Formulation| wanted.only.as_ref().is_none_or(|only| only.contains(&own));
     let choices = motion::choices_among(&scene, is_wanted);
     let mut compared = comparison::Comparison::new(scene, wanted.extent, settings)?;
     for choice in choices {

@@ -2,6 +2,8 @@
 //!
 //! Nothing is derived, integrated or decided here: arguments are read, the facade is called, arrays are
 //! handed back. What integrates runs on a thread of its own without Python's lock ([`background`]).
+// `>>>` begins an example of Python
+#![allow(clippy::doc_lazy_continuation)]
 
 mod again;
 mod arguments;

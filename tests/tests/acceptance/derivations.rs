@@ -126,7 +126,7 @@ fn the_family_between_is_asked_for_by_its_parameter() {
     let without = support::scene("sledge", &[]);
     assert!(motion::choices(&without).iter().all(|choice| choice.formulation != KAPPA));
     let error = (KAPPA.derive)(&without.system, &Default::default());
-    assert!(error.err().expect("refused").to_string().contains("a parameter `kappa` is needed"));
+    assert!(error.expect_err("refused").to_string().contains("a parameter `kappa` is needed"));
     let with = support::scene("sledge", &[("kappa", 2.0)]);
     assert!(motion::choices(&with).iter().any(|choice| choice.formulation == KAPPA));
 }

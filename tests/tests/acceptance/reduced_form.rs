@@ -146,7 +146,7 @@ fn the_train_with_three_trailers_is_the_scene() {
 
 #[test]
 fn constraints_that_are_not_linear_are_refused() {
-    let error = derived(&scene("appell-hamel", &[]), REDUCED_CHETAEV, None, None).err().expect("refused").to_string();
+    let error = derived(&scene("appell-hamel", &[]), REDUCED_CHETAEV, None, None).expect_err("refused").to_string();
     assert!(error.contains("not linear in the velocities"), "{error}");
 }
 

@@ -185,7 +185,7 @@ fn a_train_takes_two_unknowns_whatever_its_length() {
 
 #[test]
 fn constraints_that_are_not_linear_are_refused() {
-    let refusal = |scene: &Scene| derived(scene, REDUCED_VAKONOMIC, None, None).err().expect("refused").to_string();
+    let refusal = |scene: &Scene| derived(scene, REDUCED_VAKONOMIC, None, None).expect_err("refused").to_string();
     let error = refusal(&scene("appell-hamel", &[]));
     assert!(error.contains("not linear in the velocities"), "{error}");
 }
