@@ -10,6 +10,7 @@ use comparison::{Membership, Pairing};
 use motion::{CHETAEV, SolveError, choices};
 use program::parallel::map;
 use proptest::strategy::ValueTree;
+use random::writings::Writing;
 use random::{Batch, CHECKS, Case, Fault, Finding, Findings, Kind, Word, draw_recipe, equations, make, null_test};
 use random::{NullTest, Summary};
 use scene::Scene;
@@ -164,6 +165,19 @@ fn massless(scene: &mut Scene) {
     }
 }
 
+/// One constraint, and an integrable one.
+static OTHER_SYSTEM: Writing = Writing {
+    name: "another system",
+    adds: 0,
+    keeps_gaps: true,
+    of: |scene| {
+        let mut scene = scene.clone();
+        let constraints = scene.get_mut("system")?.get_mut("constraints")?.as_array_mut()?;
+        *constraints = vec!["q1' - q2'".into()];
+        Some(scene)
+    },
+};
+
 const FALSE: &[False] = &[
     in_case(0, "Chetaev: multipliers and Maggi's equations", Kind::Linear, EXCHANGED, exchanged),
     in_case(0, "vakonomic: multiplier form and costate form", Kind::Linear, EXCHANGED, exchanged),
@@ -193,6 +207,10 @@ const FALSE: &[False] = &[
     in_case(4, "vakonomic: constraints recombined", Kind::Linear, OTHER_MULTIPLIERS, other_multipliers),
     in_case(4, "Chetaev: other coordinates", Kind::Nonlinear, RUBBED, rubbed),
     in_case(4, "vakonomic: other coordinates", Kind::TimeDependent, EXCHANGED, exchanged),
+    in_case(4, "other writings have the same sentences", Kind::Linear, "a writing of another system", |case| {
+        case.writing = Some(&OTHER_SYSTEM);
+        Ok(())
+    }),
     in_case(5, "exponent of the leading divergence", Kind::Linear, OTHER_MULTIPLIERS, no_multipliers),
     in_case(5, "coefficient of the leading divergence", Kind::Affine, OTHER_MULTIPLIERS, other_multipliers),
     in_case(6, "Chetaev: energy", Kind::Affine, "called homogeneous", |case| called(case, Kind::Linear)),

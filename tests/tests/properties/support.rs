@@ -19,6 +19,10 @@ const INTEGRABILITY: u8 = 11;
 /// The part of the systems on which a claim may be undecided.
 const UNDECIDED: f64 = 0.02;
 
+/// The theorem on the leading divergence, whose gap has to stand out of round-off near the start: more stay open.
+const LEADING: u8 = 5;
+const OPEN: f64 = 0.05;
+
 /// How often proptest may try a simpler system, and for how long, in ms.
 const SHRINKING: u32 = 2_000;
 const SHRINKING_TIME: u32 = 10_000;
@@ -87,7 +91,8 @@ impl Suite {
         for f in sum.findings.iter().filter(|f| f.word == Word::Undecided) {
             println!("   undecided: {}: {}", f.claim, f.note);
         }
-        assert!(f64::from(undecided) <= UNDECIDED * f64::from(applied + undecided) + 1.0, "undecided on {undecided}");
+        let open = if theorem == LEADING { OPEN } else { UNDECIDED };
+        assert!(f64::from(undecided) <= open * f64::from(applied + undecided) + 1.0, "undecided on {undecided}");
         assert!(3 * applied >= *cases, "T{theorem} applied to {applied} of {cases} systems only");
         sum
     }

@@ -15,6 +15,7 @@ use super::derived::{equations, free_constants};
 use super::finding::{Finding, Findings, Word};
 use super::found_out::referee;
 use super::recipe::Recipe;
+use super::writings::Writing;
 use crate::realization::{constraint_jacobian, numbers};
 use review::substitution::SUBSTITUTION;
 
@@ -73,6 +74,8 @@ pub struct Case {
     pub natural: Option<Motion>,
     /// Stands for the motion of the family between vakonomic and Chetaev, if it is given.
     pub between: Option<Motion>,
+    /// Stands for the other writing of the system, if it is given.
+    pub writing: Option<&'static Writing>,
     /// What [`Case::referee`] has said, if it was asked.
     referee: Option<[maggi::Motion; 2]>,
 }
@@ -133,6 +136,7 @@ impl Case {
             membership: None,
             natural: None,
             between: None,
+            writing: None,
             referee: None,
         })
     }

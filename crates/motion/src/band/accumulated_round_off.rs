@@ -19,9 +19,9 @@ pub type Rates<'a> = dyn FnMut(f64, &[f64], &mut [f64]) -> bool + 'a;
 
 /// Round-off that the rates accumulate, beside the difference of the runs.
 pub enum RoundOff {
-    /// No more than the difference of the runs, or than [`ROUND_OFF`].
+    /// No more than the difference of the runs, or than `ROUND_OFF`.
     Small,
-    /// To be put into the rates: `d` and `η` of [`super::perturbed_rates`].
+    /// To be put into the rates: `d` and `η` of `perturbed_rates`.
     Counts(Vec<f64>),
     /// Too large for any error estimate.
     Doubted(Doubt),

@@ -108,7 +108,7 @@ fn constraints_are_compared_until_a_thousandth_of_their_rank_is_left() {
 fn exponents_are_counted_that_are_certain_to_a_tenth() {
     let scene = particle(0.0, "", 0.0);
     let mut seen = [0, 0];
-    for bend in [-60.0, -100.0, -180.0] {
+    for bend in [-2.0, -10.0, -60.0] {
         let mut case = case(&scene);
         case.vakonomic = motion(&particle(0.0, &format!(" + 1e-8*(1 + ({bend:?})*t^2)*x"), 0.0), VAKONOMIC, &exact());
         let gap = case.gap(Which::Chetaev, Which::Vakonomic).expect("a gap");

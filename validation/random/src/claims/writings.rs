@@ -30,7 +30,7 @@ fn crosses(case: &mut Case) -> Result<bool, CheckError> {
 
 /// Signs of coordinates, roots of squares, coordinates that follow, unit vectors, formulas for numbers, time.
 pub(super) fn check(case: &mut Case) -> Result<(), CheckError> {
-    let Some(writing) = case.recipe.features.writing() else { return Ok(()) };
+    let Some(writing) = case.writing.or_else(|| case.recipe.features.writing()) else { return Ok(()) };
     let text: Result<Table, _> = case.scene.to_toml().parse();
     let Ok(own) = text.map(|table| plain(&table)) else { return Ok(()) };
     let Some(other) = (writing.of)(&own) else { return Ok(()) };
