@@ -19,7 +19,7 @@ const INTEGRABILITY: u8 = 11;
 /// The part of the systems on which a claim may be undecided.
 const UNDECIDED: f64 = 0.02;
 
-/// The theorem on the leading divergence, whose gap has to stand out of round-off near the start: more stay open.
+/// The theorem on the leading divergence: its gap has to stand out of round-off near the start.
 const LEADING: u8 = 5;
 const OPEN: f64 = 0.05;
 
