@@ -11,7 +11,7 @@ import pytest
 
 import deltaq
 
-FILM = Path(__file__).resolve().parents[2] / "command" / "tests" / "film.csv"
+FILM = Path(__file__).resolve().parents[2] / "deltaq" / "tests" / "film.csv"
 PROGRAM = Path(sys.prefix).parent / "release" / "deltaq"
 FREE = ["x", "y", "phi", "x'", "phi'", "g~9"]
 

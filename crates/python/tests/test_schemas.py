@@ -70,7 +70,7 @@ def test_answers_are_as_described(kind, tmp_path):
         motion = subprocess.run([PROGRAM, "solve", "sledge", "-f", "chetaev"], capture_output=True, text=True, check=True).stdout
         (tmp_path / "motion.csv").write_text(motion)
     if kind == "fit":
-        (tmp_path / "film.csv").write_bytes((ROOT / "crates" / "command" / "tests" / "film.csv").read_bytes())
+        (tmp_path / "film.csv").write_bytes((ROOT / "crates" / "deltaq" / "tests" / "film.csv").read_bytes())
     for call, code in ANSWERS[kind].items():
         form = [] if kind.endswith("certificate") else ["--format", "json"]
         words = call.replace("FOLDER", str(tmp_path)).split(" ") + form
