@@ -105,7 +105,7 @@ def test_what_is_refused(fitted):
         "no standard deviation": dict(film=film, free=["g"]),
         "film 1:2:9: column `atan2\\(y,x\\)`: `inf`": dict(film=film | {"atan2(y,x)": [np.inf, 0.0, 0.0]}, free=["g"], sigma=1e-3),
         "`z`": dict(film=film | {"z": [0.0] * 3}, free=["g"], sigma=1e-3),
-        "no number with a unit": dict(film=film, free=["g"], sigma="1inch"),
+        "not a number with a unit": dict(film=film, free=["g"], sigma="1inch"),
         "there are 1 films": dict(film=film, free=["g"], sigma=1e-3, known={"g@2": 9.8}),
         "the tolerance is": dict(film=film, free=["g"], sigma=1e-3, tolerance=2.0),
     }.items():

@@ -260,7 +260,7 @@ def test_what_is_no_such_system_is_not_read(images, tmp_path):
         ({"forces": {"x": "-x'"}}, "contain velocities"), ({"constraints": [f"{BLADE} - 1"]}, "not linear and homogeneous"),
         ({"constraints": [f"({BLADE})^2"]}, "not linear and homogeneous"), ({"constraints": [f"({BLADE})*cos(x'*y')"]}, "not known to be a fraction"),
         ({"lagrangian": f"{SLEIGH} + x*y'"}, "not quadratic"), ({"lagrangian": f"{SLEIGH} + phi'^4/9"}, "not quadratic"),
-        ({"lagrangian": f"{SLEIGH} + s"}, "the name s"), ({"lagrangian": "[x'^2, y'^2]"}, "no number"),
+        ({"lagrangian": f"{SLEIGH} + s"}, "the name s"), ({"lagrangian": "[x'^2, y'^2]"}, "not a number"),
         ({"parameters": over["parameters"] | {"x'": "1"}}, "the name of"), ({"parameters": over["parameters"] | {"x''": "1"}}, "the name of"),
     ):
         code, said = read(over | change)

@@ -40,7 +40,7 @@ LONG = {
     ),
     ("System", "fit"): lambda s: s.fit(film, free=["phi'"], sigma=1e-2, starts=1, formulations=["chetaev"]),
     ("System", "prove"): lambda s: s.prove(),
-    ("System", "_sweep_points"): lambda s: s._sweep_points(["g"], [9.0], None, 1e-9, 10_000, None, None, 1),
+    ("System", "_sweep_points"): lambda s: s._sweep_points(["g"], [9.0], None, True, 1e-9, 10_000, None, None, 1),
 }
 SHORT = {
     ("System", "constraint"): lambda s: s.constraint(0.0, start.q, start.v),
@@ -70,7 +70,7 @@ SHORT = {
     ("_Fitted", "unknowns"): lambda f: f.unknowns(0),
 }
 # written in Python, of what others have
-OTHERS = {"plot", "animate", "to_arrow", "to_pandas", "to_xarray", "_fit", "_design", "_certificate", "_integrals", "_review", "_review_states"}
+OTHERS = {"plot", "animate", "to_arrow", "to_pandas", "to_xarray", "_fit", "_design", "_certificate", "_integrals", "_review", "_review_states", "_residuals", "_with"}
 
 
 def calls(thing):

@@ -1578,7 +1578,7 @@ class Residuals:
     as many residuals as columns times k. They have no unit where `sigma` has that of its column.
 
     A call never raises for numbers: at times that the motion does not reach residuals are `penalty`, with
-    derivatives zero, and `ended` says why. Numbers that are no start give that at all times.
+    derivatives zero, and `ended` says why. Numbers that are not a start give that at all times.
     """
     names: Final[list[str]]
     """Names of the numbers p, length P."""
