@@ -119,6 +119,8 @@ export class Curves {
   paths(plot) {
     const { ctx: context, bbox: { left, top, width, height } } = plot;
     const { plane, motions } = this.samples;
+    // a text without a plane came while this was still to be drawn
+    if (!plane) return;
     const ratio = devicePixelRatio;
     context.save();
     context.beginPath();

@@ -31,7 +31,7 @@ async function scene(page, word, title = word) {
 
 async function panel(page, name) {
   await go(page, "[role=tab][tabindex='0']");
-  for (let i = 0; i < 6 && (await page.evaluate(() => document.activeElement.dataset.tab)) !== name; i++) await page.keyboard.press("ArrowRight");
+  for (let i = 0; i < 12 && (await page.evaluate(() => document.activeElement.dataset.tab)) !== name; i++) await page.keyboard.press("ArrowRight");
 }
 
 const decidedAnew = (page) => page.waitForFunction(() => document.getElementById("verdict").getAttribute("aria-busy") === "false" && document.getElementById("verdict").textContent, { timeout: 60000 });
