@@ -223,10 +223,8 @@ impl Case {
         second: &mut Motion,
         sampling: &Sampling,
     ) {
-        match self.gap_by(first, second, sampling) {
-            Ok(gap) => self.note(theorem, claim, &gap, self.floor),
-            Err(error) => self.found.undecided(theorem, claim, error),
-        }
+        let gap = self.gap_by(first, second, sampling);
+        self.note_if_read(theorem, claim, gap);
     }
 
     /// Notes whether two motions with this gap are the same; one under `floor` is none.
@@ -255,7 +253,13 @@ impl Case {
 
     /// Notes whether two motions are the same, of which none need be the case's own.
     pub fn pair(&mut self, theorem: u8, claim: &'static str, first: &mut Motion, second: &mut Motion) {
-        match self.gap_of(first, second) {
+        let gap = self.gap_of(first, second);
+        self.note_if_read(theorem, claim, gap);
+    }
+
+    /// Notes whether two motions are the same, undecided where one cannot be read off.
+    fn note_if_read(&mut self, theorem: u8, claim: &'static str, gap: Result<Gap, SolveError>) {
+        match gap {
             Ok(gap) => self.note(theorem, claim, &gap, self.floor),
             Err(error) => self.found.undecided(theorem, claim, error),
         }

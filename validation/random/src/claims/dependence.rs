@@ -1,14 +1,13 @@
 //! T15 to T17: what the formulations see of `L` and of the way in which `f` is written.
 
-use std::collections::HashMap;
-
+use comparison::Sampling;
 use equations::Equations;
 use mechanics::{Removal, System};
 use motion::{CHETAEV, KAPPA, Motion, REMOVED_CONSTRAINT, SolveError, VAKONOMIC};
 use symbolic::{Expr, Function, Symbol};
 
 use super::CheckError;
-use super::invariance::{mixing, with_mixing};
+use super::invariance::{mixing, values, with_mixing};
 use crate::Case;
 use crate::case::Which;
 use crate::derived::{equations, free_constants};
@@ -120,8 +119,7 @@ pub(super) fn writing_of_the_family(case: &mut Case) -> Result<(), CheckError> {
 
 /// Counts a control, and whether the motion is another; of integrable systems it is none.
 fn other_motion(case: &mut Case, control: usize, which: Which, mut motion: Motion) -> Result<(), CheckError> {
-    let mut own = case.motion(which).clone();
-    let gap = case.gap_of(&mut own, &mut motion)?;
+    let gap = case.gap_by(which, &mut motion, &Sampling::default())?;
     count(case, control, gap.certain_from.is_some());
     Ok(())
 }
@@ -136,11 +134,4 @@ fn count(case: &mut Case, control: usize, differs: bool) {
 /// The motion of another system from the same start.
 fn run(case: &Case, system: &System, equations: Equations, constants: &[f64]) -> Result<Motion, SolveError> {
     case.solve(system, &case.scene.start, case.end(), equations, constants)
-}
-
-/// Values of the symbols of a system at the start of the scene.
-fn values(system: &System, case: &Case) -> HashMap<Symbol, f64> {
-    let mut values = system.values_at(&case.scene.start);
-    values.extend(system.parameter_values());
-    values
 }

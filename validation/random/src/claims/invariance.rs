@@ -1,5 +1,7 @@
 //! T4 and T10: what a formulation does not depend on.
 
+use std::collections::HashMap;
+
 use comparison::{Sampling, compare_motions};
 use equations::Outputs;
 use mechanics::{State, System};
@@ -76,12 +78,17 @@ pub(super) fn mixing(system: &System) -> Matrix {
     })
 }
 
+/// Values of the symbols of a system at the start of the scene.
+pub(super) fn values(system: &System, case: &Case) -> HashMap<Symbol, f64> {
+    let mut values = system.values_at(&case.scene.start);
+    values.extend(system.parameter_values());
+    values
+}
+
 /// `g⁻ᵀ μ₀` for constraints mixed by `g`.
 pub(super) fn with_mixing(case: &Case, system: &System, mixing: &Matrix) -> Result<Option<Vec<f64>>, CheckError> {
     let h = system.constraints.len();
-    let mut values = system.values_at(&case.scene.start);
-    values.extend(system.parameter_values());
-    let factor = DMatrix::from_row_slice(h, h, &numbers(&system.graph, mixing.entries(), &values)?);
+    let factor = DMatrix::from_row_slice(h, h, &numbers(&system.graph, mixing.entries(), &values(system, case))?);
     let mu = nalgebra::DVector::from_vec(case.scene.multipliers.clone());
     Ok(factor.transpose().lu().solve(&mu).map(|mu| mu.as_slice().to_vec()))
 }
