@@ -16,11 +16,21 @@ pub(super) fn sentences(comparison: &Comparison) -> Vec<String> {
     sentences
 }
 
+/// Whether the vakonomic motion is proved to be Chetaev's for every `μ₀` with regular equations.
+pub(super) fn proved_same(comparison: &Comparison) -> bool {
+    let membership = comparison.membership().and_then(|found| found.as_ref().ok());
+    membership.is_some_and(|found| is_every(found) && found.answer() == Answer::SomeProved)
+}
+
+/// Whether the set that was found is that of all constants.
+fn is_every(membership: &Membership) -> bool {
+    membership.decision.set.dimension() == membership.decision.constants.len()
+}
+
 /// For which `μ₀` two motions are different, and for which the same, in a few words.
 pub(super) fn in_brief(comparison: &Comparison) -> (String, String) {
     let own = "with the scene's μ₀".to_string();
     let Some(Ok(membership)) = comparison.membership() else { return (own.clone(), own) };
-    let every = membership.decision.set.dimension() == membership.decision.constants.len();
     let (some, proved) = match membership.answer() {
         Answer::NoneProved { .. } => (false, "proved"),
         Answer::None { .. } => (false, "computed, not proved"),
@@ -33,7 +43,7 @@ pub(super) fn in_brief(comparison: &Comparison) -> (String, String) {
     let constants = constants(membership, "μ₀");
     match some {
         false => (format!("for every μ₀ ({proved})"), own),
-        true if every => (own.clone(), format!("for every μ₀ ({proved})")),
+        true if is_every(membership) => (own, format!("for {constants} ({proved})")),
         true => (format!("{own}; the same with {constants} ({proved})"), own),
     }
 }

@@ -29,6 +29,9 @@ pub fn answer(comparison: &Comparison) -> Option<String> {
     let constants = decision::in_brief(comparison);
     Some(match &pair.gap.verdict {
         Verdict::Different => format!("Different: Chetaev and vakonomic, {}. {MINE}", constants.0),
+        Verdict::Undecided { because } if decision::proved_same(comparison) => {
+            format!("Same: Chetaev and vakonomic, {}. Not seen in numbers: {because}.", constants.1)
+        }
         Verdict::Undecided { .. } => format!("Undecided: Chetaev and vakonomic, {}. {MINE}", constants.1),
         Verdict::Same => {
             let other = |p: &&Pair| p.gap.verdict == Verdict::Different && [p.first, p.second].contains(&chetaev);
