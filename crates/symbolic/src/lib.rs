@@ -28,82 +28,52 @@
 //! assert_eq!(values, [3.0, 0.0]);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
+//!
+//! # Map
+//!
+//! | folder | what |
+//! |---|---|
+//! | `store` | the graph: nodes, numbers, functions, canonical form, derivatives |
+//! | `text` | formulas as text, read and written |
+//! | `questions` | is it zero, in which range, of which symbols; what is divided by; where it is steep |
+//! | `programs` | straight-line programs: made, evaluated in any [`Scalar`], written in other languages |
+//! | `series` | Taylor coefficients along a motion |
+//!
+//! `cancel` ends long work, `broken` is the border for panics.
 
-mod abbreviate;
-mod adopt;
-mod apply;
-mod arena;
-mod atoms;
-mod bounded;
 mod broken;
-mod calculus;
 mod cancel;
-mod code;
-mod divisors;
-mod domain;
-mod evaluate;
-mod evaluator;
-mod excerpt;
-mod expand;
-mod factor;
-#[doc(hidden)]
-pub mod faults;
-mod fraction;
-mod function;
-mod graph;
-mod identity;
-mod latex_names;
-mod lexer;
-mod lower;
-mod made_of;
-mod mark;
-mod matrix;
-mod normal_form;
-mod number;
-mod parse;
-mod parse_error;
-mod print;
-mod print_latex;
-mod print_order;
-mod print_plain;
-mod program;
-mod random;
-mod range;
-mod rational_identity;
-mod rotation;
-mod saturate;
-mod scalar;
+mod programs;
+mod questions;
 mod series;
-mod simplify;
-mod steep;
-mod suggest;
-mod sum_factor;
-mod tape;
-mod value;
+mod store;
+mod text;
 
-pub use bounded::Bounded;
 pub use broken::{Broken, caught, work_on, worked_on};
 pub use cancel::{Stopped, be_patient, cancellable, go_on, question};
-pub use code::{Code, Language};
-pub use evaluate::CompileError;
-pub use evaluator::Evaluator;
-pub use excerpt::excerpt;
-pub use fraction::Fraction;
-pub use function::Function;
-pub use graph::Graph;
-pub use identity::Vanishing;
-pub use lexer::names_in;
-pub use mark::{Expr, Symbol};
-pub use matrix::Matrix;
-pub use number::PI;
-pub use parse_error::{ParseError, ParseErrorKind};
-pub use random::{SplitMix, Xorshift};
-pub use range::Range;
-pub use scalar::Scalar;
+pub use programs::bounded::Bounded;
+pub use programs::code::{Code, Language};
+pub use programs::evaluate::CompileError;
+pub use programs::evaluator::Evaluator;
+pub use programs::scalar::Scalar;
+pub use programs::tape::{Recorded, Tape, Workspace};
+pub use questions::identity::Vanishing;
+pub use questions::random::{SplitMix, Xorshift};
+pub use questions::range::Range;
+pub use questions::steep::Steep;
 pub use series::{
     Correct, Dual, LANES, Lanes, Product, SeriesInput, SeriesScalar, SeriesTape, SeriesWorkspace, Store, Task, Weights,
 };
-pub use steep::Steep;
-pub use suggest::{callable, nearest};
-pub use tape::{Recorded, Tape, Workspace};
-pub use value::{Scope, Turn, Value};
+#[doc(hidden)]
+pub use store::faults;
+pub use store::fraction::Fraction;
+pub use store::function::Function;
+pub use store::graph::Graph;
+pub use store::mark::{Expr, Symbol};
+pub use store::matrix::Matrix;
+pub use store::number::PI;
+pub use text::excerpt::excerpt;
+pub use text::lexer::names_in;
+pub use text::parse_error::{ParseError, ParseErrorKind};
+pub use text::suggest::{callable, nearest};
+pub use text::value::{Scope, Turn, Value};

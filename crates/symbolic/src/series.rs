@@ -6,7 +6,7 @@ mod expansion;
 mod lanes;
 mod scalar;
 
-use crate::tape::{Tape, Workspace};
+use crate::programs::tape::{Tape, Workspace};
 pub use dual::Dual;
 use expansion::Expansion;
 pub use lanes::{LANES, Lanes};

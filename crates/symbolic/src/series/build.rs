@@ -12,8 +12,8 @@ use ahead::{STEADY, Stage};
 use motion::Motion;
 
 use super::{Row, SeriesInput, SeriesTape};
-use crate::number::{Number, Rational};
-use crate::program::{Id, Program, Value};
+use crate::programs::program::{Id, Program, Value};
+use crate::store::number::{Number, Rational};
 use rustc_hash::{FxHashMap, FxHashSet};
 
 /// The tape for `outputs`: rates, then residuals of blocks, with the lengths `blocks`. `derivatives`: values

@@ -4,7 +4,7 @@ use rustc_hash::{FxHashMap, FxHashSet};
 
 use super::Builder;
 use super::motion::Motion;
-use crate::program::{Id, Value};
+use crate::programs::program::{Id, Value};
 use crate::series::SeriesInput;
 
 /// When a value is known, from one order to the next.

@@ -2,10 +2,10 @@
 
 use super::ahead::{AHEAD, DERIVED, STEADY, Stage};
 use super::{Builder, Part};
-use crate::number::Number;
-use crate::program::{Id, Value};
+use crate::programs::program::{Id, Value};
+use crate::programs::tape::Tape;
 use crate::series::{Addition, Bilinear, Group, Implicit, Row, SeriesInput, SeriesTape, Slot, Source, State, Term};
-use crate::tape::Tape;
+use crate::store::number::Number;
 use rustc_hash::FxHashMap;
 
 impl Builder<'_> {

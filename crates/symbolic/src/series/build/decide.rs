@@ -1,7 +1,7 @@
 //! Which values get a series of their own.
 
 use super::{Builder, Decision};
-use crate::program::{Id, Value};
+use crate::programs::program::{Id, Value};
 
 impl Builder<'_> {
     /// Decides from the last value to the first, so that all users of a value come before it.

@@ -2,7 +2,7 @@
 
 use super::{Builder, Part, Sum};
 use crate::Function;
-use crate::program::{Id, Value};
+use crate::programs::program::{Id, Value};
 use crate::series::Row;
 
 impl Builder<'_> {

@@ -4,7 +4,7 @@ use rustc_hash::FxHashSet;
 
 use super::{Builder, Integrated};
 use crate::Function;
-use crate::program::{Id, Value};
+use crate::programs::program::{Id, Value};
 use crate::series::SeriesInput;
 
 /// How a value moves, as far as that is seen from it.
