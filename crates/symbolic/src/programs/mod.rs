@@ -1,4 +1,4 @@
-//! Expressions as straight-line programs: evaluated in any [`Scalar`](crate::Scalar), or written in a language.
+//! Expressions as straight-line programs, in any [`Scalar`](crate::Scalar) or in another language.
 
 pub(crate) mod bounded;
 pub(crate) mod code;
