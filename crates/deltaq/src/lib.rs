@@ -44,5 +44,6 @@ pub use {comparison, mechanics, motion, scene, symbolic};
 pub use comparison::{Comparison, Gap, Membership, Verdict, compare, compare_motions, compare_unfitted, membership};
 pub use motion::{
     CHETAEV, Choice, Ending, Ensemble, ErrorEstimate, FORMULATIONS, Metric, Model, Motion, REMOVED_CONSTRAINT,
-    Settings, SolveError, VAKONOMIC, choices, code, connect, derive, error_estimate, setting, solve, solve_choice,
+    Settings, SolveError, VAKONOMIC, choices, code, connect, derive, equations_of, error_estimate, setting, solve,
+    solve_choice,
 };

@@ -4,12 +4,12 @@ use std::collections::{HashMap, HashSet};
 
 use equations::{Derivation, Equations, Formulation, LeftOut, Named, Needs};
 use mechanics::{ConstantsRule, Recombination, Removal, RemovalError, State, System, check_reactions};
-use scene::Scene;
+use scene::{Scene, quoted};
 use symbolic::{Expr, Symbol, question};
 
 use crate::lost_rank::watch_rank;
 use crate::variables::in_variables_of;
-use crate::{FORMS, FORMULATIONS, SolveError};
+use crate::{CHETAEV, FORMS, FORMULATIONS, SolveError};
 
 /// One formulation of the scene, with all choices made.
 #[derive(Clone, Debug)]
@@ -82,6 +82,36 @@ pub fn constants_of(choice: &Choice, scene: &Scene) -> ConstantsRule {
 /// [`SolveError::Derivation`], [`SolveError::Removal`].
 pub fn derive(system: &System, choice: &Choice) -> Result<Equations, SolveError> {
     derive_from(system, None, choice)
+}
+
+/// d'Alembert and Lagrange's equations `d/dt L_v − L_q = f_vᵀ λ`, `f = 0` of a Lagrangian, constraints and
+/// coordinates, without a scene. Velocities are primed, `x'`; time is `t`.
+///
+/// ```
+/// use motion::{EquationStyle, equations_of, equations_text};
+/// let skate = equations_of("(x'^2 + y'^2 + phi'^2)/2", &["y'*cos(phi) - x'*sin(phi)"], &["x", "y", "phi"])?;
+/// assert!(equations_text(&skate, EquationStyle::Plain).contains("phi'' = 0"));
+/// # Ok::<(), motion::SolveError>(())
+/// ```
+///
+/// # Errors
+/// [`SolveError::Scene`] for a name that cannot be a coordinate's, [`SolveError::Formula`] with its place for a
+/// formula that cannot be read; as [`derive()`].
+pub fn equations_of(lagrangian: &str, constraints: &[&str], coordinates: &[&str]) -> Result<Equations, SolveError> {
+    let coordinate = |name: &&str| format!("{} = {{ unit = \"1\", start = 0 }}\n", quoted(name));
+    let velocity = |name: &&str| format!("{} = 0\n", quoted(&format!("{name}'")));
+    let squares: Vec<String> = coordinates.iter().map(|name| format!("{name}'^2")).collect();
+    let text = format!(
+        "title = \"\"\n[coordinates]\n{}[system]\nlagrangian = {}\n[start.velocities]\n{}[run]\nduration = 1\n",
+        coordinates.iter().map(coordinate).collect::<String>(),
+        quoted(&squares.join(" + ")),
+        coordinates.iter().map(velocity).collect::<String>(),
+    );
+    let mut scene = Scene::parse("coordinates", &text).map_err(|fault| SolveError::Scene(Box::new(fault)))?;
+    let system = &mut scene.system;
+    system.lagrangian = system.expression(lagrangian)?;
+    system.constraints = constraints.iter().map(|f| system.expression(f)).collect::<Result<_, _>>()?;
+    derive(&scene.system, &without_removal(CHETAEV, &scene))
 }
 
 /// [`derive()`] for a motion that starts at `start`, where pivots may have to be chosen.

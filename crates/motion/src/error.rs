@@ -6,7 +6,7 @@ use equations::{DerivationError, EvaluationFailure};
 use integrate::{BoundaryError, CallError, DenseError, StopCause};
 use mechanics::{RemovalError, StartError};
 use scene::SceneError;
-use symbolic::{Broken, CompileError};
+use symbolic::{Broken, CompileError, ParseError};
 
 /// A motion that could not be started. How a motion that was started ended is [`crate::Ending`].
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -97,6 +97,9 @@ pub enum SolveError {
     /// Something that is to vary is not in the scene.
     #[error(transparent)]
     Scene(Box<SceneError>),
+    /// A formula cannot be read.
+    #[error(transparent)]
+    Formula(#[from] ParseError),
     /// A number cannot vary in an ensemble or a sweep, or a motion cannot be a member.
     #[error("{reason}")]
     Member { reason: String },

@@ -8,6 +8,7 @@
 //! whether two motions agree.
 //!
 //! - [`FORMULATIONS`]: the table: [`CHETAEV`], [`VAKONOMIC`], …; [`formulation`] reads a name.
+//! - [`equations_of`]: the equations of `L`, `f` and `q`, without a scene.
 //! - [`derive()`], [`solve`]: one motion, with its global error estimate `e(t)`, the difference of two runs.
 //! - [`solve_by_steps`]: one motion by a discrete principle, in equal steps that keep its structure.
 //! - [`prepare`]: the equations compiled and started, for other integrators; [`code()`]: as source text.
@@ -95,8 +96,8 @@ pub use by_name::ByName;
 pub use carried::{Carried, Which};
 pub use charts::ChartChange;
 pub use choice::{
-    Choice, choices, choices_among, constants_of, default_constants, derive, derive_at, forms, removal, removal_names,
-    removals,
+    Choice, choices, choices_among, constants_of, default_constants, derive, derive_at, equations_of, forms, removal,
+    removal_names, removals,
 };
 pub use code::code;
 pub use connect::{Aim, CONNECT_STARTS, ConjugateTime, Connection, Connections, SecondVariation, connect};

@@ -8,6 +8,7 @@ mod doubts;
 mod endings;
 mod ends;
 mod ensembles;
+mod equations_of;
 mod equidistant;
 mod instants;
 mod last_digits;
