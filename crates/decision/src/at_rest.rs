@@ -1,9 +1,8 @@
 //! Starts from which nothing moves, exactly.
 
-use symbolic::{Expr, Symbol};
+use symbolic::{Evaluator, Expr, Symbol};
 
 use crate::exact::{Exact, Jet, Modular};
-use crate::program::Program;
 use crate::start::ExactStart;
 
 impl ExactStart {
@@ -28,14 +27,16 @@ impl ExactStart {
         inputs.push(system.time);
         inputs.extend(system.positions().into_iter().chain(system.velocities()));
         let outputs = [&forces[..], system.constraint_jacobian().entries()].concat();
-        let program = Program::new(g, &inputs, &outputs).ok()?;
+        let program = g.tape(&inputs, &outputs).ok()?;
         let (parameters, time) = self.given::<Modular>();
         let [q, v] = self.written_state(&parameters, time, &[]).ok()?;
         let is_zero = |x: &Jet<Modular>| x.exact().is_some_and(|x| x.is_zero());
         if !v.iter().all(is_zero) {
             return None;
         }
-        let values = program.evaluator::<Jet<Modular>>().run(&[&parameters[..], &[time], &q, &v].concat()).to_vec();
+        let values = Evaluator::<Jet<Modular>>::new(program.clone())
+            .evaluate(&[&parameters[..], &[time], &q, &v].concat())
+            .to_vec();
         if values.iter().any(|x| x.own_flaw().is_some()) {
             return None;
         }

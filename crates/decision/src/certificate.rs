@@ -4,12 +4,13 @@ use std::collections::BTreeSet;
 
 use serde_json::{Map, Value, json};
 
+use symbolic::Evaluator;
+
 use crate::exact::{Echelon, Exact, Jet, Modular, PARTS, TRIED, in_any_field, inverse};
 use crate::family::CostateRate;
 use crate::flow::inputs;
 use crate::order_by_order::order;
 use crate::plain_scene::{PlainScene, named};
-use crate::program::Program;
 use crate::proof::Question;
 use crate::random_start::at_random;
 use crate::series::SeriesStart;
@@ -67,16 +68,16 @@ impl Images {
         let (system, n) = (&start.system, point.positions.len());
         let written = [&[system.lagrangian][..], &system.constraints, &system.forces, &start.written].concat();
         let under_roots: Vec<_> = system.graph.under_roots(&written).into_iter().collect();
-        let program = Program::new(&system.graph, &inputs(system, &[]), &under_roots);
+        let program = system.graph.tape(&inputs(system, &[]), &under_roots);
         let program = program.map_err(|fault| fault.to_string())?;
         let rest = vec![Jet::constant(Modular::ZERO, None); n];
         let numbers = [&point.parameters[..], &[point.time], &point.positions, &point.velocities, &rest].concat();
-        let mut evaluator = program.evaluator::<Jet<Modular>>();
+        let mut evaluator = Evaluator::<Jet<Modular>>::new(program.clone());
         Ok(Images {
             prime: Modular::prime(),
             unity: (2 * PARTS as u64, Modular::root_of_unity(1).value()),
             exponents: Modular::exponents(),
-            roots: roots(evaluator.run(&numbers).iter().filter_map(Jet::exact)),
+            roots: roots(evaluator.evaluate(&numbers).iter().filter_map(Jet::exact)),
         })
     }
 
@@ -205,7 +206,7 @@ impl Question<'_> {
         if slopes.entries().iter().any(|&e| open.iter().any(|i| g.depends_on(e, velocity(i)))) {
             return Err("the constraints are not linear in the velocities that they supply".into());
         }
-        let values = self.family().evaluator::<Jet<Modular>>().run(&curve.inputs).to_vec();
+        let values = self.family().evaluator::<Jet<Modular>>().evaluate(&curve.inputs).to_vec();
         let instant = shape.instant(&values);
         let width = h * (last + 2) + 1;
         let (mut echelon, mut rows, mut minor) = (Echelon::default(), Vec::new(), Vec::new());
@@ -234,7 +235,7 @@ impl Question<'_> {
             ("equations of motion".to_owned(), curve.determinant.value()),
             ("constraints at the start".to_owned(), supplied.value()),
         ];
-        let divisors = order(self.denominators.evaluator::<Jet<Modular>>().run(&curve.inputs), 0);
+        let divisors = order(Evaluator::<Jet<Modular>>::new(self.denominators.clone()).evaluate(&curve.inputs), 0);
         divided_by.extend(self.divisors.iter().cloned().zip(divisors.iter().map(|x| x.value())));
         let coordinates = curve.inputs.len() - 3 * n;
         let jet = |i: usize| (0..last + 3).map(|k| curve.inputs[coordinates + i].coefficient(k).value()).collect();

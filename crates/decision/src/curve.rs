@@ -1,14 +1,15 @@
 //! Curves `q(t)`: given by the caller, or integrated from the equations of a formulation.
 
+use std::sync::Arc;
+
 use equations::{Equations, Role};
 use integrate::{EvaluationError, Gauge};
 use mechanics::{State, System};
-use symbolic::{Bounded, Expr, Scalar};
+use symbolic::{Bounded, Evaluator, Expr, Scalar, Tape};
 
 use crate::DecisionError;
 use crate::exact::solve;
 use crate::flow::{flow, timeless};
-use crate::program::{Evaluator, Program};
 use crate::scales;
 
 /// A point of a curve: positions, velocities and accelerations, each of length n.
@@ -105,14 +106,14 @@ pub struct Dynamics {
     /// Whether time stands in nothing of this.
     pub(crate) timeless: bool,
     /// `J` (N×N), then `R` at `z = 0`; from parameters, `t, y`.
-    pub(crate) instant: Program,
+    pub(crate) instant: Arc<Tape>,
     /// Rates of `y`, then `q`, `v`, `a`; from parameters, `t, y, z`.
-    pub(crate) rates: Program,
+    pub(crate) rates: Arc<Tape>,
     /// Arguments of steep functions from parameters, `t, y`, and their gauges.
-    steep: Program,
+    steep: Arc<Tape>,
     gauges: Vec<Gauge>,
     /// `y(t₀)` from parameters, `t, q, v` and the free constants.
-    pub(crate) start: Program,
+    pub(crate) start: Arc<Tape>,
 }
 
 impl Dynamics {
@@ -153,9 +154,9 @@ impl Dynamics {
         let at_zero = unknowns.iter().map(|&z| (z, g.zero())).collect();
         let mut instant = matrix.entries().to_vec();
         instant.extend(g.substitute_all(&residuals, &at_zero));
-        let instant = Program::new(g, &inputs, &instant)?;
+        let instant = g.tape(&inputs, &instant)?;
         let arguments: Vec<Expr> = steep.iter().map(|steep| steep.argument).collect();
-        let arguments = Program::new(g, &inputs, &arguments)?;
+        let arguments = g.tape(&inputs, &arguments)?;
         inputs.extend(&unknowns);
         let mut rates: Vec<Expr> = equations.states.iter().map(|y| y.rate).collect();
         rates.extend(&equations.coordinates);
@@ -177,8 +178,8 @@ impl Dynamics {
             instant,
             steep: arguments,
             gauges: steep.iter().map(|steep| steep.gauge).collect(),
-            rates: Program::new(g, &inputs, &rates)?,
-            start: Program::new(g, &at_start, &starts)?,
+            rates: g.tape(&inputs, &rates)?,
+            start: g.tape(&at_start, &starts)?,
         })
     }
 }
@@ -186,7 +187,7 @@ impl Dynamics {
 impl Dynamics {
     /// Steps of one evaluation.
     pub(crate) fn steps(&self) -> usize {
-        self.instant.steps() + self.rates.steps()
+        self.instant.len() + self.rates.len()
     }
 }
 
@@ -208,15 +209,15 @@ impl Flow {
     pub(crate) fn of(programs: Dynamics, system: &System, start: &State, constants: &[f64], end: f64) -> Self {
         let parameters: Vec<f64> = system.parameters.iter().map(|p| p.value).collect();
         let at_start = [&parameters[..], &[start.t], &start.q, &start.v, constants].concat();
-        let start_states = programs.start.evaluator().run(&at_start).to_vec();
+        let start_states = Evaluator::new(programs.start.clone()).evaluate(&at_start).to_vec();
         let inputs: Vec<Bounded> =
             parameters.iter().chain([&start.t]).chain(&start_states).map(|&x| Bounded::from_f64(x)).collect();
-        let matrix = programs.instant.evaluator::<Bounded>().run(&inputs).to_vec();
+        let matrix = Evaluator::<Bounded>::new(programs.instant.clone()).evaluate(&inputs).to_vec();
         Flow {
             units: scales::balanced(programs.unknowns, &matrix),
-            instant: programs.instant.evaluator(),
-            rates: programs.rates.evaluator(),
-            steep: programs.steep.evaluator(),
+            instant: Evaluator::new(programs.instant.clone()),
+            rates: Evaluator::new(programs.rates.clone()),
+            steep: Evaluator::new(programs.steep.clone()),
             programs,
             inputs: parameters,
             start: start_states,
@@ -247,7 +248,7 @@ impl Curve for Flow {
         let parameters = self.inputs.len();
         self.inputs.push(t);
         self.inputs.extend(states);
-        arguments.copy_from_slice(self.steep.run(&self.inputs));
+        arguments.copy_from_slice(self.steep.evaluate(&self.inputs));
         self.inputs.truncate(parameters);
     }
 
@@ -256,7 +257,8 @@ impl Curve for Flow {
         self.inputs.push(t);
         self.inputs.extend(states);
         let size = self.programs.unknowns;
-        let (matrix, rest) = self.instant.run(&self.inputs).split_at_mut(size * size);
+        self.instant.evaluate(&self.inputs);
+        let (matrix, rest) = self.instant.values_mut().split_at_mut(size * size);
         let [factors, sizes] = &self.units;
         for (i, factor) in factors.iter().enumerate() {
             matrix[i * size..(i + 1) * size].iter_mut().zip(sizes).for_each(|(x, size)| *x *= factor * size);
@@ -265,7 +267,7 @@ impl Curve for Flow {
         let solved = solve(matrix, rest, size, 1, 1.0);
         let point = solved.map(|_| {
             self.inputs.extend(rest.iter().zip(sizes).map(|(z, size)| -z * size));
-            let (of_states, point) = self.rates.run(&self.inputs).split_at(states.len());
+            let (of_states, point) = self.rates.evaluate(&self.inputs).split_at(states.len());
             rates.copy_from_slice(of_states);
             let part = |i: usize| point[i * self.programs.coordinates..(i + 1) * self.programs.coordinates].to_vec();
             Point { q: part(0), v: part(1), a: part(2) }

@@ -1,15 +1,15 @@
 //! One formulation's motions for all free constants, as a condition on these constants along a curve.
 
 use std::collections::HashMap;
+use std::sync::Arc;
 
 use equations::{Equations, Role};
 use mechanics::System;
-use symbolic::{Expr, Graph, Scalar, Symbol};
+use symbolic::{Evaluator, Expr, Graph, Scalar, Symbol, Tape};
 
 use crate::DecisionError;
 use crate::flow::{flow, inputs, timeless};
 use crate::lift::Lift;
-use crate::program::{Evaluator, Program};
 
 /// A formulation's equations as conditions affine in its costates `η` (multipliers `μ`, memory costates `P`).
 ///
@@ -26,8 +26,8 @@ pub struct Family {
     names: Vec<String>,
     parameters: Vec<f64>,
     pub(crate) equations: Equations,
-    pub(crate) program: Program,
-    start: Program,
+    pub(crate) program: Arc<Tape>,
+    start: Arc<Tape>,
     pub(crate) lift: Option<Lift>,
 }
 
@@ -168,7 +168,7 @@ impl Family {
             names: constants.iter().map(|&s| g.name(s)).collect(),
             parameters: system.parameters.iter().map(|p| p.value).collect(),
             equations: equations.clone(),
-            program: Program::new(g, &inputs, &outputs)?,
+            program: g.tape(&inputs, &outputs)?,
             start,
             lift,
         })
@@ -196,12 +196,12 @@ impl Family {
     }
 
     pub(crate) fn evaluator<T: Scalar>(&self) -> Evaluator<T> {
-        self.program.evaluator()
+        Evaluator::new(self.program.clone())
     }
 
     /// `η(t₀)` as k rows of one coefficient for each constant and the rest.
     pub(crate) fn start<T: Scalar>(&self, inputs: &[T]) -> Vec<T> {
-        self.start.evaluator().run(inputs).to_vec()
+        Evaluator::new(self.start.clone()).evaluate(inputs).to_vec()
     }
 }
 
@@ -232,7 +232,7 @@ fn system_matrices(g: &Graph, system: &System) -> Vec<Expr> {
     entries
 }
 
-type Started = Result<Program, symbolic::CompileError>;
+type Started = Result<Arc<Tape>, symbolic::CompileError>;
 
 /// `∂η(t₀)/∂c` and `η(t₀)` at `c = 0`, row by row.
 fn start_program(g: &Graph, starts: &[Expr], constants: &[Symbol], inputs: &[Symbol]) -> Result<Started, String> {
@@ -246,5 +246,5 @@ fn start_program(g: &Graph, starts: &[Expr], constants: &[Symbol], inputs: &[Sym
         outputs.extend(slopes.row(i));
         outputs.push(g.substitute(start, &zeros));
     }
-    Ok(Program::new(g, inputs, &outputs))
+    Ok(g.tape(inputs, &outputs))
 }

@@ -139,7 +139,7 @@ impl Question<'_> {
         let (family, shape) = (self.family(), &self.family().shape);
         let mut evaluator = family.evaluator::<f64>();
         let first = inputs.len() - shape.coordinates;
-        let values = evaluator.run(inputs).to_vec();
+        let values = evaluator.evaluate(inputs).to_vec();
         let instant = shape.instant(&values);
         let (n, k, count) = (shape.coordinates, shape.costates, shape.accelerations.len());
         let to_acceleration = DMatrix::from_row_slice(n, count, instant.to_acceleration);
@@ -155,7 +155,7 @@ impl Question<'_> {
             z[place] = unknowns[column];
             let mut moved = inputs.to_vec();
             moved[first..].iter_mut().zip(to_acceleration.column(column).iter()).for_each(|(a, da)| *a += da);
-            let values = evaluator.run(&moved);
+            let values = evaluator.evaluate(&moved);
             let change = shape.instant(values).by_costate.iter().zip(instant.by_costate).map(|(x, y)| x - y);
             for (i, change) in change.enumerate() {
                 bent[(i / k, place)] += change * costates[i % k];

@@ -1,11 +1,12 @@
 //! Random points that satisfy constraints on positions: on the leaf of a start.
 
+use std::sync::Arc;
+
 use mechanics::System;
-use symbolic::{Expr, Symbol};
+use symbolic::{Evaluator, Expr, Symbol, Tape};
 
 use crate::DecisionError;
 use crate::exact::{Coefficient, Exact, Jet, Modular};
-use crate::program::Program;
 
 /// Where roots have branches, these integers count steps of 1/`PART` of each number of the start, away from
 /// it.
@@ -22,7 +23,7 @@ pub(crate) struct Unsolved;
 #[derive(Clone)]
 pub(crate) struct Leaf {
     /// `g`, then `∂g/∂q` row by row; from parameters, time and positions.
-    program: Program,
+    program: Arc<Tape>,
     coordinates: usize,
     /// In the order in which they are solved, each for some of its coordinates; `None` where each coordinate
     /// stands in several.
@@ -68,7 +69,7 @@ impl Leaf {
         }
         order.reverse();
         let order = left.is_empty().then_some(order);
-        Ok(Leaf { program: Program::new(g, &inputs, &outputs)?, coordinates: q.len(), order })
+        Ok(Leaf { program: g.tape(&inputs, &outputs)?, coordinates: q.len(), order })
     }
 
     /// How many constraints there are.
@@ -92,8 +93,8 @@ impl Leaf {
         rootless: &mut [bool],
     ) -> Result<Option<Placed>, Unsolved> {
         let order = self.order.as_ref().ok_or(Unsolved)?;
-        let mut program = self.program.evaluator::<Short>();
-        let mut run = |q: &[Short]| program.run(&[parameters, &[time], q].concat()).to_vec();
+        let mut program = Evaluator::<Short>::new(self.program.clone());
+        let mut run = |q: &[Short]| program.evaluate(&[parameters, &[time], q].concat()).to_vec();
         let (at_start, mut free) = (run(start), Vec::new());
         for Given { constraint: i, own, is_whole } in order {
             let slope = |values: &[Short], j: usize| values[order.len() + i * self.coordinates + j];

@@ -1,14 +1,15 @@
 //! Lift of a curve `q(t)` to the variables of a removal, where these are not coordinates.
 
+use std::sync::Arc;
+
 use equations::Equations;
 use mechanics::{Removal, RemovalStart, State, System, complete_removal_start};
-use symbolic::{Expr, Scalar, Symbol};
+use symbolic::{Evaluator, Expr, Scalar, Symbol, Tape};
 
 use crate::DecisionError;
 use crate::exact::{Coefficient, Exact, Jet};
 use crate::flow::inputs;
 use crate::order_by_order::{NoSeries, SeriesSolve, order, sound};
-use crate::program::Program;
 
 /// `u`, `w` that are not coordinates, integrated beside the curve; `u̇`, `ü` by `q̇(u̇, u, w, t) = v` and on.
 #[derive(Clone)]
@@ -20,11 +21,11 @@ pub(crate) struct Lift {
     pub(crate) memory: usize,
     pub(crate) coordinates: usize,
     /// `∂q̇/∂u̇` (n×m'), then `q̇ − v` at `u̇ = 0`.
-    pub(crate) velocities: Program,
+    pub(crate) velocities: Arc<Tape>,
     /// `q̈ − a` at `ü = 0`, then the rates of `w` at `ü = 0`.
-    pub(crate) accelerations: Program,
+    pub(crate) accelerations: Arc<Tape>,
     /// Start values of the integrated `u`, `w` as written, in parameters, `t, q, v`; or the first missing.
-    written: Program,
+    written: Arc<Tape>,
     missing: Option<String>,
     system: System,
     removal: Removal,
@@ -75,11 +76,11 @@ impl Lift {
         let mut symbols: Vec<Symbol> = own.iter().map(|u| u.symbol).chain(memory.iter().map(|w| w.symbol)).collect();
         let starts: Vec<Expr> =
             symbols.iter().map(|s| removal.start.get(s).copied().unwrap_or_else(|| g.zero())).collect();
-        let written = Program::new(g, &inputs(system, &[]), &starts)?;
+        let written = g.tape(&inputs(system, &[]), &starts)?;
         let missing = symbols.iter().find(|s| missing(s)).map(|&s| g.name(s));
-        let velocities = Program::new(g, &inputs(system, &symbols), &first)?;
+        let velocities = g.tape(&inputs(system, &symbols), &first)?;
         symbols.extend(&rates);
-        let accelerations = Program::new(g, &inputs(system, &symbols), &then)?;
+        let accelerations = g.tape(&inputs(system, &symbols), &then)?;
         symbols.extend(&seconds);
         Ok(Some(Lift {
             parameters: own.len(),
@@ -111,17 +112,17 @@ impl Lift {
             return Err(NoSeries::Unwritten { name: name.clone() });
         }
         let (n, m) = (self.coordinates, self.parameters);
-        let first = self.written.evaluator::<Jet<C>>().run(curve).to_vec();
+        let first = Evaluator::<Jet<C>>::new(self.written.clone()).evaluate(curve).to_vec();
         sound(&first)?;
         let exact: Vec<_> = first.iter().map(Jet::exact).collect();
         let mut own: Vec<Vec<C>> = first.iter().map(|x| vec![x.coefficient(0)]).collect();
-        let mut velocities = self.velocities.evaluator::<Jet<C>>();
-        let mut accelerations = self.accelerations.evaluator::<Jet<C>>();
+        let mut velocities = Evaluator::<Jet<C>>::new(self.velocities.clone());
+        let mut accelerations = Evaluator::<Jet<C>>::new(self.accelerations.clone());
         let mut solves: Option<(Vec<usize>, SeriesSolve<C>, SeriesSolve<C>)> = None;
         for k in 1..=orders {
             let mut inputs = curve.to_vec();
             inputs.extend(own.iter().zip(&exact).map(|(x, exact)| Jet::series(x, *exact)));
-            let values = velocities.run(&inputs).to_vec();
+            let values = velocities.evaluate(&inputs).to_vec();
             sound(&values)?;
             let (slopes, rest) = values.split_at(n * m);
             if solves.is_none() {
@@ -140,7 +141,7 @@ impl Lift {
                 Jet::series(&solve.solved.iter().map(|z| z[i]).collect::<Vec<C>>(), None)
             };
             inputs.extend((0..m).map(|i| of(speeds, i)));
-            let values = accelerations.run(&inputs);
+            let values = accelerations.evaluate(&inputs);
             sound(values)?;
             seconds.next(&square, &picked(values));
             if k == orders {

@@ -1,5 +1,7 @@
 //! Power series of the unknowns of linear equations, one order after the other.
 
+use symbolic::go_on;
+
 use crate::exact::{Coefficient, Exact, Flaw, Jet, inverse, subtract_product};
 
 /// Why there are no series.
@@ -50,6 +52,7 @@ impl<C: Coefficient> SeriesSolve<C> {
 
     /// The next order of `Z` (size×width), from `R` at that order.
     pub(crate) fn next(&mut self, matrix: &[Jet<C>], rest: &[C]) {
+        go_on();
         let k = self.solved.len();
         let mut right: Vec<C> = rest.iter().map(|&r| -r).collect();
         for j in 1..=k {

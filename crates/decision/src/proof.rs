@@ -1,8 +1,10 @@
 //! The proof over a finite field.
 
+use std::sync::Arc;
+
 use equations::Equations;
 use mechanics::{Domain, State, System};
-use symbolic::question;
+use symbolic::{Tape, question};
 
 use crate::DecisionError;
 use crate::curve::{Dynamics, Flow};
@@ -10,7 +12,6 @@ use crate::exact::{self, Coefficient, Echelon, FIELDS, Jet, Modular, ORDERS};
 use crate::family::Family;
 use crate::flow::inputs;
 use crate::order_by_order::NoSeries;
-use crate::program::Program;
 use crate::random_start::at_random;
 use crate::series::{CurveSeries, MismatchSeries, SeriesStart};
 use crate::start::ExactStart;
@@ -129,7 +130,7 @@ pub struct Question<'a> {
     /// Names of the coordinates.
     pub(crate) names: Vec<String>,
     /// Divisors in `L`, `f` and `Q`.
-    pub(crate) denominators: Program,
+    pub(crate) denominators: Arc<Tape>,
     pub(crate) divisors: Vec<String>,
 }
 
@@ -153,7 +154,7 @@ impl<'a> Question<'a> {
             curve: curve.clone(),
             constants: constants.to_vec(),
             names: system.coordinates.iter().map(|c| c.name.clone()).collect(),
-            denominators: Program::new(g, &inputs(system, &[]), &divisors)?,
+            denominators: g.tape(&inputs(system, &[]), &divisors)?,
             divisors: divisors.iter().map(|&e| g.plain(e)).collect(),
         })
     }
@@ -169,7 +170,7 @@ impl<'a> Question<'a> {
 
     /// Orders that are looked at: `2h + 7`, and as many more as take no second.
     pub(crate) fn orders(&self) -> usize {
-        let work = |orders: usize| (self.dynamics.steps() + self.family.program.steps()) * orders.pow(3);
+        let work = |orders: usize| (self.dynamics.steps() + self.family.program.len()) * orders.pow(3);
         let usual = (2 * self.family.shape.constants + 7).min(MOST);
         (usual..=MOST).rev().find(|&orders| work(orders) <= WORK).unwrap_or(usual)
     }

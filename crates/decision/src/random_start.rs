@@ -1,5 +1,7 @@
 //! Starts drawn at random on the constraint, for what holds at almost every start.
 
+use symbolic::Evaluator;
+
 use crate::exact::{Coefficient, Exact, Flaw, Jet, Modular};
 use crate::leaf::{PART, Short};
 use crate::series::SeriesStart;
@@ -130,9 +132,9 @@ impl ExactStart {
     /// `v` on quadratic constraints, each for a velocity that the fewest contain.
     fn with_roots(&self, parameters: &[Short], time: Short, q: &[Short], v: &[Short]) -> Result<Solved, NoExactStart> {
         let (h, n) = (self.system.constraints.len(), v.len());
-        let mut program = self.constraints.evaluator::<Short>();
+        let mut program = Evaluator::<Short>::new(self.constraints.clone());
         let inputs = |v: &[Short]| [parameters, &[time], q, v].concat();
-        let values = program.run(&inputs(v)).to_vec();
+        let values = program.evaluate(&inputs(v)).to_vec();
         let contains = |i: usize, j: usize| !values[h + i * n + j].coefficient(0).is_zero();
         let mut v = v.to_vec();
         let mut open: Vec<usize> = (0..n).collect();
@@ -148,7 +150,7 @@ impl ExactStart {
             // v_j + s: coefficients are those of the constraint as a polynomial in s
             let (zero, one) = (Modular::ZERO, Modular::one());
             v[j] = Short::series(&[before, one, zero, zero, zero], None);
-            let f = program.run(&inputs(&v))[i];
+            let f = program.evaluate(&inputs(&v))[i];
             let [c, b, a, third, fourth] = std::array::from_fn(|k| f.coefficient(k));
             if f.flaw().is_some() || !third.is_zero() || !fourth.is_zero() {
                 return Err(NoExactStart::Nonlinear);

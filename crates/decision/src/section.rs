@@ -1,16 +1,16 @@
 //! Constants as functions of the start: `c = φ(q, v, t)`, an identity on all of `f = 0`.
 
 use std::collections::HashMap;
+use std::sync::Arc;
 
 use mechanics::{State, System};
-use symbolic::{Expr, Symbol};
+use symbolic::{Evaluator, Expr, Symbol, Tape};
 
 use crate::DecisionError;
 use crate::exact::{Echelon, Exact, FIELDS, Jet, Modular, in_field};
 use crate::family::{CostateRate, Family};
 use crate::flow::inputs;
 use crate::identity::is_identity;
-use crate::program::Program;
 use crate::proof::Question;
 use crate::random_start::at_random;
 use crate::start::ExactStart;
@@ -41,7 +41,7 @@ pub struct Section {
 struct Ansatz<'a> {
     question: &'a Question<'a>,
     family: &'a Family,
-    program: Program,
+    program: Arc<Tape>,
     functions: Vec<Expr>,
 }
 
@@ -67,7 +67,7 @@ impl Question<'_> {
         let mut functions = g.gradient(system.lagrangian, &system.velocities());
         functions.push(g.one());
         functions.extend(g.variables(&system.velocities()));
-        let program = Program::new(g, &inputs(system, &[]), &functions)?;
+        let program = g.tape(&inputs(system, &[]), &functions)?;
         let ansatz = Ansatz { question: self, family, program, functions };
         let Some(coefficients) = ansatz.solve(start) else { return Ok(None) };
         let (k, count) = (family.shape.constants, ansatz.functions.len());
@@ -158,8 +158,8 @@ impl Ansatz<'_> {
             self.question.series(&point, 2).map_err(|fault| fault.to_string())
         })
         .ok()?;
-        let functions = self.program.evaluator::<Jet<Modular>>().run(&curve.inputs).to_vec();
-        let values = self.family.evaluator::<Jet<Modular>>().run(&curve.inputs).to_vec();
+        let functions = Evaluator::<Jet<Modular>>::new(self.program.clone()).evaluate(&curve.inputs).to_vec();
+        let values = self.family.evaluator::<Jet<Modular>>().evaluate(&curve.inputs).to_vec();
         if functions.iter().chain(&values).any(|x| x.flaw().is_some()) {
             return None;
         }

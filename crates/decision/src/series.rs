@@ -1,6 +1,6 @@
 //! Curves and mismatches as power series in the time since the start.
 
-use symbolic::Scalar;
+use symbolic::{Evaluator, Scalar};
 
 use crate::curve::Dynamics;
 use crate::exact::{Coefficient, Exact, Flaw, Jet, ORDERS, subtract_product};
@@ -63,13 +63,14 @@ impl Dynamics {
         let at_start =
             [&start.parameters[..], std::slice::from_ref(&start.time), &start.positions, &start.velocities, constants]
                 .concat();
-        let first = self.start.evaluator::<Jet<C>>().run(&at_start).to_vec();
+        let first = Evaluator::<Jet<C>>::new(self.start.clone()).evaluate(&at_start).to_vec();
         let exact: Vec<Option<Exact>> = first.iter().map(Jet::exact).collect();
         if let Some(flaw) = first.iter().find_map(Jet::own_flaw) {
             return Err(flaw.into());
         }
         let mut states: Vec<Vec<C>> = first.iter().map(|y| vec![y.coefficient(0)]).collect();
-        let (mut instant, mut rates) = (self.instant.evaluator::<Jet<C>>(), self.rates.evaluator::<Jet<C>>());
+        let (mut instant, mut rates) =
+            (Evaluator::<Jet<C>>::new(self.instant.clone()), Evaluator::<Jet<C>>::new(self.rates.clone()));
         let mut solve: Option<SeriesSolve<C>> = None;
         let size = self.unknowns;
         loop {
@@ -77,7 +78,7 @@ impl Dynamics {
             let mut inputs = start.parameters.clone();
             inputs.push(time(&start.time, k)?);
             inputs.extend(states.iter().zip(&exact).map(|(y, exact)| Jet::series(y, *exact)));
-            let values = instant.run(&inputs);
+            let values = instant.evaluate(&inputs);
             sound(values)?;
             let (matrix, rest) = values.split_at(size * size);
             if solve.is_none() {
@@ -89,7 +90,7 @@ impl Dynamics {
                 let z: Vec<C> = solve.solved.iter().map(|z| z[i]).collect();
                 Jet::series(&z, None)
             }));
-            let values = rates.run(&inputs);
+            let values = rates.evaluate(&inputs);
             let (rates, point) = values.split_at(self.states);
             if k < orders {
                 sound(rates)?;
@@ -149,7 +150,7 @@ impl Family {
             at_rest &= lifted[..lift.parameters + lift.memory].iter().all(|x| x.coefficient(1).weight() == 0.0);
             inputs.extend(lifted);
         }
-        let values = self.evaluator::<Jet<C>>().run(&inputs).to_vec();
+        let values = self.evaluator::<Jet<C>>().evaluate(&inputs).to_vec();
         sound(&values)?;
         let instant = shape.instant(&values);
         let (size, k, width) = (shape.unknowns, shape.costates, shape.constants + 1);

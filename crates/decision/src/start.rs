@@ -2,14 +2,14 @@
 
 use std::cell::OnceCell;
 use std::collections::HashMap;
+use std::sync::Arc;
 
 use mechanics::{Completion, Domain, Integrability, Removal, State, System, integrability};
-use symbolic::{Expr, Graph, Scalar, Symbol};
+use symbolic::{Evaluator, Expr, Graph, Scalar, Symbol, Tape};
 
 use crate::DecisionError;
 use crate::exact::{Coefficient, Exact, Flaw, Jet, Modular, inverse, subtract_product};
 use crate::leaf::Leaf;
-use crate::program::Program;
 use crate::series::SeriesStart;
 
 /// Why a start has no exact numbers.
@@ -60,7 +60,7 @@ pub struct ExactStart {
     pub(crate) spare: Vec<usize>,
     /// `∂f/∂v` at the start, row by row.
     pub(crate) slopes: Vec<f64>,
-    pub(crate) constraints: Program,
+    pub(crate) constraints: Arc<Tape>,
     pub(crate) leaf: Leaf,
     /// Where random starts are: on the branch of this one they are near it.
     pub(crate) domain: Domain,
@@ -121,7 +121,7 @@ impl ExactStart {
         inputs.extend(&v);
         let mut outputs = system.constraints.clone();
         outputs.extend(g.jacobian(&system.constraints, &v).entries());
-        let constraints = Program::new(g, &inputs, &outputs)?;
+        let constraints = g.tape(&inputs, &outputs)?;
         let slopes = slopes(system, state, &constraints);
         let spare = independent_columns(&slopes, system.dimension());
         let (leaf, domain) = (Leaf::new(system)?, Domain::of(system));
@@ -282,10 +282,10 @@ impl ExactStart {
         Jet<C, N>: Scalar,
     {
         let (h, n) = (self.system.constraints.len(), v.len());
-        let mut program = self.constraints.evaluator::<Jet<C, N>>();
+        let mut program = Evaluator::<Jet<C, N>>::new(self.constraints.clone());
         let mut run = |v: &[Jet<C, N>]| -> Result<Vec<C>, NoExactStart> {
             let inputs = [parameters, &[time], q, v].concat();
-            let values = program.run(&inputs);
+            let values = program.evaluate(&inputs);
             match values.iter().find_map(Jet::flaw) {
                 Some(flaw) => Err(flaw.into()),
                 None => Ok(values.iter().map(|x| x.coefficient(0)).collect()),
@@ -311,7 +311,7 @@ impl ExactStart {
 /// Expressions as they are written, and the decimals among them that a graph has no room for.
 #[derive(Clone)]
 struct Written {
-    program: Program,
+    program: Arc<Tape>,
     decimals: Vec<Option<f64>>,
 }
 
@@ -322,15 +322,15 @@ impl Written {
         let decimal = |&e: &Expr| g.as_number(e).filter(|&x| is_decimal(e, x));
         let decimals: Vec<Option<f64>> = values.iter().map(decimal).collect();
         let rest = values.iter().zip(&decimals).map(|(&e, x)| if x.is_some() { g.zero() } else { e });
-        Ok(Written { program: Program::new(g, inputs, &rest.collect::<Vec<_>>())?, decimals })
+        Ok(Written { program: g.tape(inputs, &rest.collect::<Vec<_>>())?, decimals })
     }
 
     fn run<C: Coefficient>(&self, inputs: &[Jet<C>]) -> Vec<Jet<C>>
     where
         Jet<C>: Scalar,
     {
-        let mut evaluator = self.program.evaluator::<Jet<C>>();
-        let values = evaluator.run(inputs).iter().zip(&self.decimals);
+        let mut evaluator = Evaluator::<Jet<C>>::new(self.program.clone());
+        let values = evaluator.evaluate(inputs).iter().zip(&self.decimals);
         values.map(|(value, decimal)| decimal.map_or(*value, Jet::of)).collect()
     }
 }
@@ -355,10 +355,10 @@ fn by_removal(system: &System, removal: Option<&Removal>, rates: &[(Symbol, Expr
 }
 
 /// `∂f/∂v` at `state`, row by row.
-fn slopes(system: &System, state: &State, constraints: &Program) -> Vec<f64> {
+fn slopes(system: &System, state: &State, constraints: &Arc<Tape>) -> Vec<f64> {
     let parameters: Vec<f64> = system.parameters.iter().map(|p| p.value).collect();
     let inputs = [&parameters[..], &[state.t], &state.q, &state.v].concat();
-    constraints.evaluator::<f64>().run(&inputs)[system.constraints.len()..].to_vec()
+    Evaluator::<f64>::new(constraints.clone()).evaluate(&inputs)[system.constraints.len()..].to_vec()
 }
 
 /// As many velocities as constraints, the best to solve these for; none if they are dependent.

@@ -5,14 +5,13 @@ use integrate::{
 };
 use mechanics::{SingularValues, State};
 use nalgebra::{DMatrix, DVector};
-use symbolic::{Bounded, Scalar};
+use symbolic::{Bounded, Evaluator, Scalar};
 
 use crate::DecisionError;
 use crate::curve::{Curve, Point};
 use crate::exact::{solve, subtract_product};
 use crate::family::{CostateRate, Family};
 use crate::lift::Lift;
-use crate::program::Evaluator;
 use crate::scales::{self, Scales};
 
 /// `AᵀA` in the unit of `M` is added to it with the first of these weights that makes it positive.
@@ -73,8 +72,8 @@ impl<'a> Transport<'a> {
     pub(crate) fn new(family: &'a Family, curve: &'a mut dyn Curve) -> Self {
         let lift = family.lift.as_ref().map(|lift| LiftNumbers {
             lift,
-            velocities: lift.velocities.evaluator(),
-            accelerations: lift.accelerations.evaluator(),
+            velocities: Evaluator::new(lift.velocities.clone()),
+            accelerations: Evaluator::new(lift.accelerations.clone()),
         });
         Transport {
             own: curve.states().len(),
@@ -126,7 +125,7 @@ impl<'a> Transport<'a> {
     fn scales_at_start(&mut self, costates: &[f64]) -> Scales {
         let shape = &self.family.shape;
         let bounded: Vec<Bounded> = self.inputs.iter().map(|&x| Bounded::from_f64(x)).collect();
-        let bounded = self.bounded.run(&bounded);
+        let bounded = self.bounded.evaluate(&bounded);
         // what round-off leaves of a zero says no size
         let values: Vec<f64> = bounded.iter().map(|x| if x.may_be_zero() { 0.0 } else { x.value }).collect();
         let terms: Vec<f64> = bounded.iter().map(|x| x.magnitude).collect();
@@ -161,13 +160,13 @@ impl<'a> Transport<'a> {
         let Lift { parameters, memory, coordinates, .. } = *numbers.lift;
         let end = self.own + parameters + memory;
         self.inputs.extend(&y[self.own..end]);
-        let values = numbers.velocities.run(&self.inputs);
+        let values = numbers.velocities.evaluate(&self.inputs);
         let slopes = DMatrix::from_row_slice(coordinates, parameters, &values[..coordinates * parameters]);
         let rest = DVector::from_column_slice(&values[coordinates * parameters..]);
         let slopes = SingularValues::of(&slopes);
         let speeds = -slopes.solve(&rest, SINGULAR * slopes.values.max());
         self.inputs.extend(speeds.iter());
-        let values = numbers.accelerations.run(&self.inputs);
+        let values = numbers.accelerations.evaluate(&self.inputs);
         let seconds =
             -slopes.solve(&DVector::from_column_slice(&values[..coordinates]), SINGULAR * slopes.values.max());
         rates[self.own..self.own + parameters].copy_from_slice(speeds.as_slice());
@@ -182,7 +181,7 @@ impl<'a> Transport<'a> {
         let shape = &self.family.shape;
         let (size, k, width) = (shape.unknowns, shape.costates, shape.constants + 1);
         self.values.clear();
-        self.values.extend_from_slice(self.instant.run(&self.inputs));
+        self.values.extend_from_slice(self.instant.evaluate(&self.inputs));
         let instant = shape.instant(&self.values);
         self.matrix.clear();
         self.matrix.extend_from_slice(instant.matrix);
@@ -237,7 +236,7 @@ impl<'a> Transport<'a> {
         for (v, scale) in of_velocities.zip(&self.scales.coordinates) {
             v.magnitude = v.magnitude.max(scale / time);
         }
-        let magnitudes: Vec<f64> = self.bounded.run(&inputs).iter().map(|x| x.magnitude).collect();
+        let magnitudes: Vec<f64> = self.bounded.evaluate(&inputs).iter().map(|x| x.magnitude).collect();
         let instant = shape.instant(&magnitudes);
         let mut right = DMatrix::from_row_slice(size, k, instant.by_costate) * columns.abs();
         right += DMatrix::from_row_slice(size, size, instant.matrix) * solved.abs();

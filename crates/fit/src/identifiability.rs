@@ -14,10 +14,12 @@
 //! time*, J. Symbolic Computation 33 (2002) 735.
 
 use decision::exact::{Coefficient, Dual, Exact, Jet, Modular, ORDERS, agreed, nullspace};
-use decision::{Dynamics, ExactStart, Program};
+use std::sync::Arc;
+
+use decision::{Dynamics, ExactStart};
 use motion::{Choice, costate_names, derive};
 use scene::Scene;
-use symbolic::{SplitMix, Symbol};
+use symbolic::{Evaluator, SplitMix, Symbol, Tape};
 
 use crate::Film;
 use crate::film::expression;
@@ -104,7 +106,7 @@ struct Jets<'a> {
     start: ExactStart,
     dynamics: Dynamics,
     /// The columns, from parameters, `t`, `q`, `v`; film by film.
-    columns: Vec<Program>,
+    columns: Vec<Arc<Tape>>,
     inputs: usize,
     states: usize,
     /// Names of the free constants, in the order of the equations.
@@ -140,7 +142,7 @@ impl<'a> Jets<'a> {
             if !system.graph.kinks(&columns).is_empty() || !system.graph.radicands(&columns).is_empty() {
                 return Err("a column contains a root or has a kink".into());
             }
-            Program::new(&system.graph, &inputs, &columns).map_err(|fault| fault.to_string())
+            system.graph.tape(&inputs, &columns).map_err(|fault| fault.to_string())
         };
         let columns = parts.iter().map(|part| program(&part.film)).collect::<Result<_, _>>()?;
         let (states, inputs) = (equations.states.len(), inputs.len());
@@ -189,7 +191,7 @@ impl<'a> Jets<'a> {
     fn film(
         &self,
         part: &Part,
-        program: &Program,
+        program: &Arc<Tape>,
         numbers: &[Exact],
         j: usize,
         orders: usize,
@@ -215,8 +217,8 @@ impl<'a> Jets<'a> {
         }
         let start = self.start.with(&others).map_err(|fault| fault.to_string())?;
         let curve = self.dynamics.series(&start, &constants, orders).map_err(|fault| fault.to_string())?;
-        let mut evaluator = program.evaluator::<Jet<Dual>>();
-        let seen = evaluator.run(&curve.inputs[..self.inputs]);
+        let mut evaluator = Evaluator::<Jet<Dual>>::new(program.clone());
+        let seen = evaluator.evaluate(&curve.inputs[..self.inputs]);
         if let Some(flaw) = seen.iter().find_map(|column| column.flaw()) {
             return Err(flaw.to_string());
         }

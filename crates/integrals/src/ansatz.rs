@@ -6,11 +6,13 @@
 //! is one, except by accident. What is printed has coefficients that are fractions, and is tried at random
 //! points of another field.
 
+use std::sync::Arc;
+
 use decision::exact::{Echelon, Exact, FIELDS, Jet, Modular, in_field, nullspace};
-use decision::{Dynamics, ExactStart, Program};
+use decision::{Dynamics, ExactStart};
 use equations::{Equations, Role};
 use mechanics::System;
-use symbolic::{Expr, Symbol};
+use symbolic::{Evaluator, Expr, Symbol, Tape};
 
 use crate::Open;
 use crate::functions::{Function, chosen, functions};
@@ -125,7 +127,7 @@ pub(crate) fn multipliers(equations: &Equations) -> Vec<(Symbol, usize)> {
 /// Functions at random points of the motions.
 struct Sample<'a> {
     dynamics: Dynamics,
-    program: Program,
+    program: Arc<Tape>,
     start: &'a ExactStart,
     /// Symbols of multipliers, and their places among the states.
     multipliers: Vec<(Symbol, usize)>,
@@ -139,7 +141,7 @@ type Columns = (Vec<Vec<Modular>>, Vec<Vec<Modular>>);
 impl<'a> Sample<'a> {
     fn new(system: &System, equations: &Equations, start: &'a ExactStart, functions: &[Expr]) -> Result<Self, Open> {
         let dynamics = Dynamics::new(system, equations).map_err(|fault| Open::Other(fault.to_string()))?;
-        let program = Program::new(&system.graph, &[], &[]).map_err(|fault| Open::Other(fault.to_string()))?;
+        let program = system.graph.tape(&[], &[]).map_err(|fault| Open::Other(fault.to_string()))?;
         let constants = equations.constant_symbols().len();
         let mut sample = Sample { dynamics, program, start, multipliers: multipliers(equations), constants, inputs: 0 };
         sample.ask(system, functions)?;
@@ -153,13 +155,13 @@ impl<'a> Sample<'a> {
         inputs.extend(system.positions().into_iter().chain(system.velocities()));
         self.inputs = inputs.len();
         inputs.extend(self.multipliers.iter().map(|(mu, _)| *mu));
-        let program = Program::new(&system.graph, &inputs, functions);
+        let program = system.graph.tape(&inputs, functions);
         self.program = program.map_err(|fault| Open::Other(fault.to_string()))?;
         Ok(())
     }
 
     fn columns(&self, points: usize, seed: u64) -> Result<Columns, Open> {
-        let mut evaluator = self.program.evaluator::<Jet<Modular>>();
+        let mut evaluator = Evaluator::<Jet<Modular>>::new(self.program.clone());
         let (mut values, mut rates): Columns = Default::default();
         let mut draw = draws(seed);
         for point in 0..points as u64 {
@@ -168,7 +170,7 @@ impl<'a> Sample<'a> {
                 let curve = self.dynamics.series(&at, &constants, 3).map_err(|fault| fault.to_string())?;
                 let mut inputs = curve.inputs[..self.inputs].to_vec();
                 inputs.extend(self.multipliers.iter().map(|&(_, i)| curve.states[i]));
-                let along = evaluator.run(&inputs);
+                let along = evaluator.evaluate(&inputs);
                 match along.iter().find_map(Jet::flaw) {
                     Some(flaw) => Err(flaw.to_string()),
                     None => Ok(along.iter().map(|x| [x.coefficient(0), x.coefficient(1)]).collect::<Vec<_>>()),

@@ -1,9 +1,11 @@
 //! A system at a random point: `M`, `N` and `V` as power series there.
 
+use std::sync::Arc;
+
 use decision::exact::{Echelon, Exact, Jet, Modular};
-use decision::{ExactStart, Program, SeriesStart};
+use decision::{ExactStart, SeriesStart};
 use mechanics::System;
-use symbolic::Expr;
+use symbolic::{Evaluator, Expr, Tape};
 
 use crate::Open;
 use crate::ring::{MOST, Rays, Ring, Series, count, minus};
@@ -12,11 +14,11 @@ use crate::ring::{MOST, Rays, Ring, Series, count, minus};
 #[derive(Clone)]
 pub(crate) struct Reversible {
     /// From parameters and `q`: `A` (h×n), `M` (n×n), `V`.
-    program: Program,
+    program: Arc<Tape>,
     pub(crate) coordinates: usize,
     pub(crate) constraints: usize,
     /// `g`, then `∂g/∂q` row by row, of the constraints on positions.
-    leaf: Program,
+    leaf: Arc<Tape>,
     on_positions: usize,
     /// Places of the coordinates that any of these, or a constraint on positions, contains.
     pub(crate) present: Vec<usize>,
@@ -70,10 +72,10 @@ impl Reversible {
         let present = |q: &usize| outputs.iter().chain(&on_positions).any(|&e| g.depends_on(e, positions[*q]));
         let present = (0..positions.len()).filter(present).collect();
         inputs.extend(&positions);
-        let program = Program::new(g, &inputs, &outputs).map_err(|fault| Open::Other(fault.to_string()))?;
+        let program = g.tape(&inputs, &outputs).map_err(|fault| Open::Other(fault.to_string()))?;
         let order = (0..positions.len()).collect();
         let leaf = [&on_positions[..], g.jacobian(&on_positions, &positions).entries()].concat();
-        let leaf = Program::new(g, &inputs, &leaf).map_err(|fault| Open::Other(fault.to_string()))?;
+        let leaf = g.tape(&inputs, &leaf).map_err(|fault| Open::Other(fault.to_string()))?;
         let (coordinates, constraints, on_positions) = (positions.len(), system.constraints.len(), on_positions.len());
         Ok(Reversible { program, coordinates, constraints, leaf, on_positions, present, order })
     }
@@ -168,13 +170,13 @@ impl Reversible {
 
 /// The outputs of a program at `q₀ + chart(z)`.
 fn along(
-    program: &Program,
+    program: &Arc<Tape>,
     point: &SeriesStart<Modular>,
     ring: &Ring,
     rays: &Rays,
     chart: &[Series],
 ) -> Result<Vec<Series>, Open> {
-    let mut evaluator = program.evaluator::<Jet<Modular>>();
+    let mut evaluator = Evaluator::<Jet<Modular>>::new(program.clone());
     let mut values: Vec<Vec<Jet<Modular>>> = Vec::with_capacity(rays.values.len());
     for monomials in &rays.values {
         let mut inputs = point.parameters.clone();
@@ -187,7 +189,7 @@ fn along(
             coefficients[0] = q.coefficient(0);
             inputs.push(Jet::series(&coefficients, q.exact()));
         }
-        let outputs = evaluator.run(&inputs);
+        let outputs = evaluator.evaluate(&inputs);
         if let Some(flaw) = outputs.iter().find_map(Jet::flaw) {
             return Err(Open::Flaw(flaw));
         }

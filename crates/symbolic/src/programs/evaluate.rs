@@ -9,6 +9,7 @@ use crate::store::number::Number;
 use crate::{Evaluator, Expr, Function, Graph, Symbol};
 use rustc_hash::{FxHashMap, FxHashSet};
 use std::collections::HashMap;
+use std::sync::Arc;
 
 /// Why an expression cannot be evaluated.
 ///
@@ -47,6 +48,14 @@ impl Graph {
         constants: &HashMap<Symbol, f64>,
     ) -> Result<Tape, CompileError> {
         self.compile_with(inputs, &[], outputs, constants)
+    }
+
+    /// [`Graph::compile`] without constants, to be shared by evaluators in numbers of several kinds.
+    ///
+    /// # Errors
+    /// As [`Graph::compile`].
+    pub fn tape(&self, inputs: &[Symbol], outputs: &[Expr]) -> Result<Arc<Tape>, CompileError> {
+        Ok(Arc::new(self.compile(inputs, outputs, &HashMap::new())?))
     }
 
     /// [`Graph::compile`] with intermediate quantities: each of `definitions` is computed once, from inputs,

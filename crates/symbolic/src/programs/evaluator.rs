@@ -1,8 +1,10 @@
 //! A tape with the memory for repeated evaluation in one thread.
 
+use std::sync::Arc;
+
 use crate::{Scalar, Tape, Workspace};
 
-/// A [`Tape`] with its registers and its outputs. Clone it for another thread.
+/// A [`Tape`] with its registers and its outputs, in numbers of one kind. Clone it for another thread.
 ///
 /// ```
 /// use std::collections::HashMap;
@@ -16,14 +18,15 @@ use crate::{Scalar, Tape, Workspace};
 /// ```
 #[derive(Clone, Debug)]
 pub struct Evaluator<T> {
-    tape: Tape,
+    tape: Arc<Tape>,
     registers: Workspace<T>,
     values: Vec<T>,
 }
 
 impl<T: Scalar> Evaluator<T> {
     /// Evaluates `tape`; until it is first evaluated the outputs are zero.
-    pub fn new(tape: Tape) -> Self {
+    pub fn new(tape: impl Into<Arc<Tape>>) -> Self {
+        let tape = tape.into();
         Evaluator { registers: tape.workspace(), values: vec![T::from_f64(0.0); tape.outputs()], tape }
     }
 
@@ -47,7 +50,7 @@ impl<T: Scalar> Evaluator<T> {
     }
 
     /// What is evaluated.
-    pub fn tape(&self) -> &Tape {
+    pub fn tape(&self) -> &Arc<Tape> {
         &self.tape
     }
 }
