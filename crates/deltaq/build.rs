@@ -11,7 +11,7 @@ fn main() {
     let mut version = env!("CARGO_PKG_VERSION").to_owned();
     println!("cargo::rerun-if-changed=build.rs");
     // a packaged crate may lie in the repository of somebody else
-    if Path::new("../../crates/catalogue/scenes").is_dir()
+    if Path::new("../../crates/scene/scenes").is_dir()
         && let Some(commit) = git(&["rev-parse", "--short", "HEAD"])
     {
         version += &format!(" ({commit})");

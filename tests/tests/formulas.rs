@@ -143,8 +143,8 @@ fn weaker(before: &Option<Answer>, after: &Option<Answer>) -> bool {
 #[test]
 fn what_is_said_of_the_built_in_scenes_stays_with_their_parameters_as_formulas() {
     let (mut same, mut open) = (0, Vec::new());
-    for (name, _) in catalogue::built_in() {
-        let scene = catalogue::find(name, &[]).expect("a built-in scene");
+    for (name, _) in scene::catalogue::built_in() {
+        let scene = scene::catalogue::find(name, &[]).expect("a built-in scene");
         let said = |scene: &Scene| integrability(scene).map_or_else(|e| e.to_string(), |found| found.to_string());
         let before = (said(&scene), answer(&scene));
         for formula in SAME {
@@ -155,7 +155,7 @@ fn what_is_said_of_the_built_in_scenes_stays_with_their_parameters_as_formulas()
             };
             let numbers = scene.system.parameters.iter().filter(|p| p.formula.is_none());
             let numbers: Vec<(String, Number)> = numbers.map(number).collect();
-            let other = catalogue::find(name, &numbers).unwrap_or_else(|e| panic!("{name}, {formula}: {e}"));
+            let other = scene::catalogue::find(name, &numbers).unwrap_or_else(|e| panic!("{name}, {formula}: {e}"));
             let after = (said(&other), answer(&other));
             if before == after {
                 same += 1;

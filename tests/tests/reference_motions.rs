@@ -9,7 +9,7 @@ use scene::Scene;
 use symbolic::Scalar;
 
 fn scene(name: &str) -> Scene {
-    let path = format!("{}/../crates/catalogue/scenes/{name}.toml", env!("CARGO_MANIFEST_DIR"));
+    let path = format!("{}/../crates/scene/scenes/{name}.toml", env!("CARGO_MANIFEST_DIR"));
     Scene::parse(name, &std::fs::read_to_string(path).unwrap()).unwrap()
 }
 

@@ -236,7 +236,7 @@ fn scales_change_no_motion() {
         .iter()
         .flat_map(|&action| LENGTHS.iter().flat_map(move |&length| TIMES.map(|time| Scale { action, length, time })));
     let units: Vec<Scale> = units.collect();
-    for (name, text) in catalogue::built_in() {
+    for (name, text) in scene::catalogue::built_in() {
         if only.as_ref().is_some_and(|only| only.split(',').all(|o| o != *name)) {
             continue;
         }

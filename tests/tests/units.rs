@@ -114,7 +114,7 @@ fn units_change_no_word() {
     let only = std::env::var("UNITS_OF").ok();
     let mut random = SplitMix::new(4);
     let (mut count, start) = (Count::default(), std::time::Instant::now());
-    for (name, text) in catalogue::built_in() {
+    for (name, text) in scene::catalogue::built_in() {
         if only.as_ref().is_some_and(|only| !only.split(',').any(|o| o == *name)) {
             continue;
         }
@@ -180,7 +180,7 @@ fn a_light_and_short_skate_moves_as_another() {
 
 #[test]
 fn the_unit_of_the_lagrangian_is_no_matter() {
-    for (name, text) in catalogue::SCENES {
+    for (name, text) in scene::catalogue::SCENES {
         let scene = Scene::parse(name, text).expect("a scene");
         if scene.system.constraints.is_empty() {
             continue;
@@ -196,7 +196,7 @@ fn the_unit_of_the_lagrangian_is_no_matter() {
 
 #[test]
 fn constraints_that_outweigh_the_masses_choose_no_pivots() {
-    let scene = catalogue::find("three-cylinders", &[]).expect("a scene");
+    let scene = scene::catalogue::find("three-cylinders", &[]).expect("a scene");
     for units in [[9, 0, -9], [9, 3, -9], [9, 9, -9], [9, 9, 0]] {
         assert_eq!(decided(&in_units(&scene, units)), decided(&scene), "{units:?}");
     }
@@ -205,14 +205,14 @@ fn constraints_that_outweigh_the_masses_choose_no_pivots() {
 #[test]
 fn a_large_disc_and_a_short_hitch() {
     let set =
-        |name: &str, key: &str, value: f64| catalogue::find(name, &[(key.into(), value.into())]).expect("a scene");
+        |name: &str, key: &str, value: f64| scene::catalogue::find(name, &[(key.into(), value.into())]).expect("a scene");
     for (name, key, values, depth) in [("disc", "R", [5e8, 5e-8], 2), ("trailer", "d", [1e-7, 1e7], 4)] {
         for value in values {
             let scene = set(name, key, value);
             let found = comparison::integrability(&scene).expect("linear");
             let as_deep = matches!(found, Integrability::Nonintegrable { depth: found, .. } if found == depth);
             assert!(as_deep, "{name}, {key} = {value}: {found}");
-            let usual = decided(&catalogue::find(name, &[]).expect("a scene"));
+            let usual = decided(&scene::catalogue::find(name, &[]).expect("a scene"));
             let found = decided(&scene);
             // what is proved has the last word
             let same = found == usual || found.0 == "Undecided" || found.2.is_some();

@@ -1,7 +1,7 @@
 //! What is zero at the start and switched on later stays in the equations: by steps, edges and bumps, at a
 //! time or a place on the way, in every form, removal and ensemble. And where it is lost, the motion says so.
 
-use catalogue::built_in;
+use scene::catalogue::built_in;
 use comparison::{Verdict, compare_motions, multipliers_of};
 use equations::Formulation;
 use mechanics::{ConstantsRule, Coordinate, Parameter, fresh_symbol};
@@ -182,7 +182,7 @@ type Made = (String, Box<dyn Fn() -> Option<Scene>>);
 
 fn switched() -> Vec<Made> {
     let mut all: Vec<Made> = Vec::new();
-    for (name, text) in built_in().filter(|scene| !catalogue::PRESCRIBED.contains(scene)) {
+    for (name, text) in built_in().filter(|scene| !scene::catalogue::PRESCRIBED.contains(scene)) {
         let scene = Scene::parse(name, text).unwrap();
         let scene = Scene { duration: scene.duration.min(LONGEST), ..scene };
         for kind in 0..PLACES.len() {

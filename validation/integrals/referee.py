@@ -229,7 +229,7 @@ def asked(program, entry):
     command += ["--degree", "2" if "quadratic" in entry else "1"]
     command += [word for key, x in entry.get("set", {}).items() for word in ("--set", f"{key}={x}")]
     answer = json.loads(subprocess.run(command, check=True, capture_output=True, text=True, timeout=600).stdout)
-    built_in = (ROOT / "crates/catalogue" / folder / f"{scene}.toml" for folder in ("scenes", "classics"))
+    built_in = (ROOT / "crates/scene" / folder / f"{scene}.toml" for folder in ("scenes", "classics"))
     text = tomllib.loads(next(f for f in (file, *built_in) if f.is_file()).read_text())
     return answer, list(text["coordinates"]), text["parameters"] | entry.get("set", {})
 

@@ -16,7 +16,7 @@ import numpy as np
 
 from attitude import angles, axes, rotation
 
-SCENE = Path(__file__).resolve().parents[2] / "crates/catalogue/scenes/turntable.toml"
+SCENE = Path(__file__).resolve().parents[2] / "crates/scene/scenes/turntable.toml"
 COORDINATES = ["x", "y", "psi", "theta", "phi"]
 GRAVITY = 9.81  # m/s², presses the ball onto the table; the scene has none
 SUNK = 0.1  # of the radius: how far the centre may be from its height

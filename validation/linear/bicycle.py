@@ -14,7 +14,7 @@ from mpmath import cos, det, matrix, mp, mpf, polyroots, sin
 
 mp.dps = 50
 HERE = Path(__file__).resolve().parent
-SCENE = HERE.parents[1] / "crates/catalogue/scenes/bicycle.toml"
+SCENE = HERE.parents[1] / "crates/scene/scenes/bicycle.toml"
 # as the paper prints them
 PRINTED = {
     "M": (80.81722, 2.31941332208709, 2.31941332208709, 0.29784188199686),

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import deltaq
 
-SCENES = Path(__file__).parents[2] / "crates/catalogue/scenes"
+SCENES = Path(__file__).parents[2] / "crates/scene/scenes"
 # times at which errors are taken, the start among them
 TIMES = 21
 TRAILERS = (5, 20, 80)

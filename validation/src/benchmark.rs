@@ -4,7 +4,7 @@
 use std::fmt::Write;
 
 use anyhow::{Context, Result, bail};
-use catalogue::find;
+use scene::catalogue::find;
 use equations::Formulation;
 use mechanics::{ConstantsRule, project_velocity};
 use motion::{

@@ -150,7 +150,7 @@ const SYMPY_SCENES: [&str; 4] = ["sledge", "disc", "particle", "appell-hamel"];
 /// # Errors
 /// Where there is no such scene, or a motion of ours cannot be read off.
 pub fn built_in(name: &str, amount: Amount) -> Result<Question> {
-    let (_, text) = catalogue::SCENES.iter().find(|(known, _)| *known == name).context("no such scene")?;
+    let (_, text) = scene::catalogue::SCENES.iter().find(|(known, _)| *known == name).context("no such scene")?;
     let scene = Scene::parse(name, text)?;
     let mut question = Question::new(&scene, text, amount)?;
     if SYMPY_SCENES.contains(&name) {
@@ -199,7 +199,7 @@ pub fn section(names: &[&str]) -> Result<Outcome> {
     }
     let forces = forced();
     let mut tasks: Vec<Task> = names.iter().map(|&name| Task::BuiltIn(name)).collect();
-    if names.len() == catalogue::SCENES.len() {
+    if names.len() == scene::catalogue::SCENES.len() {
         let is_solved = |index: &u64| draw_recipe(SEED, *index, &Kind::ALL).drawn.closeness.is_none();
         tasks.extend(forces.iter().map(|(name, text)| Task::Forced(name, text)));
         tasks.extend((0..).filter(is_solved).take(RANDOM_SYSTEMS).map(Task::Random));

@@ -61,7 +61,7 @@ pub fn files(scenes: &[&str], done: impl Fn(&str) + Sync) -> Result<Vec<File>> {
          motions that decide sooner.\n"
     );
     let _ = write!(text, "{table}");
-    let others = catalogue::built_in().map(|(name, _)| *name).filter(|name| !scenes.contains(name));
+    let others = scene::catalogue::built_in().map(|(name, _)| *name).filter(|name| !scenes.contains(name));
     let others: Vec<&str> = others.collect();
     if !others.is_empty() {
         let _ = writeln!(
@@ -75,7 +75,7 @@ pub fn files(scenes: &[&str], done: impl Fn(&str) + Sync) -> Result<Vec<File>> {
 
 /// None for a scene without one of the two.
 fn told(name: &str) -> Result<Option<Told>> {
-    let scene: Scene = catalogue::find(name, &[])?;
+    let scene: Scene = scene::catalogue::find(name, &[])?;
     let lacks = |wanted: &Formulation| choices_among(&scene, |f| *f == *wanted).is_empty();
     if lacks(CHETAEV) || lacks(VAKONOMIC) {
         return Ok(None);

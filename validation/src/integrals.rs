@@ -106,7 +106,7 @@ fn settled(found: &Found) -> bool {
 fn with_numbers(scene: &str, set: &BTreeMap<String, f64>) -> Result<Scene> {
     let set: Vec<(String, Number)> = set.iter().map(|(name, &x)| (name.clone(), Number::from(x))).collect();
     let file = folder().join(scene).display().to_string();
-    Ok(catalogue::find(if scene.ends_with(".toml") { &file } else { scene }, &set)?)
+    Ok(scene::catalogue::find(if scene.ends_with(".toml") { &file } else { scene }, &set)?)
 }
 
 /// A map over two numbers of a scene: how many integrals are linear, and where there is a measure.
@@ -227,7 +227,7 @@ pub fn files(scenes: &[&str], has: &dyn Fn(&str) -> bool, done: impl Fn(&str) + 
     if has("scenes") {
         let begun = Instant::now();
         let answers = parallel::map(scenes, |&name| -> Result<_> {
-            let scene = catalogue::find(name, &[])?;
+            let scene = scene::catalogue::find(name, &[])?;
             let of = |formulation| asked(&scene, formulation).with_context(|| name.to_owned());
             let both = (of(CHETAEV)?, of(VAKONOMIC)?);
             done(name);

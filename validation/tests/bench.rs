@@ -61,7 +61,7 @@ fn ensembles_are_measured_and_reported_with_what_they_agree_to() {
 /// and writes all.
 #[test]
 fn kept_references_are_those_of_the_equations_and_a_tenth_is_found_again() {
-    let names: Vec<&str> = catalogue::SCENES.iter().map(|(name, _)| *name).collect();
+    let names: Vec<&str> = scene::catalogue::SCENES.iter().map(|(name, _)| *name).collect();
     if std::env::var("REFERENCES").is_ok_and(|asked| asked == "write") {
         let found = KeptReferences::behind(&references(&names, &[], &KeptReferences::default(), true).unwrap());
         let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("..").join(REFERENCES);

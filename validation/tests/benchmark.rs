@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::Path;
 
-use catalogue::find;
+use scene::catalogue::find;
 use validation::benchmark::{FORMULATIONS, STARTS, SYSTEMS, csv, motions};
 
 #[test]

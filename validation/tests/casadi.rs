@@ -73,7 +73,7 @@ fn a_force_that_does_no_virtual_work_is_found() {
 /// `d/dt L_v + L_q = Aᵀ λ` is no equation of motion, and `λ` with the other sign is not ours.
 #[test]
 fn a_wrong_sign_is_found() {
-    let (name, text) = catalogue::SCENES[0];
+    let (name, text) = scene::catalogue::SCENES[0];
     let scene = Scene::parse(name, text).expect("a scene");
     let mut questions = Vec::new();
     for flip in [true, false] {
@@ -97,7 +97,7 @@ fn a_wrong_sign_is_found() {
 
 #[test]
 fn a_wrong_text_is_found() {
-    let (name, text) = catalogue::SCENES[0];
+    let (name, text) = scene::catalogue::SCENES[0];
     let scene = Scene::parse(name, text).expect("a scene");
     let other = text.replace("+ g*x*sin(alpha)", "- g*x*sin(alpha)");
     assert_ne!(text, other);
@@ -120,8 +120,8 @@ fn the_multipliers_are_those_of_power_series() {
     let batch = Batch { seed: 20_261, kinds: Kind::ALL.to_vec() };
     let scene = |(name, text): &(&str, &str)| about_multipliers(&Scene::parse(name, text).expect(name), text);
     let classics = ["coin-on-incline", "generalized-heisenberg", "martinet", "mobile-robot", "nonholonomic-oscillator"];
-    let classics = catalogue::CLASSICS.iter().filter(|(name, _)| classics.contains(name));
-    let mut questions: Vec<Question> = catalogue::SCENES.iter().chain(classics).map(scene).collect();
+    let classics = scene::catalogue::CLASSICS.iter().filter(|(name, _)| classics.contains(name));
+    let mut questions: Vec<Question> = scene::catalogue::SCENES.iter().chain(classics).map(scene).collect();
     // a decision refuses where M is not positive on what constraints allow
     let is_decided = |index: &u64| !draw_recipe(batch.seed, *index, &batch.kinds).drawn.indefinite;
     let drawn: Vec<Scene> = (0..).filter(is_decided).take(50).map(|index| batch.scene(index)).collect();
@@ -144,7 +144,7 @@ fn wrong_multipliers_are_found() {
     // half of the mass, half of the multipliers; and a particle that runs straight ahead has some
     let changes = [("disc", "m = 1.0", "m = 0.5"), ("particle", "\"y'\" = 0.5", "\"y'\" = 0.0")];
     let questions = changes.map(|(name, from, to)| {
-        let (_, text) = catalogue::SCENES.iter().find(|scene| scene.0 == name).expect(name);
+        let (_, text) = scene::catalogue::SCENES.iter().find(|scene| scene.0 == name).expect(name);
         let other = text.replace(from, to);
         assert_ne!(*text, other);
         about_multipliers(&Scene::parse(name, text).expect(name), &other)

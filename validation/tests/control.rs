@@ -9,7 +9,7 @@ use validation::report::overview;
 
 /// Chetaev's motion of `scene` and the control, or `forged` in the place of one of them.
 fn compared(name: &str, forged: fn(&mut Run, &mut Run)) -> Comparison {
-    let scene = catalogue::find(name, &[("duration".into(), 0.5.into())]).expect("built in");
+    let scene = scene::catalogue::find(name, &[("duration".into(), 0.5.into())]).expect("built in");
     let settings = Settings::default();
     let choices = choices(&scene);
     let mut control = review::substitution::run(&scene, &choices, &settings).expect("a removal");
@@ -53,7 +53,7 @@ fn a_wrong_control_that_is_not_flagged_is_a_fault_of_the_program() {
 #[test]
 fn a_right_control_that_is_flagged_is_a_fault_of_the_program() {
     let other = |chetaev: &mut Run, _: &mut Run| {
-        let text = catalogue::SCENES.iter().find(|scene| scene.0 == "disc").expect("built in").1;
+        let text = scene::catalogue::SCENES.iter().find(|scene| scene.0 == "disc").expect("built in").1;
         let text = text.replace("J/2*phi'^2\"", "J/2*phi'^2 + x/10\"");
         let scene = Scene::parse_with("disc", &text, &[("duration".to_owned(), 0.5)]).expect("a scene");
         chetaev.outcome = solve_choice(&scene, &chetaev.choice, &Settings::default());

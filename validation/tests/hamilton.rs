@@ -127,7 +127,7 @@ impl Reduced {
 
 fn reduced(name: &str, set: &[(&str, f64)], over: &[&str]) -> Reduced {
     let set: Vec<_> = set.iter().map(|&(name, x)| (name.into(), scene::Number::from(x))).collect();
-    let scene = catalogue::find(name, &set).expect("a scene");
+    let scene = scene::catalogue::find(name, &set).expect("a scene");
     let place = |name: &&str| scene.system.coordinates.iter().position(|c| c.name == *name).expect("a coordinate");
     let (maggi, free) = (Maggi::new(&scene.system).expect("a referee"), over.iter().map(place).collect());
     Reduced { scene, maggi, free }

@@ -90,7 +90,7 @@ fn with_forces_every_formulation_has_its_motion() {
 fn a_removal_without_costates_is_said_to_be_substitution() {
     let mut count = 0;
     for name in ["disc", "chaplygin-sphere", "veselova", "falling-disc", "sledge", "heisenberg"] {
-        let scene = catalogue::find(name, &[("duration".into(), 0.5.into())]).expect("built in");
+        let scene = scene::catalogue::find(name, &[("duration".into(), 0.5.into())]).expect("built in");
         let mut metric = Metric::new(&scene.system).expect("a metric");
         let mut comparison = compared(scene);
         let why = Headline::of(&comparison).why;

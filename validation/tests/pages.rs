@@ -14,7 +14,7 @@ use validation::report::{AuditReport, BicycleReport, overview, referees_files, s
 
 /// A scene in all formulations, the control among them.
 fn compared(name: &str, duration: f64, settings: &Settings) -> Comparison {
-    let scene = catalogue::find(name, &[("duration".into(), duration.into())]).expect("built in");
+    let scene = scene::catalogue::find(name, &[("duration".into(), duration.into())]).expect("built in");
     let choices = choices(&scene);
     let control = review::substitution::run(&scene, &choices, settings).into_iter().collect();
     compare_unfitted(scene, choices, control, settings).expect("compared")
@@ -345,7 +345,7 @@ fn maggis_equations_agree_with_a_motion_that_is_right_and_with_no_other() {
     assert_eq!(verdict(&mut sledge), "agrees");
     // gravity off by a millionth
     let set = [("duration".into(), duration.into()), ("g".into(), (9.81 * (1.0 + 1e-6)).into())];
-    let other = catalogue::find("sledge", &set).expect("built in");
+    let other = scene::catalogue::find("sledge", &set).expect("built in");
     let chetaev = sledge.run(CHETAEV).expect("a run");
     sledge.runs[chetaev].outcome = solve_choice(&other, &sledge.runs[chetaev].choice, &Settings::default());
     assert_eq!(verdict(&mut sledge), "disagrees");

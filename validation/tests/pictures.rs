@@ -6,7 +6,7 @@ use pages::pictures;
 
 /// The picture of a kind of a built-in scene, if it is drawn.
 fn picture(scene: &str, kind: &str) -> Option<String> {
-    let scene = catalogue::find(scene, &[]).expect("a scene");
+    let scene = scene::catalogue::find(scene, &[]).expect("a scene");
     let (name, choices) = (scene.name.clone(), choices(&scene));
     let mut comparison = compare(scene, choices, Vec::new(), &Settings::default()).expect("compared");
     let files = pictures(&mut comparison).expect("pictures");

@@ -99,7 +99,7 @@ fn one_system_is_shown_and_written() {
     let (shown, _) = random(&["--seed", "3", "--index", "15", "--out", &path], 0);
     assert!(shown.contains("random-3-15: Random system, linear") && shown.contains("T12"), "{shown}");
     let scene = folder.path().join("random-3-15.toml");
-    let scene = catalogue::find(&scene.display().to_string(), &[]).expect("a scene");
+    let scene = scene::catalogue::find(&scene.display().to_string(), &[]).expect("a scene");
     let choices = motion::choices(&scene);
     let compared = comparison::compare_unfitted(scene, choices, Vec::new(), &Settings::protocol()).expect("compared");
     assert!(!compared.pairs.is_empty());

@@ -1,7 +1,7 @@
 //! How cost grows: counts that do not depend on the machine.
 
 use bench::exponent;
-use catalogue::trailer::Coordinates;
+use scene::catalogue::trailer::Coordinates;
 use equations::Formulation;
 use motion::{CHETAEV, REDUCED_CHETAEV, REDUCED_VAKONOMIC};
 use validation::scaling::{FROM, Limits, TRAILERS, counts, line};

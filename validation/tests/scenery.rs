@@ -2,7 +2,7 @@
 
 use picture::Style;
 use scene::Scene;
-use scenery::{Drawn, FINER, STEPS, moving};
+use scene::scenery::{Drawn, FINER, STEPS, moving};
 use symbolic::CompileError;
 
 /// A ball at `x`, a lid that `t` turns, and the ground, from t = 2 on for 3.

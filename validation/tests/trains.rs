@@ -1,6 +1,6 @@
 //! A car with trailers.
 
-use catalogue::trailer::{Coordinates, scene, text};
+use scene::catalogue::trailer::{Coordinates, scene, text};
 use mechanics::State;
 use scene::Scene;
 use symbolic::Expr;

@@ -132,7 +132,7 @@ fn starts(count: usize) -> Vec<State> {
 /// # Errors
 /// Where the scene or a start is at fault, or a member stops before its end.
 pub fn ensemble_throughput(count: usize, tolerance: f64, repeats: usize) -> Result<Vec<Throughput>> {
-    let scene = catalogue::find(ENSEMBLE_SCENE, &[])?;
+    let scene = scene::catalogue::find(ENSEMBLE_SCENE, &[])?;
     let starts = starts(count);
     let wanted = [CHETAEV, VAKONOMIC, REMOVED_CONSTRAINT];
     let all = choices(&scene);

@@ -184,7 +184,7 @@ fn motion(choice: &Choice) -> String {
 /// # Errors
 /// Where the scene cannot be read.
 pub fn prepare(name: &str, overrides: &[(String, Number)], kept: &KeptReferences) -> Result<Prepared> {
-    let scene = catalogue::find(name, overrides)?;
+    let scene = scene::catalogue::find(name, overrides)?;
     let truth = |choice: &Choice| -> Result<Truth> {
         let equations = derive_at(&scene.system, &scene.start, choice)?;
         let ready = motion::prepare(setting(&scene), equations, &choice.constants, &Settings::default())?;
@@ -206,7 +206,7 @@ pub fn prepare(name: &str, overrides: &[(String, Number)], kept: &KeptReferences
 /// Where the scene cannot be read. A formulation that cannot be measured is an [`Entry`] that says why.
 pub fn measure(prepared: Prepared, effort: &Effort, tell: impl Fn(&str)) -> Result<Bench> {
     let clock = Instant::now();
-    let scene = catalogue::find(&prepared.name, &prepared.overrides)?;
+    let scene = scene::catalogue::find(&prepared.name, &prepared.overrides)?;
     let parse = clock.elapsed().as_secs_f64();
     let mut truths = prepared.truths;
     let entries = entries(&scene).into_iter().map(|choice| {

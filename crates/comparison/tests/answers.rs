@@ -89,7 +89,7 @@ fn words_of(answer: &str) -> (&'static str, &'static str, bool) {
 
 #[test]
 fn every_answer_follows_from_what_was_found() {
-    let mut disc = compared("disc", include_str!("../../catalogue/scenes/disc.toml"));
+    let mut disc = compared("disc", include_str!("../../scene/scenes/disc.toml"));
     let mut section: Section = membership(&mut disc).section.clone().expect("an identity");
     let mut reached = std::collections::BTreeSet::new();
     for row in TABLE.lines() {
@@ -131,7 +131,7 @@ fn every_answer_follows_from_what_was_found() {
 
 #[test]
 fn what_is_said_of_a_mismatch_and_of_constants_has_its_numbers() {
-    let mut disc = compared("disc", include_str!("../../catalogue/scenes/disc.toml"));
+    let mut disc = compared("disc", include_str!("../../scene/scenes/disc.toml"));
     let found = membership(&mut disc);
     (found.section, found.proof.this_start) = (None, Finding::ThroughOrder { rank: 1, order: 7 });
     (found.decision.least, found.decision.noise, found.decision.acceleration) = (3e-9, 2e-7, 50.0);

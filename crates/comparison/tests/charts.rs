@@ -93,8 +93,8 @@ fn ensembles_complete_what_single_motions_complete() {
     assert!(passed >= 2 && refused == 0, "{passed} {refused}");
 }
 
-const CARRIAGE: &str = include_str!("../../catalogue/classics/two-wheeled-carriage.toml");
-const RACER: &str = include_str!("../../catalogue/classics/roller-racer.toml");
+const CARRIAGE: &str = include_str!("../../scene/classics/two-wheeled-carriage.toml");
+const RACER: &str = include_str!("../../scene/classics/roller-racer.toml");
 
 /// `P = 0` at the horizon, beyond the end of a chart. The judge is the vakonomic motion that it is, whose
 /// momentum `∂(L + μ·f)/∂ẇ` vanishes there.

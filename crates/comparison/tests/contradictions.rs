@@ -17,12 +17,12 @@ fn sledge() -> Comparison {
 
 /// Integrable: all multipliers do.
 fn bowl() -> Comparison {
-    compared("bowl", include_str!("../../catalogue/scenes/bowl.toml"))
+    compared("bowl", include_str!("../../scene/scenes/bowl.toml"))
 }
 
 /// Some multipliers do, by an identity.
 fn disc() -> Comparison {
-    compared("disc", include_str!("../../catalogue/scenes/disc.toml"))
+    compared("disc", include_str!("../../scene/scenes/disc.toml"))
 }
 
 fn no_constants() -> Finding {
@@ -138,7 +138,7 @@ fn a_proved_difference_beside_motions_that_agree_and_beside_another_growth() {
 
 #[test]
 fn one_family_whose_motions_differ() {
-    let scene = Scene::parse("heisenberg", include_str!("../../catalogue/scenes/heisenberg.toml")).expect("a scene");
+    let scene = Scene::parse("heisenberg", include_str!("../../scene/scenes/heisenberg.toml")).expect("a scene");
     let choices = choices(&scene);
     let mut heisenberg = compare(scene, choices, Vec::new(), &Settings::default()).expect("a comparison");
     assert_eq!(heisenberg.contradictions(), Vec::new());

@@ -95,7 +95,7 @@ const LESS: f64 = 5.0;
 /// that a search has made larger.
 fn failures(name: &str, at_most: f64) -> Vec<String> {
     let path = ["scenes", "classics"].map(|folder| {
-        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../catalogue").join(folder);
+        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scene").join(folder);
         folder.join(format!("{name}.toml"))
     });
     let path = path.iter().find(|path| path.exists()).expect("a scene");
@@ -147,7 +147,7 @@ fn failures(name: &str, at_most: f64) -> Vec<String> {
 fn no_sweep_finds_less() {
     let asked = std::env::var("FITS_OF").unwrap_or_default();
     let all = ["scenes", "classics"].map(|folder| {
-        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../catalogue").join(folder);
+        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scene").join(folder);
         std::fs::read_dir(folder).expect("scenes").map(|entry| entry.expect("a file").path())
     });
     let all = all.into_iter().flatten().filter(|path| path.extension().is_some_and(|e| e == "toml"));

@@ -9,7 +9,7 @@ use mechanics::ConstantsRule;
 use motion::{Choice, Metric, Settings, VAKONOMIC, choices, derive_in_form, setting, solve_choice};
 use scene::Scene;
 
-const HEISENBERG: &str = include_str!("../../catalogue/scenes/heisenberg.toml");
+const HEISENBERG: &str = include_str!("../../scene/scenes/heisenberg.toml");
 
 fn settings() -> Settings {
     Settings { tolerance: 1e-12, ..Settings::default() }
@@ -85,7 +85,7 @@ fn a_fit_ends_with_what_comes_closer() {
 /// table.
 #[test]
 fn fits_with_derivatives_that_are_carried_end_at_the_same_constants_in_fewer_runs() {
-    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../catalogue/scenes/");
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../scene/scenes/");
     println!(
         "{:<20}{:>10}{:>14}{:>22}{:>8}{:>8}",
         "fit of mu0", "constants", "differences", "carried (with them)", "ms", "ms"

@@ -121,7 +121,7 @@ fn what_is_proved_to_differ_is_never_called_the_same() {
     let verdict = words::Headline::of(&comparison).verdict;
     assert!(verdict.contains("different, which is proved; by less than"), "{verdict}");
     // the same at a shorter time, where built-in systems have not parted yet
-    let sledge = include_str!("../../catalogue/scenes/sledge.toml");
+    let sledge = include_str!("../../scene/scenes/sledge.toml");
     let sledge = Scene::parse_with("sledge", sledge, &[("duration".into(), 1e-4)]).expect("built in");
     let choices = choices(&sledge);
     let short = compare_unfitted(sledge, choices, Vec::new(), &Settings::default()).expect("compared");

@@ -111,10 +111,10 @@ impl Draw {
 fn driven_classic(draw: &mut Draw) -> String {
     let term = draw.driven();
     let classic = draw.of(&[
-        include_str!("../../catalogue/scenes/disc.toml"),
-        include_str!("../../catalogue/scenes/heisenberg.toml"),
-        include_str!("../../catalogue/scenes/appell-hamel.toml"),
-        include_str!("../../catalogue/classics/generalized-heisenberg.toml"),
+        include_str!("../../scene/scenes/disc.toml"),
+        include_str!("../../scene/scenes/heisenberg.toml"),
+        include_str!("../../scene/scenes/appell-hamel.toml"),
+        include_str!("../../scene/classics/generalized-heisenberg.toml"),
     ]);
     let term = if classic.contains("x1 ") { term.replace('x', "x1").replace('y', "y1") } else { term };
     let term = if classic.contains("psi") { term.replace('z', "x") } else { term };

@@ -9,14 +9,14 @@ use scene::{Number, Scene};
 
 /// A built-in scene with other numbers.
 pub(crate) fn built_in(name: &str, overrides: &[(&str, f64)]) -> Scene {
-    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("../../crates/catalogue/scenes/{name}.toml"));
+    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("../../crates/scene/scenes/{name}.toml"));
     let overrides: Vec<(String, f64)> = overrides.iter().map(|&(name, value)| (name.into(), value)).collect();
     Scene::load_with(&file, &overrides).unwrap_or_else(|error| panic!("{error}"))
 }
 
 /// A built-in scene with other numbers, as they are written.
 pub(crate) fn as_written(name: &str, overrides: &[(&str, &str)]) -> Scene {
-    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("../../crates/catalogue/scenes/{name}.toml"));
+    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("../../crates/scene/scenes/{name}.toml"));
     let number = |text: &str| text.parse::<Number>().expect("a number");
     let overrides: Vec<_> = overrides.iter().map(|&(name, text)| (name.to_owned(), number(text))).collect();
     Scene::load_with(&file, &overrides).unwrap_or_else(|error| panic!("{error}"))
@@ -24,7 +24,7 @@ pub(crate) fn as_written(name: &str, overrides: &[(&str, &str)]) -> Scene {
 
 /// A system of the literature.
 pub(crate) fn beside(name: &str) -> Scene {
-    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("../../crates/catalogue/classics/{name}.toml"));
+    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("../../crates/scene/classics/{name}.toml"));
     Scene::load(&file).unwrap_or_else(|error| panic!("{error}"))
 }
 

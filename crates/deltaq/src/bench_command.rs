@@ -25,7 +25,7 @@ pub(crate) fn run(arguments: &BenchArguments, quiet: bool) -> Result<String> {
         return arguments.output.answer("bench-ensemble", || Ok(Vec::new()), text, json);
     }
     let effort = Effort { methods: METHODS.to_vec(), seconds: arguments.seconds, ..Effort::default() };
-    let all = || catalogue::SCENES.iter().map(|(name, _)| *name).collect();
+    let all = || scene::catalogue::SCENES.iter().map(|(name, _)| *name).collect();
     let given: Vec<&str> = arguments.scenes.iter().map(String::as_str).collect();
     let names: Vec<&str> = if given.is_empty() { all() } else { given };
     let benches =

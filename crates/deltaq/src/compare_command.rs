@@ -27,7 +27,7 @@ pub(crate) fn run(arguments: &CompareArguments, quiet: bool) -> Result<String> {
     let settings = limited(Settings { tolerance: arguments.tolerance, ..Settings::protocol() }, &arguments.limits)?;
     let mut scenes: Vec<Scene> = Vec::new();
     for name in &arguments.scenes {
-        let scene = catalogue::find(name, &arguments.set.overrides)?;
+        let scene = scene::catalogue::find(name, &arguments.set.overrides)?;
         let names = std::iter::once(scene.name.clone()).chain((2..).map(|i| format!("{}-{i}", scene.name)));
         let name = { names }.find(|name| scenes.iter().all(|other| other.name != *name)).unwrap_or_default();
         scenes.push(Scene { name, ..scene });

@@ -22,10 +22,10 @@ pub(crate) fn run(arguments: &ExploreArguments) -> Result<String> {
     let mut page = PAGE.to_owned();
     ensure!(arguments.scene.is_some() || arguments.set.overrides.is_empty(), "--set needs a scene in which to set it");
     if let Some(name) = &arguments.scene {
-        let text = catalogue::source(name)?;
-        let is_built_in = catalogue::built_in().any(|(known, _)| known == name);
+        let text = scene::catalogue::source(name)?;
+        let is_built_in = scene::catalogue::built_in().any(|(known, _)| known == name);
         let set = &arguments.set.overrides;
-        catalogue::read(name, &text, set)?;
+        scene::catalogue::read(name, &text, set)?;
         let numbers: BTreeMap<_, _> = set.iter().map(|(name, number)| (name, number.value())).collect();
         let text = if is_built_in { None } else { Some(text) };
         let chosen = json!({ "name": name, "text": text, "set": numbers });

@@ -20,7 +20,7 @@ pub(crate) fn new(arguments: &NewArguments) -> Result<String> {
         None if arguments.schema => format!("{:#}\n", schema()),
         None if arguments.bodies => ROBOT.to_string(),
         None => TEMPLATE.to_string(),
-        Some(name) => catalogue::source(name)?,
+        Some(name) => scene::catalogue::source(name)?,
     };
     keep(arguments.file.as_deref(), text, |path| {
         let next = format!("; next: deltaq check {path}, deltaq compare {path}");
@@ -33,16 +33,16 @@ pub(crate) fn check(arguments: &CheckArguments) -> Result<String> {
     let mut text = String::new();
     let (mut faults, mut remarks) = (0, 0);
     for name in &arguments.scenes {
-        match catalogue::find(name, &arguments.set.overrides) {
+        match scene::catalogue::find(name, &arguments.set.overrides) {
             Ok(scene) => {
                 text += &described(&scene);
                 text += &of_contacts(&scene);
-                for remark in Scene::remarks(name, &catalogue::source(name)?, &arguments.set.overrides)? {
+                for remark in Scene::remarks(name, &scene::catalogue::source(name)?, &arguments.set.overrides)? {
                     remarks += 1;
                     text += &format!("note: {remark}\n");
                 }
             }
-            Err(catalogue::NotFound::Fault(error)) => {
+            Err(scene::catalogue::NotFound::Fault(error)) => {
                 error.each().for_each(|fault| {
                     let _ = writeln!(stderr(), "{}", coloured(fault));
                 });

@@ -23,7 +23,7 @@ pub(crate) fn list(format: TextOrJson) -> Result<String> {
     let of = |(title, group): (&'static str, &'static [(&str, &str)])| {
         group.iter().map(move |(name, text)| Ok((title, Scene::parse(name, text)?)))
     };
-    let scenes = catalogue::GROUPS.into_iter().flat_map(of).collect::<Result<Vec<_>>>()?;
+    let scenes = scene::catalogue::GROUPS.into_iter().flat_map(of).collect::<Result<Vec<_>>>()?;
     let line = |(_, scene): &(_, Scene)| format!("{:<24} {} ({})\n", scene.name, scene.title, scene.source);
     let entry =
         |(group, s): &(_, Scene)| json!({ "name": s.name, "title": s.title, "source": s.source, "group": group });
@@ -39,13 +39,13 @@ const LONG: usize = 30_000;
 /// Equations of every formulation and form, what was left out, and whether constraints are integrable.
 pub(crate) fn run(arguments: &ShowArguments) -> Result<String> {
     if arguments.source {
-        return Ok(catalogue::source(&arguments.scene.scene)?);
+        return Ok(scene::catalogue::source(&arguments.scene.scene)?);
     }
     let scene = arguments.scene.find()?;
     if arguments.formulas {
         return match scene.meant {
             Some(meant) => Ok(meant.formulas),
-            None => Ok(catalogue::source(&arguments.scene.scene)?),
+            None => Ok(scene::catalogue::source(&arguments.scene.scene)?),
         };
     }
     let style = if arguments.latex { EquationStyle::Latex } else { EquationStyle::Plain };

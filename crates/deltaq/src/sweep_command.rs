@@ -26,8 +26,8 @@ pub(crate) fn run(arguments: &CompareArguments, quiet: bool) -> Result<String> {
         other => bail!("--sweep compares two formulations, not {}", other.len()),
     };
     // a name that means nothing is a fault of the call, a start that there is not an answer
-    let text = catalogue::source(name)?;
-    let scene = catalogue::read(name, &text, &arguments.set.overrides)?;
+    let text = scene::catalogue::source(name)?;
+    let scene = scene::catalogue::read(name, &text, &arguments.set.overrides)?;
     let names: Vec<String> = grid.names().map(String::from).collect();
     let sweep = Sweep::new(&scene.name, &text, &arguments.set.overrides, &names, formulations, &settings)?;
 

@@ -74,7 +74,7 @@ fn the_page_of_the_scene_format_is_true() {
     let whole = [
         "tests/tests/scenes/rattleback-by-vectors.toml",
         "tests/tests/scenes/ball-by-spin.toml",
-        "crates/catalogue/scenes/sledge.toml",
+        "crates/scene/scenes/sledge.toml",
         "crates/deltaq/src/robot.toml",
     ]
     .map(read);

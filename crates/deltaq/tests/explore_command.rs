@@ -29,7 +29,7 @@ fn a_page_opens_with_the_scene_asked_for() {
     refused(&["explore", "disc", "--set", "mm=2", "--out", &out], &["`mm`"]);
     refused(&["explore", "--set", "m=2", "--out", &out], &["--set needs a scene"]);
     // whatever the text, it stays in its place
-    let text = include_str!("../../catalogue/scenes/bowl.toml");
+    let text = include_str!("../../scene/scenes/bowl.toml");
     let title = text.lines().find(|line| line.starts_with("title")).expect("a title");
     let text = text.replace(title, "title = \"</script><b>\"");
     std::fs::write(&own, &text).expect("a file");

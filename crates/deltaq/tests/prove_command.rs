@@ -44,7 +44,7 @@ fn without_a_certificate_there_is_a_reason() {
     assert!(told.is_empty() && complaint.contains("0.048"), "{told}{complaint}");
     let (_, complaint) = answer(&["prove", "planar-body", "--out", "-"], 3);
     assert!(complaint.contains("nothing is constrained"), "{complaint}");
-    let scene = include_str!("../../catalogue/scenes/particle.toml").replace("z'^2)/2\"", "z'^2)/2 - x*log(2 + x)\"");
+    let scene = include_str!("../../scene/scenes/particle.toml").replace("z'^2)/2\"", "z'^2)/2 - x*log(2 + x)\"");
     std::fs::write(file("logarithm.toml"), scene).expect("written");
     let (_, complaint) = answer(&["prove", &file("logarithm.toml"), "--out", &path], 3);
     assert!(complaint.contains("a logarithm is taken at the start"), "{complaint}");
@@ -86,7 +86,7 @@ fn a_scene_that_is_proved_is_plain() {
 fn what_has_no_text_is_said() {
     let folder = tempfile::tempdir().expect("a folder");
     let file = folder.path().join("sledge.toml").display().to_string();
-    let sledge = include_str!("../../catalogue/scenes/sledge.toml");
+    let sledge = include_str!("../../scene/scenes/sledge.toml");
     let told = answer(&["prove", "sledge", "--set", "phi=pi/3 + 0.1", "--out", "-"], 0).0;
     let certificate: Value = serde_json::from_str(&told).expect("JSON");
     assert_eq!(certificate["set"], json!({ "phi": "pi/3 + 0.1" }));
@@ -102,9 +102,9 @@ fn what_has_no_text_is_said() {
 fn forces_act_in_what_is_compared_and_proved() {
     let folder = tempfile::tempdir().expect("a folder");
     let file = folder.path().join("pushed.toml").display().to_string();
-    let particle = include_str!("../../catalogue/scenes/particle.toml");
+    let particle = include_str!("../../scene/scenes/particle.toml");
     let pushed = particle.replace("\n[start", "\nforces = { x = \"-x'*z\" }\n[start");
-    let friction = include_str!("../../catalogue/classics/sledge-with-friction.toml");
+    let friction = include_str!("../../scene/classics/sledge-with-friction.toml");
     for text in [pushed.as_str(), friction] {
         assert!(text.contains("forces ="), "{text}");
         std::fs::write(&file, text).expect("written");
@@ -125,7 +125,7 @@ fn forces_act_in_what_is_compared_and_proved() {
 fn orders_are_written_as_far_as_they_are_proved() {
     let folder = tempfile::tempdir().expect("a folder");
     let file = folder.path().join("flat.toml").display().to_string();
-    let particle = include_str!("../../catalogue/scenes/particle.toml");
+    let particle = include_str!("../../scene/scenes/particle.toml");
     let flat = particle
         .replace("z' - y*x'", "z' - (y + 1)^4*x'")
         .replace("[removal", "[old")
@@ -146,7 +146,7 @@ fn the_words_say_what_is_proved_and_what_is_not() {
     let path = folder.path().join("particle.toml").display().to_string();
     let out = folder.path().join("certificate.json").display().to_string();
     let particle = |constraint: &str, x: &str| {
-        let scene = include_str!("../../catalogue/scenes/particle.toml");
+        let scene = include_str!("../../scene/scenes/particle.toml");
         let scene = scene.replace("z' - y*x'", constraint).replace("x = { unit = \"m\", start = 0", x);
         // its removal is for another constraint
         let scene = scene.split("[removal").next().map(|head| format!("{head}[run]\nduration = 1\n")).expect("a head");

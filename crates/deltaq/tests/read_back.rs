@@ -12,7 +12,7 @@ const NAMES: [&str; 6] = ["atan2(y,x)", "say \\\"it\\\", (now)", " y ", "#x", "a
 
 /// A sledge on a slope with these observables.
 fn scene() -> String {
-    let scene = include_str!("../../catalogue/scenes/sledge.toml");
+    let scene = include_str!("../../scene/scenes/sledge.toml");
     let watched: String = NAMES.iter().map(|name| format!("\"{name}\" = \"x - 2*y\"\n")).collect();
     format!("{scene}\n[observables]\n{watched}")
 }

@@ -6,7 +6,7 @@ use std::process::{Output, Stdio};
 
 use crate::support::{answer, command, refused, text};
 
-const SLEDGE: &str = include_str!("../../catalogue/scenes/sledge.toml");
+const SLEDGE: &str = include_str!("../../scene/scenes/sledge.toml");
 
 /// What the program does with this on its standard input.
 fn given(arguments: &[&str], input: &str) -> Output {

@@ -83,7 +83,7 @@ pub use trajectory::{Sample, Trajectory};
 ///
 /// ```
 /// use discrete::Discrete;
-/// let scene = scene::Scene::parse("sledge", include_str!("../../catalogue/scenes/sledge.toml"))?;
+/// let scene = scene::Scene::parse("sledge", include_str!("../../scene/scenes/sledge.toml"))?;
 /// let q = Discrete::chetaev(&scene.system, &scene.start, 1.0)?.trajectory(200)?.at(1.0)?.x;
 /// // φ = 0.3 + 1.1 t exactly, x by its integral to order h²
 /// assert!((q[2] - 1.4).abs() < 1e-12);

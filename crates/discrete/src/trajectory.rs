@@ -39,7 +39,7 @@ impl Discrete {
     ///
     /// ```
     /// use discrete::{Composition, Discrete};
-    /// let scene = scene::Scene::parse("sledge", include_str!("../../catalogue/scenes/sledge.toml"))?;
+    /// let scene = scene::Scene::parse("sledge", include_str!("../../scene/scenes/sledge.toml"))?;
     /// let discrete = Discrete::chetaev(&scene.system, &scene.start, 1.0)?.composed(Composition::Sixth);
     /// let mut trajectory = discrete.trajectory(40)?;
     /// let now = trajectory.at(0.777)?;

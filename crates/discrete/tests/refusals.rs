@@ -6,7 +6,7 @@ use scene::Scene;
 use symbolic::Graph;
 
 pub(crate) fn scene(name: &str) -> Scene {
-    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../crates/catalogue/scenes");
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../crates/scene/scenes");
     Scene::load(&std::path::Path::new(folder).join(name).with_extension("toml")).unwrap()
 }
 

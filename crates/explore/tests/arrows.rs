@@ -5,8 +5,8 @@ use serde_json::{Value, json};
 
 use crate::{SLEDGE, ask, place};
 
-const DISC: &str = include_str!("../../catalogue/scenes/disc.toml");
-const PENDULUM: &str = include_str!("../../catalogue/scenes/velocity-pendulum.toml");
+const DISC: &str = include_str!("../../scene/scenes/disc.toml");
+const PENDULUM: &str = include_str!("../../scene/scenes/velocity-pendulum.toml");
 /// Places and directions by differences, relative to the largest.
 const NEAR: f64 = 3e-5;
 

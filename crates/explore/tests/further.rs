@@ -86,7 +86,7 @@ fn a_number_that_cannot_be_varied_is_named_and_the_others_have_their_derivatives
 /// Derivatives are carried in one chart, and the motion changes it.
 #[test]
 fn where_derivatives_end_before_the_motion_it_is_said_why() {
-    let text = include_str!("../../catalogue/scenes/rudder-skate.toml");
+    let text = include_str!("../../scene/scenes/rudder-skate.toml");
     let (found, _) = ask(json!({ "ask": "derivatives", "name": "rudder-skate", "text": text }));
     let motions = found["motions"].as_array().unwrap();
     let of = |label: &str| motions.iter().find(|m| m["label"] == label).unwrap_or_else(|| panic!("{label}: {found}"));

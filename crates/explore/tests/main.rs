@@ -11,7 +11,7 @@ use motion::{Settings, choices, solve_choice};
 use scene::Scene;
 use serde_json::{Value, json};
 
-const SLEDGE: &str = include_str!("../../catalogue/scenes/sledge.toml");
+const SLEDGE: &str = include_str!("../../scene/scenes/sledge.toml");
 
 fn ask(question: Value) -> (Value, Vec<f64>) {
     ask_again(&mut Explorer::default(), question)
@@ -339,7 +339,7 @@ fn moved(scene: &Value, part: f64) -> serde_json::Map<String, Value> {
 
 /// Names and texts of all scenes.
 fn scenes() -> Vec<(String, String)> {
-    let folders = ["scenes", "classics"].map(|name| format!("{}/../catalogue/{name}", env!("CARGO_MANIFEST_DIR")));
+    let folders = ["scenes", "classics"].map(|name| format!("{}/../scene/{name}", env!("CARGO_MANIFEST_DIR")));
     let files = folders.iter().flat_map(|folder| std::fs::read_dir(folder).unwrap()).map(|file| file.unwrap().path());
     let scenes = files.filter(|file| file.extension().is_some_and(|ending| ending == "toml"));
     let text = |file: &std::path::PathBuf| std::fs::read_to_string(file).unwrap();

@@ -10,7 +10,7 @@ use scene::Scene;
 use crate::noise::Noise;
 
 pub fn built_in(name: &str) -> Scene {
-    catalogue::find(name, &[]).unwrap_or_else(|error| panic!("{error}"))
+    scene::catalogue::find(name, &[]).unwrap_or_else(|error| panic!("{error}"))
 }
 
 pub fn film(scene: &Scene, header: &str, sigma: f64, seed: u64, times: &[f64], at: impl Fn(f64) -> Vec<f64>) -> Film {

@@ -30,7 +30,7 @@ fn a_slip_of_zero_is_within_its_interval() {
 #[test]
 fn a_law_far_from_chetaevs_numbers_is_found() {
     let numbers = [("slip", 0.015), ("Omega", 0.61)].map(|(name, x)| (name.to_string(), x.into()));
-    let truth = catalogue::find("turning-knife-edge", &numbers).unwrap_or_else(|error| panic!("{error}"));
+    let truth = scene::catalogue::find("turning-knife-edge", &numbers).unwrap_or_else(|error| panic!("{error}"));
     let law = choices(&truth).into_iter().find(|c| c.formulation == FIRST_ORDER).unwrap();
     let mut motion = solve_choice(&truth, &Choice { ..law }, &Settings::default()).unwrap();
     let times = times(3.0);

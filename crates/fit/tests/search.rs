@@ -14,7 +14,7 @@ const TRUTH: [f64; 8] = [0.0634, -0.0011, 0.0108, 0.0491, 3.03, 0.7763, -0.0013,
 fn small_ball() -> Scene {
     let at = |name: &str, x: f64| (name.to_string(), x.into());
     let numbers = [at("a", 0.02), at("Omega", 3.0), at("c", 0.0667), at("x", 0.0667), at("psi'", 0.0)];
-    catalogue::find("turntable", &numbers).unwrap_or_else(|error| panic!("{error}"))
+    scene::catalogue::find("turntable", &numbers).unwrap_or_else(|error| panic!("{error}"))
 }
 
 fn small_ball_film(seed: u64) -> (Scene, Film) {
@@ -22,7 +22,7 @@ fn small_ball_film(seed: u64) -> (Scene, Film) {
     // the motion is violent: nothing behind the film is integrated
     let known = [("a".to_string(), 0.02.into()), ("duration".to_string(), 2.0.into())];
     let numbers: Vec<_> = known.into_iter().chain(names).collect();
-    let scene = catalogue::find("turntable", &numbers).unwrap_or_else(|error| panic!("{error}"));
+    let scene = scene::catalogue::find("turntable", &numbers).unwrap_or_else(|error| panic!("{error}"));
     let vakonomic = choices(&scene).into_iter().find(|c| c.formulation == VAKONOMIC).unwrap();
     let constants = ConstantsRule::Given(TRUTH[6..].to_vec());
     let mut motion = solve_choice(&scene, &Choice { constants, ..vakonomic }, &Settings::default()).unwrap();

@@ -1,6 +1,6 @@
 //! Chaplygin's multiplier of systems that were built with one.
 
-use catalogue::read;
+use scene::catalogue::read;
 use decision::ExactStart;
 use integrals::{Multiplier, reversible};
 use symbolic::Fraction;

@@ -7,7 +7,7 @@ use scene::{Number, Scene};
 pub(crate) fn built_in(name: &str, overrides: &[(&str, &str)]) -> Scene {
     let number = |text: &str| text.parse::<Number>().expect("a number");
     let overrides: Vec<(String, Number)> = overrides.iter().map(|&(name, text)| (name.into(), number(text))).collect();
-    catalogue::find(name, &overrides).unwrap_or_else(|error| panic!("{error}"))
+    scene::catalogue::find(name, &overrides).unwrap_or_else(|error| panic!("{error}"))
 }
 
 pub(crate) fn start(scene: &Scene) -> ExactStart {

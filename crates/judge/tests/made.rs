@@ -8,7 +8,7 @@ use scene::Scene;
 const SCENES: [&str; 4] = ["sledge", "disc", "turntable", "sleigh"];
 
 fn scene(name: &str) -> Scene {
-    let mut scene = catalogue::find(name, &[]).unwrap();
+    let mut scene = scene::catalogue::find(name, &[]).unwrap();
     scene.duration = 4.0;
     scene
 }
@@ -148,7 +148,7 @@ fn a_number_that_is_off_is_named_and_gives_no_number_of_a_law() {
         ("skate", "g"),
         ("velocity-pendulum", "g"),
     ] {
-        let Ok(plain) = catalogue::find(name, &[]) else { continue };
+        let Ok(plain) = scene::catalogue::find(name, &[]) else { continue };
         let g = &plain.system.graph;
         let mut made = plain.clone();
         made.duration = 4.0;

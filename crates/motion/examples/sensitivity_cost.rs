@@ -9,9 +9,9 @@ use scene::Scene;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let texts = [
-        ("sledge", include_str!("../../catalogue/scenes/sledge.toml")),
-        ("disc", include_str!("../../catalogue/scenes/disc.toml")),
-        ("ball-in-cone", include_str!("../../catalogue/scenes/ball-in-cone.toml")),
+        ("sledge", include_str!("../../scene/scenes/sledge.toml")),
+        ("disc", include_str!("../../scene/scenes/disc.toml")),
+        ("ball-in-cone", include_str!("../../scene/scenes/ball-in-cone.toml")),
     ];
     for (name, text) in texts {
         let scene = Scene::parse(name, text)?;

@@ -139,7 +139,7 @@ const ONE: [f64; 2] = [1e-4, 1e-6];
 /// are not unknowns, unless they are given.
 ///
 /// ```
-/// # let text = include_str!("../../catalogue/scenes/heisenberg.toml");
+/// # let text = include_str!("../../scene/scenes/heisenberg.toml");
 /// use motion::{Aim, Settings, VAKONOMIC, choices, connect};
 /// let scene = scene::Scene::parse("heisenberg", text)?;
 /// let choice = choices(&scene).into_iter().find(|c| c.formulation == VAKONOMIC).unwrap();

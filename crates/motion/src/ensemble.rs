@@ -31,7 +31,7 @@ pub use threads::{number_of_threads, over_threads};
 /// [`crate::solve_choice`], and goes on where that does.
 ///
 /// ```
-/// # let text = include_str!("../../catalogue/scenes/sledge.toml");
+/// # let text = include_str!("../../scene/scenes/sledge.toml");
 /// use motion::{Ensemble, EnsembleOptions, Settings, choices};
 /// let scene = scene::Scene::parse("sledge", text)?;
 /// let ensemble = Ensemble::new(&scene, &choices(&scene)[0], &["g", "phi"], &Settings::default())?;

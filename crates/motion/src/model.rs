@@ -15,7 +15,7 @@ use crate::{ByName, Choice, Settings, SolveError};
 /// integrated in one run, at [`Settings::tolerance`].
 ///
 /// ```
-/// # let text = include_str!("../../catalogue/scenes/sledge.toml");
+/// # let text = include_str!("../../scene/scenes/sledge.toml");
 /// use motion::{Model, Settings, choices};
 /// let scene = scene::Scene::parse("sledge", text)?;
 /// let mut model = Model::new(&scene, &choices(&scene)[0], &["phi'"], &[1.0, 2.0], &Settings::default())?;

@@ -62,7 +62,7 @@ pub struct Sensitivities {
 /// value of the numbers, its own.
 ///
 /// ```
-/// # let text = include_str!("../../catalogue/scenes/sledge.toml");
+/// # let text = include_str!("../../scene/scenes/sledge.toml");
 /// use motion::{Settings, choices, sensitivities};
 /// let scene = scene::Scene::parse("sledge", text)?;
 /// let found = sensitivities(&scene, &choices(&scene)[0], &["phi'"], &[2.0], &Settings::default())?;

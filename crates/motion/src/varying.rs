@@ -11,7 +11,7 @@ use crate::{Choice, Form, Prepared, Settings, SolveError, derive_in_form, settin
 /// A motion of a scene while numbers vary: what is derived and compiled stays.
 ///
 /// ```
-/// # let text = include_str!("../../catalogue/scenes/sledge.toml");
+/// # let text = include_str!("../../scene/scenes/sledge.toml");
 /// use motion::{Settings, Varying, choices};
 /// use integrate::Options;
 /// use mechanics::ConstantsRule;

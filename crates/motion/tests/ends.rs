@@ -8,7 +8,7 @@ use crate::support::{member, read};
 
 /// The text of a scene of the catalogue.
 pub(crate) fn text_of(name: &str) -> String {
-    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../catalogue/");
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../scene/");
     let read = |kind: &str| std::fs::read_to_string(format!("{folder}{kind}/{name}.toml"));
     read("scenes").or_else(|_| read("classics")).unwrap_or_else(|error| panic!("{name}: {error}"))
 }

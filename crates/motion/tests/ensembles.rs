@@ -10,7 +10,7 @@ use motion::{
 use scene::Scene;
 use symbolic::LANES;
 
-const SLEDGE: &str = include_str!("../../catalogue/scenes/sledge.toml");
+const SLEDGE: &str = include_str!("../../scene/scenes/sledge.toml");
 
 /// Two states, the first unbounded at `t = 1 / u₀`: `x' = u`, `u' = b u²` by a force of its own.
 const BLOW_UP: &str = r#"

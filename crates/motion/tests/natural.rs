@@ -23,7 +23,7 @@ fn searched(scene: &Scene, choice: &Choice, horizon: f64, carries: bool) -> Opti
 /// `cargo test --release -p deltaq-motion --test motion-tests natural:: -- --nocapture` prints the table.
 #[test]
 fn derivatives_that_are_carried_lead_to_the_same_constants_in_fewer_runs() {
-    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../catalogue/scenes/");
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../scene/scenes/");
     println!("{:<55}{:>12}{:>22}{:>8}{:>6}", "runs", "differences", "carried (with them)", "ms", "ms");
     let mut compared = 0;
     for name in ["sledge", "bowl", "three-cylinders"] {

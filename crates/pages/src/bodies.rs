@@ -7,7 +7,7 @@ use comparison::{Comparison, Verdict};
 use motion::Ending;
 use picture::MovingPicture;
 use scene::Scene;
-use scenery::Drawn;
+use scene::scenery::Drawn;
 
 use crate::pictures::{drawn, style};
 use comparison::words::short;
@@ -32,7 +32,7 @@ pub fn bodies(comparison: &mut Comparison) -> Result<Option<File>> {
         let at = move |t: f64| Ok(motion.at(t.min(motion.end()))?.coordinates);
         motions.push(Drawn::<motion::SolveError> { label, style, at: Box::new(at) });
     }
-    let svg = scenery::moving(&comparison.scene, motions)?.and_then(|mut picture| {
+    let svg = scene::scenery::moving(&comparison.scene, motions)?.and_then(|mut picture| {
         let message = message(&comparison.scene, motions_apart, &picture);
         picture.title = format!("{message}. {}, {} s", comparison.scene.title, short(comparison.scene.duration));
         picture.to_svg()

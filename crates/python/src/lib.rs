@@ -66,7 +66,7 @@ mod _native {
     fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
         let names = |list: Vec<&str>| PyTuple::new(module.py(), list);
         module.add("FORMULATIONS", names(motion::FORMULATIONS.iter().map(|f| f.name).collect())?)?;
-        module.add("SCENES", names(catalogue::built_in().map(|(name, _)| *name).collect())?)?;
+        module.add("SCENES", names(scene::catalogue::built_in().map(|(name, _)| *name).collect())?)?;
         module.add("METHODS", names(Method::ALL.map(Method::name).to_vec())?)?;
         module.add("UnknownNameError", crate::errors::unknown_name(module.py())?)?;
         module.add("_TABLE_SIZE", scene::TABLE_SIZE)?;

@@ -10,7 +10,7 @@ use picture::Style;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use scenery::{Drawn, moving};
+use scene::scenery::{Drawn, moving};
 
 use crate::arguments::{Numbers, Table};
 use crate::arrays::{Floats, Rows, list};

@@ -33,8 +33,8 @@ pub(crate) fn parse(py: Python<'_>, text: &str, overrides: Option<Numbers>, name
 #[pyfunction]
 #[pyo3(signature = (name, overrides=None))]
 pub(crate) fn built_in(py: Python<'_>, name: &str, overrides: Option<Numbers>) -> PyResult<System> {
-    let Some(text) = catalogue::text_of(name) else {
-        let known = catalogue::built_in().map(|(known, _)| *known).chain(["n-trailer-N"]);
+    let Some(text) = scene::catalogue::text_of(name) else {
+        let known = scene::catalogue::built_in().map(|(known, _)| *known).chain(["n-trailer-N"]);
         return Err(unknown("built-in scene", name, known));
     };
     System::read(py, (name, None), text, overrides.map_or(Overrides::new(), |numbers| numbers.0))

@@ -38,7 +38,7 @@ def write(folder, name, lines):
 
 
 def scene(name):
-    return next((FOLDER.parents[1] / "crates/catalogue").glob(f"*/{name}.toml"))
+    return next((FOLDER.parents[1] / "crates/scene").glob(f"*/{name}.toml"))
 
 
 def solved(name, lines):

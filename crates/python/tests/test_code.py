@@ -12,7 +12,7 @@ import sympy
 
 import deltaq
 
-SCENES = Path(__file__).resolve().parents[3] / "crates/catalogue/scenes"
+SCENES = Path(__file__).resolve().parents[3] / "crates/scene/scenes"
 FORMS = (*deltaq.FORMULATIONS, "chetaev-reduced", "vakonomic-reduced")
 STATES = 1000
 # difference over the largest rate (or output) at the same state

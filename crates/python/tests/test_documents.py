@@ -51,7 +51,7 @@ def test_examples_run(path, tmp_path, monkeypatch):
 def test_the_page_about_clusters(tmp_path, monkeypatch, capsys):
     """Slurm's jobs are processes of this machine; their script is Slurm's."""
     monkeypatch.chdir(tmp_path)
-    Path("own.toml").write_text((ROOT / "crates/catalogue/scenes/sledge.toml").read_text())
+    Path("own.toml").write_text((ROOT / "crates/scene/scenes/sledge.toml").read_text())
     scripts, asked = [], []
 
     def jobs(cores, processes, memory, walltime):
@@ -103,7 +103,7 @@ def test_notebooks_run(name, tmp_path):
 
 
 def test_the_removal_in_the_scene_format_is_one():
-    sledge = (ROOT / "crates/catalogue/scenes/sledge.toml").read_text()
+    sledge = (ROOT / "crates/scene/scenes/sledge.toml").read_text()
     [removal] = [block for block in blocks("docs/scenes.md", "toml") if block.startswith("[removal.")]
     system = deltaq.parse(sledge[: sledge.index("[removal.")] + removal + "[run]\nduration = 1\n")
     assert system.removals[0] == "arc-length"

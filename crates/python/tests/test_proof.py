@@ -18,7 +18,7 @@ import pytest
 import deltaq
 
 ROOT = Path(__file__).resolve().parents[3]
-CATALOGUE = ROOT / "crates/catalogue"
+CATALOGUE = ROOT / "crates/scene"
 # the module is laid out beside the programs of its build
 PROGRAM = Path(os.environ.get("DELTAQ", Path(sys.prefix).parent / "release" / "deltaq"))
 EVIDENCE = PROGRAM.with_name("evidence")

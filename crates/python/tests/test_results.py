@@ -343,7 +343,7 @@ def test_built_in_scenes(system):
     assert len(deltaq.SCENES) >= 40 and deltaq.SCENES[0] == "sledge"
     for name in deltaq.SCENES:
         assert deltaq.built_in(name).name == name
-    folder = Path(__file__).resolve().parents[2] / "catalogue/scenes"
+    folder = Path(__file__).resolve().parents[2] / "scene/scenes"
     for name in ("sledge", "bicycle"):
         ours, file = deltaq.built_in(name, {"time": 0.0}), deltaq.load(folder / f"{name}.toml")
         assert ours.to_toml() == file.to_toml() and ours.title == file.title

@@ -20,7 +20,7 @@ import deltaq
 
 ROOT = Path(__file__).resolve().parents[3]
 PROGRAM = Path(sys.prefix).parent / "release" / "deltaq"
-SCENE = ROOT / "crates/catalogue/scenes/turntable.toml"
+SCENE = ROOT / "crates/scene/scenes/turntable.toml"
 OVER = {"Omega": [0.3, 0.6, 0.9], "psi'": [0.3, 0.45, 0.6, 0.75, 0.9]}
 
 

@@ -91,7 +91,7 @@ impl Notation {
 ///
 /// ```
 /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
-/// let sleigh = catalogue::find("sleigh", &[])?;
+/// let sleigh = scene::catalogue::find("sleigh", &[])?;
 /// let theirs = "m*x'' - m*a*(phi''*sin(phi) + phi'^2*cos(phi)) = -k*sin(phi)
 ///               m*y'' + m*a*(phi''*cos(phi) - phi'^2*sin(phi)) = k*cos(phi)
 ///               (I + m*a)*phi'' = m*a*(x''*sin(phi) - y''*cos(phi))

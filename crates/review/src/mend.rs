@@ -36,7 +36,7 @@ pub struct Mend {
 ///
 /// ```
 /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
-/// let sledge = catalogue::find("sledge", &[])?;
+/// let sledge = scene::catalogue::find("sledge", &[])?;
 /// let theirs = "x'' = g*sin(alpha) - l*sin(phi)
 ///               y'' = l*cos(phi)
 ///               phi'' = 0*t

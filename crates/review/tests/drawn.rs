@@ -135,7 +135,7 @@ fn mistakes_drawn_at_random_are_named() {
     let mut slowest = std::time::Duration::ZERO;
     let first = std::env::var("REVIEW_FIRST").ok().and_then(|n| n.parse().ok()).unwrap_or(0);
     for k in first..first + cases {
-        let scene = catalogue::find(SYSTEMS[(k % SYSTEMS.len() as u64) as usize], &[]).unwrap();
+        let scene = scene::catalogue::find(SYSTEMS[(k % SYSTEMS.len() as u64) as usize], &[]).unwrap();
         let (text, made, differ) = case(&scene, 1000 + k);
         let clock = std::time::Instant::now();
         let found = review(&scene, "drawn", &text, &Asked::default()).unwrap();
@@ -171,7 +171,7 @@ fn what_the_injector_spoils_is_explained() {
     let (mut wrong, mut explained) = (0, 0);
     let cases = std::env::var("REVIEW_CASES").ok().and_then(|n| n.parse().ok()).unwrap_or(CASES);
     for k in 0..cases {
-        let scene = catalogue::find(SYSTEMS[(k % SYSTEMS.len() as u64) as usize], &[]).unwrap();
+        let scene = scene::catalogue::find(SYSTEMS[(k % SYSTEMS.len() as u64) as usize], &[]).unwrap();
         let mut random = SplitMix::new(9 + k);
         let fresh = || scene.system.clone();
         let (_, chances) = faults::chances(|| derive(&fresh()));

@@ -11,7 +11,7 @@ fn asked(wheres: &[&str]) -> Asked {
 }
 
 fn of(scene: &str, theirs: &str) -> Review {
-    review(&catalogue::find(scene, &[]).unwrap(), "theirs", theirs, &Asked::default()).unwrap()
+    review(&scene::catalogue::find(scene, &[]).unwrap(), "theirs", theirs, &Asked::default()).unwrap()
 }
 
 /// The rolling disc of the documentation of SymPy, for Lagrange's equations, derived anew by hand: three
@@ -26,7 +26,7 @@ fn the_documented_disc_has_the_constraint_in_l_and_gravity_upwards() {
         b*q2'' - a*w*q1'*cos(q2) + c*cos(q2)*sin(q2)*q1'^2 + m*g*r*sin(q2) = 0
         a*w' = 0";
     let wheres = ["phi = q1", "theta = -q2", "psi = q3", "R = r", "I = m*r^2/2", "J = m*r^2/4"];
-    let scene = catalogue::find("falling-disc", &[]).unwrap();
+    let scene = scene::catalogue::find("falling-disc", &[]).unwrap();
     let clock = Instant::now();
     let found = review(&scene, "disc", theirs, &asked(&wheres)).unwrap();
     assert!(clock.elapsed() < Duration::from_secs(1), "{:?}", clock.elapsed());
@@ -46,7 +46,7 @@ fn other_formulations_are_named_whatever_their_multipliers_are_called() {
         m*a*y''*cos(phi) - m*a*x''*sin(phi) + phi''*(m*a^2 + I) + k*(x'*cos(phi) + y'*sin(phi)) = 0
         y'*cos(phi) - x'*sin(phi) = 0";
     let turned = vakonomic.replace("k'", "(-mu')").replace("k*", "(-mu)*");
-    let sleigh = catalogue::find("sleigh", &[]).unwrap();
+    let sleigh = scene::catalogue::find("sleigh", &[]).unwrap();
     for theirs in [vakonomic, &turned] {
         let found = of("sleigh", theirs);
         assert_eq!(found.verdict, Verdict::Wrong);
@@ -61,7 +61,7 @@ fn other_formulations_are_named_whatever_their_multipliers_are_called() {
 
 #[test]
 fn numbers_of_the_scene_are_enough_where_theirs_have_no_names() {
-    let scene = catalogue::find("planar-body", &[]).unwrap();
+    let scene = scene::catalogue::find("planar-body", &[]).unwrap();
     let text = "title = \"fall\"\n[parameters]\nm = 2\ng = 9.81\nr = 1\n[coordinates]\nz = { start = 0 }\n[system]\n\
                 lagrangian = \"m*r^2*z'^2/2 - m*g*r*z\"\n[start.velocities]\n\"z'\" = 0\n[run]\nduration = 1\n";
     let fall = Scene::parse("fall", text).unwrap();
@@ -78,7 +78,7 @@ fn numbers_of_the_scene_are_enough_where_theirs_have_no_names() {
 
 #[test]
 fn tables_of_accelerations_are_reviewed_in_floats() {
-    let scene = catalogue::find("sleigh", &[]).unwrap();
+    let scene = scene::catalogue::find("sleigh", &[]).unwrap();
     // by hand: u' = a w², w' = −m a u w/(I + m a²) along the blade
     let value = |name: &str| {
         scene
@@ -107,7 +107,7 @@ fn tables_of_accelerations_are_reviewed_in_floats() {
 
 #[test]
 fn functions_of_c_by_hand_are_read() {
-    let scene = catalogue::find("sleigh", &[]).unwrap();
+    let scene = scene::catalogue::find("sleigh", &[]).unwrap();
     let body = "double u = X[3]*cos(X[2]) + X[4]*sin(X[2]), w = X[5], s = a*w*w;
         D[0] = s*cos(X[2]) - u*sin(X[2])*w; /* forwards */
         D[1] = s*sin(X[2]); D[1] += u*w*cos(X[2]);
@@ -140,7 +140,7 @@ fn where_nothing_explains_them_coefficients_are_told() {
 
 #[test]
 fn what_cannot_be_read_is_refused_with_its_place() {
-    let scene = catalogue::find("sleigh", &[]).unwrap();
+    let scene = scene::catalogue::find("sleigh", &[]).unwrap();
     for (file, text, said) in [
         ("a.txt", "phi'' = 0\nx'' = 3 + * x", "a.txt:2:11: expected a number, a name or `(`, found `*`"),
         ("a.txt", "x''' = 0", "a.txt:1:1: undefined name `x'''`"),
@@ -170,7 +170,7 @@ fn what_cannot_be_read_is_refused_with_its_place() {
 /// Texts with letters lost, doubled and exchanged: read or refused, in time, and no panic.
 #[test]
 fn nonsense_is_read_or_refused() {
-    let scene = catalogue::find("sleigh", &[]).unwrap();
+    let scene = scene::catalogue::find("sleigh", &[]).unwrap();
     let latex = "\\begin{aligned} m \\ddot{x} &= -N_{1} \\sin \\varphi \\\\ m\\ddot y &= \\frac{N_1}{1}\\cos{\\varphi}, \\\\ \
                  I \\ddot{\\varphi} &= \\left(a^{2} - \\dot\\varphi\\right) N_1 \\sqrt{2} \\end{aligned}";
     let c = "#define N 3\nint f_rates(double t, const double y[6], const par *p, double d[6])\n{\n  const double s = sin(y[2]), c = cos(y[2]);\n  \
@@ -203,7 +203,7 @@ fn nonsense_is_read_or_refused() {
 
 #[test]
 fn a_text_without_equations_is_refused() {
-    let sleigh = catalogue::find("sleigh", &[]).expect("a scene");
+    let sleigh = scene::catalogue::find("sleigh", &[]).expect("a scene");
     for text in ["", "\n  # nothing yet\n"] {
         let refused =
             review::review(&sleigh, "theirs.txt", text, &review::Asked::default()).expect_err("nothing to read");

@@ -64,7 +64,7 @@ fn right_equations_are_called_right_in_any_coordinates() {
     for k in 0..cases {
         let mut random = SplitMix::new(77 + k);
         (0..4).for_each(|_| _ = random.bits());
-        let scene = catalogue::find(SYSTEMS[(k % SYSTEMS.len() as u64) as usize], &[]).unwrap();
+        let scene = scene::catalogue::find(SYSTEMS[(k % SYSTEMS.len() as u64) as usize], &[]).unwrap();
         let formulas = formulas(&scene, &mut random);
         let system = transformed(&scene, &formulas);
         let theirs = text(&system, &derive(&system), &mut random);
@@ -85,8 +85,8 @@ fn right_equations_are_called_right_in_any_coordinates() {
 /// Every scene as the program itself writes its equations: text, LaTeX, C.
 #[test]
 fn every_scene_is_right_as_it_is_shown() {
-    for (name, _) in catalogue::built_in() {
-        let scene = catalogue::find(name, &[]).unwrap();
+    for (name, _) in scene::catalogue::built_in() {
+        let scene = scene::catalogue::find(name, &[]).unwrap();
         let choices = motion::choices(&scene);
         let choice = choices.iter().find(|c| c.formulation == motion::CHETAEV).unwrap();
         let equations = motion::derive(&scene.system, choice).unwrap();
@@ -117,19 +117,19 @@ fn latex_of_papers_is_read() {
  \dot y\cos\phi &= \dot x \sin\phi .
 \end{align}
 \end{document}";
-    let sleigh = catalogue::find("sleigh", &[]).unwrap();
+    let sleigh = scene::catalogue::find("sleigh", &[]).unwrap();
     let found = review(&sleigh, "a.tex", theirs, &Asked::default()).unwrap();
     assert_eq!((found.verdict, &found.unknowns[..]), (Verdict::Right, &["N_1".to_string()][..]), "{found:?}");
 }
 
 #[test]
 fn quasi_velocities_leaves_and_logarithms() {
-    let sleigh = catalogue::find("sleigh", &[]).unwrap();
+    let sleigh = scene::catalogue::find("sleigh", &[]).unwrap();
     let kane = "phi' = w\nx' = u*cos(phi)\ny' = u*sin(phi)\nu' = a*w^2\nw' = -m*a*u*w/(I + m*a^2)";
     let found = review(&sleigh, "kane", kane, &Asked::default()).unwrap();
     assert_eq!((found.verdict, found.numbers), (Verdict::Right, Some(Numbers::Field)), "{found:?}");
     // by hand: a pendulum whose string is a constraint on velocities, on the leaf of its string's length
-    let pendulum = catalogue::find("velocity-pendulum", &[]).unwrap();
+    let pendulum = scene::catalogue::find("velocity-pendulum", &[]).unwrap();
     for (theirs, wheres, numbers, verdict) in [
         ("a'' = -g*sin(a)/b", &["x = b*sin(a)", "y = -b*cos(a)"][..], Numbers::Floats, Verdict::Right),
         ("a'' = g*sin(a)/b", &["x = b*sin(a)", "y = -b*cos(a)"][..], Numbers::Floats, Verdict::Wrong),

@@ -44,6 +44,7 @@
 //! reads back as the same scene. It knows no formulation and no equation of motion; all mathematics is that
 //! of `mechanics`.
 
+pub mod catalogue;
 mod constants;
 mod context;
 mod error;
@@ -62,6 +63,7 @@ mod redundant;
 mod removal;
 mod review;
 mod scene;
+pub mod scenery;
 mod section;
 mod start;
 mod start_equations;

@@ -5,10 +5,10 @@ use scene::Scene;
 
 const SCENES: [&str; 5] = [
     include_str!("../../../tests/tests/scenes/rattleback-by-vectors.toml"),
-    include_str!("../../catalogue/scenes/sledge.toml"),
-    include_str!("../../catalogue/scenes/appell-hamel.toml"),
-    include_str!("../../catalogue/scenes/three-cylinders.toml"),
-    include_str!("../../catalogue/scenes/velocity-pendulum.toml"),
+    include_str!("../../scene/scenes/sledge.toml"),
+    include_str!("../../scene/scenes/appell-hamel.toml"),
+    include_str!("../../scene/scenes/three-cylinders.toml"),
+    include_str!("../../scene/scenes/velocity-pendulum.toml"),
 ];
 
 /// What is put in, between blanks.

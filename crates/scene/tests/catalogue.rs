@@ -7,7 +7,7 @@ use scene::Scene;
 use symbolic::{Expr, Symbol};
 
 fn scenes() -> Vec<Scene> {
-    let folder = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../crates/catalogue/scenes");
+    let folder = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../crates/scene/scenes");
     let mut paths: Vec<PathBuf> = std::fs::read_dir(folder).unwrap().map(|e| e.unwrap().path()).collect();
     paths.sort();
     let scenes: Vec<Scene> = paths.iter().map(|p| Scene::load(p).unwrap_or_else(|e| panic!("{e}"))).collect();

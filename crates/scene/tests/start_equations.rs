@@ -98,7 +98,7 @@ fn other_numbers_are_completed_alike() {
 
 #[test]
 fn an_equation_may_be_in_rates_of_a_removal() {
-    let text = include_str!("../../catalogue/scenes/sledge.toml");
+    let text = include_str!("../../scene/scenes/sledge.toml");
     let start = text.find("[start").expect("a start");
     let removal = text.find("[removal").expect("a removal");
     let given = "[start]\nequations = [\"phi' = 2 + 1.8*(x'*cos(phi) + y'*sin(phi))\"]\nvelocities = { \"u'\" = -0.5 }";

@@ -13,7 +13,7 @@ use crate::tools::{Outcome, build, cargo, outside, succeed, target};
 
 /// The sources of the page, and of what answers it.
 const PAGE: &str = "crates/explore/page";
-const SOURCES: [&str; 4] = [PAGE, "crates/explore/src", "crates/catalogue/scenes", "crates/catalogue/classics"];
+const SOURCES: [&str; 4] = [PAGE, "crates/explore/src", "crates/scene/scenes", "crates/scene/classics"];
 /// Endings of sources.
 const ENDINGS: [&str; 7] = ["js", "mjs", "css", "html", "json", "rs", "toml"];
 /// The committed page.

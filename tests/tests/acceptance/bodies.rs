@@ -158,7 +158,7 @@ fn bodies_touch_and_do_not_slip() {
 
 #[test]
 fn a_wrong_sign_slips() {
-    let text = catalogue::source("disc").expect("a scene");
+    let text = scene::catalogue::source("disc").expect("a scene");
     let wrong = text.replace("rotation(zy, phi, psi)", "rotation(zy, phi, -psi)");
     let scene = Scene::parse("disc", &wrong).unwrap_or_else(|e| panic!("{e}"));
     let found = moved(&scene);
@@ -182,7 +182,7 @@ fn bodies_that_are_put_wrong_are_found() {
         ("martinet", "atan(y^2/2)", "atan(y^2)"),
     ];
     for (name, right, put) in wrong {
-        let text = catalogue::source(name).expect("a scene");
+        let text = scene::catalogue::source(name).expect("a scene");
         let (system, view) = text.split_once("[view.").expect("bodies");
         assert!(view.contains(right), "{name} has no {right}");
         let text = format!("{system}[view.{}", view.replace(right, put));

@@ -1,6 +1,6 @@
 //! Chains in few coordinates, by the velocities of their bodies, are the same systems.
 
-use catalogue::trailer::{self, Coordinates};
+use scene::catalogue::trailer::{self, Coordinates};
 use equations::{Compiled, Plan};
 use mechanics::ConstantsRule;
 use motion::{
@@ -136,7 +136,7 @@ fn a_long_train_is_trusted_and_as_good_as_it_says() {
 fn short_hitches_are_no_reason_for_another_form() {
     for (trailers, hitch) in [(4, 1e-2), (3, 1e-5)] {
         let overrides = [("d", hitch), ("duration", 10.0 * hitch)].map(|(name, x)| (name.to_string(), x.into()));
-        let scene = catalogue::find(&format!("n-trailer-{trailers}"), &overrides).expect("a train");
+        let scene = scene::catalogue::find(&format!("n-trailer-{trailers}"), &overrides).expect("a train");
         must_be_as_good_as_it_says(&format!("{trailers} trailers, hitches of {hitch:e}"), &scene);
     }
 }

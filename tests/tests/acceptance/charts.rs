@@ -109,9 +109,9 @@ fn classic_systems_go_on_by_other_charts_as_with_multipliers() {
     let mut passed = 0;
     for scene in [
         trailers(),
-        classic("roller-racer", include_str!("../../../crates/catalogue/classics/roller-racer.toml"), 20.0),
-        classic("rattleback", include_str!("../../../crates/catalogue/classics/rattleback.toml"), 20.0),
-        classic("snakeboard", include_str!("../../../crates/catalogue/classics/snakeboard.toml"), 20.0),
+        classic("roller-racer", include_str!("../../../crates/scene/classics/roller-racer.toml"), 20.0),
+        classic("rattleback", include_str!("../../../crates/scene/classics/rattleback.toml"), 20.0),
+        classic("snakeboard", include_str!("../../../crates/scene/classics/snakeboard.toml"), 20.0),
         // it falls, its front wheel is nearly flat on the ground at 0.9713, and at 3.3287 its constraints are
         // nearly dependent
         Scene { duration: 3.0, ..falling_bicycle() },

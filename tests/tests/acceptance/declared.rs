@@ -1,6 +1,6 @@
 //! Declared time derivatives: series taken from those one order ahead are those of their own formulas.
 
-use catalogue::trailer::Coordinates;
+use scene::catalogue::trailer::Coordinates;
 use equations::{Compiled, Equations, Plan};
 use motion::REDUCED_CHETAEV;
 use proptest::{prop_assert, test_runner::TestCaseError};

@@ -1,7 +1,7 @@
 //! Members of ensembles against motions derived and solved one by one, in every formulation of every scene;
 //! their starts against those of the text with other numbers in it.
 
-use catalogue::{CLASSICS, SCENES, find};
+use scene::catalogue::{CLASSICS, SCENES, find};
 use equations::Equations;
 use integrate::Method;
 use motion::{

@@ -26,7 +26,7 @@ fn of(name: &str) -> Scene {
 /// Vakonomic, `v = x' + i y'`, linear friction c: μ is constant, `v' = (−c + i μ) v`, a spiral.
 #[test]
 fn heisenberg_particle_with_linear_friction() {
-    let text = catalogue::text_of("heisenberg").expect("built in");
+    let text = scene::catalogue::text_of("heisenberg").expect("built in");
     let c = 0.4;
     let text = format!("{text}\n[system.forces]\nx = \"-{c:?}*x'\"\ny = \"-{c:?}*y'\"\n");
     let scene = Scene::parse("heisenberg", &text).unwrap_or_else(|e| panic!("{e}"));
@@ -54,7 +54,7 @@ fn heisenberg_particle_with_linear_friction() {
 /// `(I + m R²) ψ'' = τ − c ψ'`, `J φ'' = −k φ'`.
 #[test]
 fn disc_with_a_motor() {
-    let text = catalogue::text_of("disc").expect("built in");
+    let text = scene::catalogue::text_of("disc").expect("built in");
     let (torque, c, k) = (0.2, 0.03, 0.01);
     let text = format!("{text}\n[system.forces]\npsi = \"{torque:?} - {c:?}*psi'\"\nphi = \"-{k:?}*phi'\"\n");
     let scene = Scene::parse("disc", &text).unwrap_or_else(|e| panic!("{e}"));

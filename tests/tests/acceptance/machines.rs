@@ -1,6 +1,6 @@
 //! Systems from bodies against those whose formulas were written by hand.
 
-use catalogue::find;
+use scene::catalogue::find;
 use comparison::{Beyond, beyond_contacts};
 use mechanics::{ConstantsRule, State};
 use motion::{CHETAEV, REMOVED_CONSTRAINT, Settings, VAKONOMIC, solve_choice};
@@ -48,7 +48,7 @@ const MACHINES: [(&str, &str); 28] = bodies![
 
 /// A built-in scene with bodies in the place of its formulas and picture.
 fn from_bodies(name: &str, bodies: &str) -> String {
-    let own = catalogue::source(name).unwrap_or_else(|e| panic!("{e}"));
+    let own = scene::catalogue::source(name).unwrap_or_else(|e| panic!("{e}"));
     let mut kept = String::new();
     let mut skips = false;
     for line in own.lines() {
@@ -160,7 +160,7 @@ fn bodies_move_as_formulas_by_hand_in_every_formulation() {
     for (name, bodies) in MACHINES {
         let set = [("duration".to_string(), 0.3)];
         let read = |text: &str| Scene::parse_with("scene", text, &set).unwrap_or_else(|e| panic!("{name}: {e}"));
-        let by_hand = read(&catalogue::source(name).unwrap_or_else(|e| panic!("{e}")));
+        let by_hand = read(&scene::catalogue::source(name).unwrap_or_else(|e| panic!("{e}")));
         let scene = read(&from_bodies(name, bodies));
         let h = by_hand.system.constraints.len();
         // multipliers belong to constraints as they are written: μ₀ = 0 says the same of both
@@ -186,7 +186,7 @@ fn bodies_move_as_formulas_by_hand_in_every_formulation() {
 
 #[test]
 fn built_in_scenes_are_not_remarkable() {
-    for (name, text) in catalogue::GROUPS.into_iter().flat_map(|(_, group)| group) {
+    for (name, text) in scene::catalogue::GROUPS.into_iter().flat_map(|(_, group)| group) {
         let remarks = Scene::remarks::<f64>(name, text, &[]).unwrap_or_else(|e| panic!("{e}"));
         let slips = |remark: &scene::SceneError| remark.to_string().contains("the contact of `ball` slips on `cone`");
         match *name {

@@ -2,7 +2,7 @@
 
 use std::f64::consts::FRAC_PI_2;
 
-use catalogue::trailer::{self, Coordinates};
+use scene::catalogue::trailer::{self, Coordinates};
 use diffsol_methods::{BDF, ESDIRK34, EVERY, TR_BDF2, TSIT45};
 use integrate::Method;
 use mechanics::ConstantsRule;

@@ -100,7 +100,7 @@ fn reactions_that_cannot_keep_the_constraints_are_refused_with_the_number() {
     let refused = |name: &str, overrides: &[(&str, f64)], change: Option<(&str, &str)>| {
         let mut scene = scene(name, overrides);
         if let Some((from, to)) = change {
-            let text = catalogue::text_of(name).expect("built in");
+            let text = scene::catalogue::text_of(name).expect("built in");
             assert!(text.contains(from), "{from}");
             scene = Scene::parse(name, &text.replace(from, to)).unwrap_or_else(|e| panic!("{e}"));
         }

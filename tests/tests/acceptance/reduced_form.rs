@@ -1,6 +1,6 @@
 //! Chetaev in quasi-velocities is Chetaev: against the saddle-point form and Maggi's, derived independently.
 
-use catalogue::trailer::{self, Coordinates};
+use scene::catalogue::trailer::{self, Coordinates};
 use equations::{Compiled, Equations};
 use mechanics::State;
 use motion::REDUCED_CHETAEV;

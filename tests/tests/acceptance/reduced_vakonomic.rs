@@ -2,7 +2,7 @@
 
 use std::cell::Cell;
 
-use catalogue::trailer::{self, Coordinates};
+use scene::catalogue::trailer::{self, Coordinates};
 use equations::{Compiled, Equations, Formulation, Outputs, Plan};
 use integrate::Method;
 use motion::{REDUCED_VAKONOMIC, Settings, VAKONOMIC, VAKONOMIC_COSTATE};

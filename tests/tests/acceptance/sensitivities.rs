@@ -191,7 +191,7 @@ fn derivatives_are_those_of_references() {
     if let Ok(wanted) = std::env::var("SENSITIVITIES") {
         let mut all = Judged::default();
         for (name, _) in
-            catalogue::built_in().filter(|(name, _)| wanted == "all" || wanted.split(',').any(|n| n == *name))
+            scene::catalogue::built_in().filter(|(name, _)| wanted == "all" || wanted.split(',').any(|n| n == *name))
         {
             all.merge(judge(name, |_, _| true));
         }

@@ -28,12 +28,12 @@ pub fn linear_scenes() -> Vec<Scene> {
 
 /// All built-in scenes.
 pub fn scenes() -> Vec<Scene> {
-    catalogue::SCENES.iter().map(|(name, _)| scene(name, &[])).collect()
+    scene::catalogue::SCENES.iter().map(|(name, _)| scene(name, &[])).collect()
 }
 
 /// The further systems of the literature.
 pub fn classics() -> Vec<Scene> {
-    catalogue::CLASSICS.iter().map(|(name, _)| scene(name, &[])).collect()
+    scene::catalogue::CLASSICS.iter().map(|(name, _)| scene(name, &[])).collect()
 }
 
 /// A bicycle that is pushed over at 2 m/s.
@@ -58,7 +58,7 @@ pub fn for_all_linear(seed: u64, test: impl Fn(&Scene) -> Result<(), TestCaseErr
 /// A built-in scene with other numbers.
 pub fn scene(name: &str, overrides: &[(&str, f64)]) -> Scene {
     let overrides: Vec<_> = overrides.iter().map(|&(n, x)| (n.to_string(), x.into())).collect();
-    catalogue::find(name, &overrides).unwrap_or_else(|e| panic!("{e}"))
+    scene::catalogue::find(name, &overrides).unwrap_or_else(|e| panic!("{e}"))
 }
 
 pub fn tight() -> Settings {

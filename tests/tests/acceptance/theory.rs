@@ -14,7 +14,7 @@ use super::support::{
 
 /// The sledge with `term` added to its Lagrangian, for 2 s.
 fn sledge_with(term: &str) -> Scene {
-    let text = catalogue::source("sledge").expect("built in");
+    let text = scene::catalogue::source("sledge").expect("built in");
     let old = "+ g*x*sin(alpha)\"";
     assert_eq!(text.matches(old).count(), 1);
     let text = text.replace(old, &format!("+ g*x*sin(alpha) {term}\""));
@@ -241,7 +241,7 @@ fn a_multiplier_at_the_start_kicks() {
 /// Proposition 1: `f → g f` changes nothing of `(κ)`, and `(ε)` by `O(ε²)`.
 #[test]
 fn a_factor_of_the_constraint() {
-    let text = catalogue::source("sledge").expect("built in");
+    let text = scene::catalogue::source("sledge").expect("built in");
     let (old, factor) = ("[\"y'*cos(phi) - x'*sin(phi)\"]", "[\"(2 + sin(phi) + x^2)*(y'*cos(phi) - x'*sin(phi))\"]");
     assert!(text.contains(old));
     let both = |numbers: &[(&str, f64)]| {

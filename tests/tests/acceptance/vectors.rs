@@ -9,22 +9,22 @@ use super::support::{choice, gap, must, tight};
 /// By hand, by vectors, and the time over which both are known.
 const PAIRS: [(&str, &str, f64); 4] = [
     (
-        include_str!("../../../crates/catalogue/classics/chaplygin-sphere.toml"),
+        include_str!("../../../crates/scene/classics/chaplygin-sphere.toml"),
         include_str!("../scenes/sphere-by-vectors.toml"),
         2.0,
     ),
     (
-        include_str!("../../../crates/catalogue/classics/falling-disc.toml"),
+        include_str!("../../../crates/scene/classics/falling-disc.toml"),
         include_str!("../scenes/disc-by-vectors.toml"),
         1.0,
     ),
     (
-        include_str!("../../../crates/catalogue/classics/rattleback.toml"),
+        include_str!("../../../crates/scene/classics/rattleback.toml"),
         include_str!("../scenes/rattleback-by-vectors.toml"),
         1.0,
     ),
     (
-        include_str!("../../../crates/catalogue/scenes/bicycle.toml"),
+        include_str!("../../../crates/scene/scenes/bicycle.toml"),
         include_str!("../scenes/bicycle-by-vectors.toml"),
         0.5,
     ),

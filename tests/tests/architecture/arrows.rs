@@ -32,11 +32,11 @@ const NEVER: [(&str, &str, &str); 17] = [
     ("reference", "integrate motion", "it measures the errors of `integrate`"),
     (
         "motion comparison",
-        "program pages bench picture catalogue",
+        "program pages bench",
         "the library knows no files, pictures or command line",
     ),
     ("motion linear judge", "comparison", "one formulation has its motions before they are compared"),
-    ("linear explore", "program pages picture catalogue", "the library knows no files, pictures or command line"),
+    ("linear explore", "program pages", "the library knows no files, pictures or command line"),
     ("random", "validation", "claims know no pages"),
     ("tests", "deltaq engine", "programs are tested where they are"),
 ];

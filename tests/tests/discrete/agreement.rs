@@ -1,6 +1,6 @@
 //! Every scene, and systems that nobody chose: discrete motions of order 8 come to the derived ones.
 
-use catalogue::{SCENES, find};
+use scene::catalogue::{SCENES, find};
 use discrete::{Composition, DiscreteError};
 use integrate::Method;
 use mechanics::ConstantsRule;

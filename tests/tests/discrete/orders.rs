@@ -1,7 +1,7 @@
 //! Orders of discrete principles and compositions: error against step, above the plateau of round-off.
 
 use bench::exponent;
-use catalogue::find;
+use scene::catalogue::find;
 use discrete::Composition;
 use equations::Formulation;
 use mechanics::ConstantsRule;

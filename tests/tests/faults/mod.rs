@@ -180,7 +180,7 @@ fn faults_are_noticed() {
     let of_scene = |i: usize| match SCENES.get(i) {
         Some((name, numbers, guards)) => {
             let numbers: Vec<_> = numbers.iter().map(|&(name, x)| (name.into(), x.into())).collect();
-            faults(&with_needs(catalogue::find(name, &numbers).expect("a scene")), *guards, a_place)
+            faults(&with_needs(scene::catalogue::find(name, &numbers).expect("a scene")), *guards, a_place)
         }
         None => {
             let (name, text) = OWN[i - SCENES.len()];

@@ -96,7 +96,7 @@ fn as_derived() -> motion::Settings {
 #[test]
 fn scenes_need_no_factorization_and_have_the_rates_of_the_plain_form() {
     let mut count = 0;
-    for (name, text) in catalogue::SCENES {
+    for (name, text) in scene::catalogue::SCENES {
         let scene = scene::Scene::parse(name, text).expect("a scene");
         for choice in motion::choices(&scene) {
             let Ok(mut motion) = motion::solve_choice(&scene, &choice, &as_derived()) else { continue };
@@ -112,7 +112,7 @@ fn scenes_need_no_factorization_and_have_the_rates_of_the_plain_form() {
 #[test]
 fn motions_on_which_pivots_go_through_zero_are_those_of_the_plain_form() {
     for (name, formulation) in [("trailer", VAKONOMIC), ("ball-in-cone", REMOVED_CONSTRAINT)] {
-        let scene = catalogue::find(name, &[]).expect("a scene");
+        let scene = scene::catalogue::find(name, &[]).expect("a scene");
         let choices = motion::choices(&scene);
         let choice = choices.iter().find(|c| c.formulation == formulation).expect("a choice");
         let many_steps = motion::Settings { method: Some(integrate::Method::Dop853), ..as_derived() };

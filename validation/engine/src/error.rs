@@ -1,6 +1,6 @@
 //! Errors of a run.
 
-use catalogue::NotFound;
+use scene::catalogue::NotFound;
 use motion::SolveError;
 
 /// Why a scene cannot be put to the engine, or compared with it.

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use std::time::Instant;
 
 use anyhow::{Result, bail};
-use catalogue::find;
+use scene::catalogue::find;
 use engine::{Ladder, Study, files};
 use program::write_all;
 

@@ -144,7 +144,7 @@ impl Mapping {
     /// [`EngineError::Mapping`] where the scene is not the one that the mapping was written for.
     ///
     /// ```
-    /// let scene = catalogue::find("turntable", &[])?;
+    /// let scene = scene::catalogue::find("turntable", &[])?;
     /// let mapping = engine::Mapping::new(&scene)?;
     /// assert!(mapping.residual < 1e-15);
     /// assert!((mapping.setup.spin.z - 0.2).abs() < 1e-15);

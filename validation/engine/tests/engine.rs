@@ -1,6 +1,6 @@
 //! Shorter runs than those of the report show the same.
 
-use catalogue::find;
+use scene::catalogue::find;
 use engine::{Contacts, EngineError, Ladder, Mapping, Run, Study, Surface};
 
 fn tends_to_chetaev(name: &str, duration: f64, ladder: Ladder) -> Study {
@@ -57,10 +57,10 @@ fn a_wrong_sign_is_no_mapping() {
     let slip = setup.slip(setup.pose.centre, setup.velocity, setup.spin).length();
     assert!((slip - 2.0 * 0.7 * 0.65).abs() < 1e-12, "{slip}");
     // a ball that is not homogeneous has another kinetic energy
-    let text = include_str!("../../../crates/catalogue/scenes/turntable.toml").replace("2*m*a^2/5", "2*m*a^2/3");
+    let text = include_str!("../../../crates/scene/scenes/turntable.toml").replace("2*m*a^2/5", "2*m*a^2/3");
     let hollow = scene::Scene::parse("turntable", &text).unwrap();
     assert!(matches!(Mapping::new(&hollow), Err(EngineError::Mapping { .. })));
-    let slipping = include_str!("../../../crates/catalogue/scenes/turntable.toml").replace("- Omega*x", "+ Omega*x");
+    let slipping = include_str!("../../../crates/scene/scenes/turntable.toml").replace("- Omega*x", "+ Omega*x");
     let slipping = scene::Scene::parse("turntable", &slipping).unwrap();
     assert!(matches!(Mapping::new(&slipping), Err(EngineError::Mapping { .. })));
 }
@@ -68,7 +68,7 @@ fn a_wrong_sign_is_no_mapping() {
 #[test]
 fn what_cannot_be_done_is_said() {
     assert!(matches!(Mapping::new(&find("sledge", &[]).unwrap()), Err(EngineError::NotMapped(_))));
-    let text = include_str!("../../../crates/catalogue/scenes/turntable.toml").replace("Omega", "rate");
+    let text = include_str!("../../../crates/scene/scenes/turntable.toml").replace("Omega", "rate");
     let renamed = scene::Scene::parse("turntable", &text).unwrap();
     assert!(matches!(Mapping::new(&renamed), Err(EngineError::Missing(_, name)) if name == "Omega"));
     let setup = Mapping::new(&find("turntable", &[]).unwrap()).unwrap().setup;

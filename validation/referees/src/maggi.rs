@@ -56,7 +56,7 @@ impl Residual {
 ///
 /// ```
 /// use referees::maggi::Maggi;
-/// let scene = scene::Scene::parse("sledge", include_str!("../../../crates/catalogue/scenes/sledge.toml"))?;
+/// let scene = scene::Scene::parse("sledge", include_str!("../../../crates/scene/scenes/sledge.toml"))?;
 /// let mut maggi = Maggi::new(&scene.system)?;
 /// let mut motion = maggi.solve(&scene.start, 2.0, 1e-11)?;
 /// let u = |t: f64| 0.5 + 9.81 * 0.4_f64.sin() / 1.1 * ((0.3 + 1.1 * t).sin() - 0.3_f64.sin());

@@ -6,8 +6,8 @@ use referees::closed_forms::{Sledge, SledgeState};
 use referees::maggi::{Maggi, MaggiError, Residual};
 use scene::Scene;
 
-const SLEDGE: &str = include_str!("../../../crates/catalogue/scenes/sledge.toml");
-const APPELL_HAMEL: &str = include_str!("../../../crates/catalogue/scenes/appell-hamel.toml");
+const SLEDGE: &str = include_str!("../../../crates/scene/scenes/sledge.toml");
+const APPELL_HAMEL: &str = include_str!("../../../crates/scene/scenes/appell-hamel.toml");
 
 /// Everything at once: a mass matrix that depends on the configuration, a gyroscopic term, time in L and in
 /// f, a force, two affine constraints.

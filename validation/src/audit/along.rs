@@ -17,7 +17,7 @@ const STEP: f64 = 2.5e-4;
 /// Each formula's largest residual along the removed-constraint motion of a scene by its first removal.
 /// Names: coordinates with primes (second ones by differences of velocities), parameters, `t`, horizon `t1`.
 pub(super) fn along(context: &Context, scene: &str, lines: &[String]) -> Result<Vec<f64>> {
-    let scene = catalogue::find(scene, &[])?;
+    let scene = scene::catalogue::find(scene, &[])?;
     let removal = scene.removals.first().context("no removal")?;
     let derived = equations(&scene.system, REMOVED_CONSTRAINT, Some(removal))?;
     let ConstantsRule::Natural { horizon } = removal.constants else { anyhow::bail!("no horizon") };

@@ -35,7 +35,7 @@ impl Constants {
     /// # Errors
     /// Where a motion cannot be computed.
     pub fn new() -> Result<Constants> {
-        let sledge = catalogue::find("sledge", &[("duration".into(), DURATION.into())])?;
+        let sledge = scene::catalogue::find("sledge", &[("duration".into(), DURATION.into())])?;
         let metric = &mut Metric::new(&sledge.system)?;
         let arc = removal(&sledge, "arc-length")?;
         let pull = parameter(&sledge, "g")? * parameter(&sledge, "alpha")?.sin();
@@ -101,7 +101,7 @@ impl Constants {
 }
 
 fn planar_body() -> Result<([f64; 2], f64)> {
-    let body = catalogue::find("planar-body", &[])?;
+    let body = scene::catalogue::find("planar-body", &[])?;
     let metric = &mut Metric::new(&body.system)?;
     let frame = removal(&body, "turning-frame")?;
     let mut newton = motion(&body, CHETAEV, None, ConstantsRule::Zero)?;
@@ -116,7 +116,7 @@ fn planar_body() -> Result<([f64; 2], f64)> {
 
 /// The removed-constraint motion of `P(t₀)` against the augmented vakonomic motion of `μ = −P − L_ẇ`.
 fn on_augmented(name: &'static str, of: &str, costates: &[f64]) -> Result<(&'static str, Vec<f64>, f64)> {
-    let scene = catalogue::find(name, &[("duration".into(), 1.0.into())])?;
+    let scene = scene::catalogue::find(name, &[("duration".into(), 1.0.into())])?;
     let removal = removal(&scene, of)?;
     let setting = setting(&scene);
     let rule = ConstantsRule::Given(costates.to_vec());

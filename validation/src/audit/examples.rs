@@ -38,7 +38,7 @@ const SHORT: usize = 6;
 /// # Errors
 /// Where it cannot be derived.
 pub fn cone() -> Result<Example> {
-    let scene = catalogue::find("ball-in-cone", &[])?;
+    let scene = scene::catalogue::find("ball-in-cone", &[])?;
     let removal = removal(&scene, "paper")?;
     let derived = equations(&scene.system, REMOVED_CONSTRAINT, Some(removal))?;
     Writer::new(&scene.system, removal, derived).write()
@@ -49,7 +49,7 @@ pub fn cone() -> Result<Example> {
 /// # Errors
 /// Where they can.
 pub fn refusal() -> Result<String> {
-    let scene = catalogue::find("three-cylinders", &[])?;
+    let scene = scene::catalogue::find("three-cylinders", &[])?;
     match equations(&scene.system, REMOVED_CONSTRAINT, Some(removal(&scene, "paper")?)) {
         Err(error) => Ok(error.to_string()),
         Ok(_) => anyhow::bail!("the paper's parametrization of example 3 is not refused"),

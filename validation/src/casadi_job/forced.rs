@@ -61,7 +61,7 @@ pub(super) const SUFFIX: &str = " with forces";
 /// Names and texts of scenes in which forces act.
 pub fn forced() -> Vec<(String, String)> {
     let pushed = FORCED.iter().map(|(name, forces)| {
-        let text = catalogue::text_of(name).unwrap_or_default();
+        let text = scene::catalogue::text_of(name).unwrap_or_default();
         (format!("{name}{SUFFIX}"), format!("{text}\n[system.forces]\n{forces}\n"))
     });
     pushed.chain([(format!("by-rate{SUFFIX}"), BY_RATE.to_string())]).collect()

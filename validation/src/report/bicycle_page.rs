@@ -117,7 +117,7 @@ fn in_table(drawn: &Sweep) -> impl Iterator<Item = &SweepPoint> {
 
 /// Lean and steer of the upright bicycle at these speeds.
 fn bicycle((from, to, count): (f64, f64, usize)) -> Result<Sweep> {
-    let scene = catalogue::find("bicycle", &[])?;
+    let scene = scene::catalogue::find("bicycle", &[])?;
     let constants = default_constants(CHETAEV, &scene);
     let choice = Choice { label: CHETAEV.title.into(), formulation: CHETAEV, removal: None, constants };
     Ok(sweep(

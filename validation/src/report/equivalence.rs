@@ -13,7 +13,7 @@ use serde::Deserialize;
 use serde_json::Value;
 
 use crate::report::folder_of;
-use catalogue::CLASSICS;
+use scene::catalogue::CLASSICS;
 use comparison::words::short;
 use pages::{DataPackage, Table};
 use program::File;
@@ -53,7 +53,7 @@ impl Asked {
     /// The scene with what `set` adds.
     pub(super) fn scene(&self, set: &BTreeMap<String, Written>) -> Result<Scene> {
         let numbers: Vec<_> = self.set.iter().chain(set).map(|(name, value)| (name.clone(), value.0.clone())).collect();
-        catalogue::find(&self.scene, &numbers).with_context(|| format!("scene `{}`", self.scene))
+        scene::catalogue::find(&self.scene, &numbers).with_context(|| format!("scene `{}`", self.scene))
     }
 
     /// What is found at this start, and at almost every one.
@@ -81,7 +81,7 @@ impl Asked {
         let name = &self.scene;
         let classic = CLASSICS.iter().any(|(known, _)| known == name);
         let page = if classic {
-            format!("../../crates/catalogue/classics/{name}.toml")
+            format!("../../crates/scene/classics/{name}.toml")
         } else {
             format!("../{}/{name}.md", folder_of(name))
         };

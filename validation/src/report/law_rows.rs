@@ -42,7 +42,7 @@ fn row(name: &'static str, end: f64, kappa: f64) -> Result<Row> {
     let epsilon = 1.0 / kappa;
     let motion = |(parameter, value): (&str, f64), formulation: &Formulation, multipliers: Option<Vec<f64>>| {
         let numbers = [("duration", end), (parameter, value)].map(|(name, x)| (name.to_string(), x.into()));
-        let scene: Scene = catalogue::find(name, &numbers)?;
+        let scene: Scene = scene::catalogue::find(name, &numbers)?;
         let choice = choices(&scene).into_iter().find(|choice| choice.formulation == formulation);
         let mut choice = choice.context("no such formulation")?;
         if let Some(multipliers) = multipliers {

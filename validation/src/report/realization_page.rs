@@ -226,7 +226,7 @@ fn approach(
 }
 
 fn of_scene(name: &str, duration: f64) -> Result<Vec<Approach>> {
-    let mut scene: Scene = catalogue::find(name, &[("duration".into(), duration.into())])?;
+    let mut scene: Scene = scene::catalogue::find(name, &[("duration".into(), duration.into())])?;
     if scene.multipliers.iter().all(|mu| *mu == 0.0) {
         scene.multipliers = (0..scene.multipliers.len()).map(|i| MULTIPLIERS[i % 2]).collect();
     }

@@ -18,7 +18,7 @@ use motion::{
 use scene::Scene;
 use serde::Serialize;
 
-use catalogue::trailer::{Coordinates, scene};
+use scene::catalogue::trailer::{Coordinates, scene};
 
 /// Numbers of trailers.
 pub const TRAILERS: [usize; 9] = [1, 2, 5, 10, 20, 40, 80, 160, 320];

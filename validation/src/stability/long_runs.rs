@@ -111,7 +111,7 @@ impl Long {
     /// # Errors
     /// Where the scene or the reference is missing.
     pub fn run(&self, stepping: Stepping) -> Result<LongRun> {
-        let scene = catalogue::find(self.scene, &[("duration".into(), self.duration.into())])?;
+        let scene = scene::catalogue::find(self.scene, &[("duration".into(), self.duration.into())])?;
         let mut choice = choice(&scene, self.formulation).map_err(anyhow::Error::msg)?;
         if let Some(each) = self.constants {
             choice.constants = ConstantsRule::Given(vec![each; scene.system.constraints.len()]);

@@ -6,7 +6,7 @@ use clap::{Args, ValueEnum};
 use equations::Formulation;
 use scene::{Number, Scene};
 
-use catalogue::NotFound;
+use scene::catalogue::NotFound;
 use program::TextOrJson;
 
 /// A scene with changes.
@@ -20,7 +20,7 @@ pub struct SceneArguments {
 
 impl SceneArguments {
     pub(crate) fn find(&self) -> Result<Scene, NotFound> {
-        catalogue::find(&self.scene, &self.set.overrides)
+        scene::catalogue::find(&self.scene, &self.set.overrides)
     }
 }
 

@@ -24,7 +24,7 @@ fn main() -> Result<()> {
         let (name, value) = pair.split_once('=').with_context(|| format!("`{pair}` is not NAME=VALUE"))?;
         Ok((name.to_string(), value.parse().with_context(|| format!("`{pair}`"))?))
     });
-    let scene = catalogue::find("turntable", &pairs.collect::<Result<Vec<_>>>()?)?;
+    let scene = scene::catalogue::find("turntable", &pairs.collect::<Result<Vec<_>>>()?)?;
     let setup = Mapping::new(&scene)?.setup;
     let samples = steps / every;
     let run = Run { contacts, duration: dt * steps as f64, steps, samples }.of(&setup)?;

@@ -11,7 +11,7 @@ use validation::integrals::files;
 /// # Errors
 /// A name that is no scene's.
 pub(crate) fn asked(names: &[String]) -> Result<Vec<&str>> {
-    let known: Vec<&str> = catalogue::built_in().map(|(name, _)| *name).collect();
+    let known: Vec<&str> = scene::catalogue::built_in().map(|(name, _)| *name).collect();
     if let Some(unknown) = names.iter().find(|name| !known.contains(&&name[..])) {
         bail!("--scenes: unknown scene `{unknown}`; known: {}", known.join(", "));
     }

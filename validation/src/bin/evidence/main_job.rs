@@ -171,7 +171,7 @@ const ELSEWHERE: &str = "say what to do: without a command the main job runs, wh
 pub(crate) fn sources() -> Option<PathBuf> {
     let here = std::env::current_dir().unwrap_or_default();
     let is_root =
-        |folder: &&Path| folder.join("crates/catalogue/scenes").is_dir() && folder.join("validation").is_dir();
+        |folder: &&Path| folder.join("crates/scene/scenes").is_dir() && folder.join("validation").is_dir();
     here.ancestors().find(is_root).map(Path::to_owned)
 }
 
@@ -185,7 +185,7 @@ pub(crate) fn run(arguments: &JobArguments, quiet: bool) -> Result<String> {
         None if sources().is_some() => "reports".into(),
         None => bail!("{ELSEWHERE}\n\n{}", Cli::command().render_help()),
     };
-    let known: Vec<&str> = catalogue::SCENES.iter().map(|(name, _)| *name).collect();
+    let known: Vec<&str> = scene::catalogue::SCENES.iter().map(|(name, _)| *name).collect();
     if let Some(unknown) = arguments.scenes.iter().find(|s| !known.contains(&s.as_str())) {
         bail!("unknown scene `{unknown}`; known: {}", known.join(", "));
     }
@@ -260,7 +260,7 @@ fn compare_all(names: &[&str], quiet: bool) -> Result<Vec<SceneReport>> {
     let bar = parallel::progress(2 * names.len(), quiet);
     let found = parallel::map(names, |name| {
         bar.set_message(name.to_string());
-        let comparison = compared(catalogue::find(name, &[])?, &settings)?;
+        let comparison = compared(scene::catalogue::find(name, &[])?, &settings)?;
         if !quiet {
             let (of, line) = first_sentence(&comparison);
             bar.suspend(|| Answer::from(told(&of, &line)).print())?;

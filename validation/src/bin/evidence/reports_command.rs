@@ -26,7 +26,7 @@ fn check(arguments: &ReportsArguments) -> Result<String> {
     };
     let text = read("verdicts.json".as_ref())?;
     let mut old: Value = serde_json::from_str(&text).with_context(|| format!("verdicts.json; {MEND}"))?;
-    let names: Vec<&str> = catalogue::SCENES.iter().map(|(name, _)| *name).collect();
+    let names: Vec<&str> = scene::catalogue::SCENES.iter().map(|(name, _)| *name).collect();
     let mut results = Results::of(Section::value_variants(), &names, None, true)?;
     let mut new: Value = serde_json::from_str(&pretty("verdicts", &results.verdicts()))?;
     let left_out = results.casadi_not_run.is_some();

@@ -36,7 +36,7 @@ fn questions(point: f64, overrides: &[(&str, f64)]) -> Vec<Question> {
     let scene = move || -> Result<Scene, SceneError> {
         Scene::parse_with(
             "ball-in-cone",
-            include_str!("../../../../crates/catalogue/scenes/ball-in-cone.toml"),
+            include_str!("../../../../crates/scene/scenes/ball-in-cone.toml"),
             &overrides,
         )
     };

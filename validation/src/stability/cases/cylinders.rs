@@ -8,7 +8,7 @@ use scene::{Scene, SceneError};
 use crate::stability::question::Question;
 use crate::stability::reference::Reference;
 
-const TEXT: &str = include_str!("../../../../crates/catalogue/scenes/three-cylinders.toml");
+const TEXT: &str = include_str!("../../../../crates/scene/scenes/three-cylinders.toml");
 
 /// The scene's rate of W, which has no value where sin θ sin(θ − α) = 0, and a rate that always has one.
 const START: [&str; 2] = ["\"W'\"     = 0.6", "\"phi'\" = 0.5"];

@@ -28,7 +28,7 @@ pub(super) fn added(strength: f64) -> Vec<Question> {
 }
 
 fn massive(strength: f64) -> Result<Subject, String> {
-    let scene = catalogue::find("particle", &[]).map_err(|error| error.to_string())?;
+    let scene = scene::catalogue::find("particle", &[]).map_err(|error| error.to_string())?;
     let system = with_added_mass(&scene.system, strength);
     let setting = Setting { system: &scene.system, start: &scene.start, end: scene.duration };
     let start = at_momentum(setting, &system, &[MULTIPLIER]).map_err(|error| error.to_string())?;
@@ -45,7 +45,7 @@ fn massive(strength: f64) -> Result<Subject, String> {
 }
 
 pub(super) fn ratio(mass: f64) -> Vec<Question> {
-    let text = include_str!("../../../../crates/catalogue/scenes/particle.toml")
+    let text = include_str!("../../../../crates/scene/scenes/particle.toml")
         .replace("z'^2)/2", &format!("{mass:?}*z'^2)/2"));
     super::questions(
         mass,

@@ -15,7 +15,7 @@ const GRAVITY: f64 = 9.81;
 const START: [f64; 8] = [0.0, 0.0, 0.3, 0.0, 0.0, 0.1, 0.4, 3.0];
 
 pub(super) fn questions(duration: f64) -> Vec<Question> {
-    let text = include_str!("../../../../crates/catalogue/classics/rattleback.toml");
+    let text = include_str!("../../../../crates/scene/classics/rattleback.toml");
     let scene = move || Scene::parse_with("rattleback", text, &[("duration".into(), duration)]);
     let mut questions = super::questions(duration, scene, &[CHETAEV], |_| Reference::Ode {
         y: START.to_vec(),

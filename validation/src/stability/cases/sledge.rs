@@ -20,7 +20,7 @@ pub(super) fn steps(step: f64) -> Vec<Question> {
 
 fn scene(k: f64, duration: f64) -> Result<Scene, SceneError> {
     let overrides = [("k".into(), k), ("duration".into(), duration)];
-    Scene::parse_with("sledge", include_str!("../../../../crates/catalogue/scenes/sledge.toml"), &overrides)
+    Scene::parse_with("sledge", include_str!("../../../../crates/scene/scenes/sledge.toml"), &overrides)
 }
 
 /// The sledge of the scene with radius of gyration `k`.

@@ -16,7 +16,7 @@ const ANGLES: [f64; 2] = [0.2, 0.5];
 const RATES: [f64; 3] = [0.5, 1.5, 0.3];
 
 pub(super) fn questions(duration: f64) -> Vec<Question> {
-    let text = include_str!("../../../../crates/catalogue/classics/snakeboard.toml");
+    let text = include_str!("../../../../crates/scene/classics/snakeboard.toml");
     let scene = move || Scene::parse_with("snakeboard", text, &[("duration".into(), duration)]);
     let mut questions =
         super::questions(duration, scene, &[VAKONOMIC, VAKONOMIC_COSTATE], |_| Board::at_start().reference());

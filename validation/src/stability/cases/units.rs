@@ -21,7 +21,7 @@ pub(super) fn questions(unit: f64, [length, time, action, constraint]: [i32; 4])
 }
 
 fn subject(scaling: &Scaling, formulation: &'static Formulation) -> Result<Subject, String> {
-    let scene = catalogue::find("sledge", &[]).map_err(|error| error.to_string())?;
+    let scene = scene::catalogue::find("sledge", &[]).map_err(|error| error.to_string())?;
     let system = scaling.system(&scene.system);
     let removal = choice(&scene, formulation)?.removal.map(|removal| scaling.removal(&system, &removal));
     let equations = equations(&system, formulation, removal.as_ref()).map_err(|error| error.to_string())?;

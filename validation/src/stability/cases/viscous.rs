@@ -12,7 +12,7 @@ const DURATION: f64 = 10.0;
 
 pub(super) fn questions(strength: f64) -> Vec<Question> {
     let subject = move || {
-        let scene = catalogue::find("sledge", &[]).map_err(|error| error.to_string())?;
+        let scene = scene::catalogue::find("sledge", &[]).map_err(|error| error.to_string())?;
         let system = with_friction(&scene.system, strength);
         let mut equations = equations(&system, CHETAEV, None).map_err(|error| error.to_string())?;
         equations.coordinates.truncate(3);

@@ -4,16 +4,16 @@
 //! the first body that moves, at its first contact or else at its origin.
 //!
 //! ```
-//! # let text = include_str!("../../catalogue/scenes/sledge.toml");
+//! # let text = include_str!("../scenes/sledge.toml");
 //! let scene = scene::Scene::parse("sledge", text)?;
 //! let (start, rate) = (scene.start.q.clone(), scene.start.v[2]);
 //! // the sledge turns on the spot
-//! let turning = scenery::Drawn {
+//! let turning = scene::scenery::Drawn {
 //!     label: "turning".into(),
 //!     style: picture::Style::Chetaev,
 //!     at: Box::new(|t| Ok::<_, std::convert::Infallible>(vec![start[0], start[1], start[2] + rate * t])),
 //! };
-//! let picture = scenery::moving(&scene, vec![turning])?.expect("the sledge has a view");
+//! let picture = scene::scenery::moving(&scene, vec![turning])?.expect("the sledge has a view");
 //! assert!(picture.to_svg().is_some_and(|svg| svg.contains("<animate")));
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
@@ -25,7 +25,7 @@ use std::fmt;
 
 use mechanics::{Body, Place, Pose, Poses};
 use picture::{Bodies, MovingPicture, Placement, Solid, Style};
-use scene::Scene;
+use crate::Scene;
 use symbolic::CompileError;
 
 /// A motion that is drawn.

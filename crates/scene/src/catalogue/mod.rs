@@ -5,28 +5,28 @@ pub mod trailer;
 use std::path::Path;
 use std::sync::OnceLock;
 
-use scene::{Number, Scene, SceneError};
+use crate::{Number, Scene, SceneError};
 
 /// Name and text of every built-in scene, in the order of reports: the paper's examples, then the classics.
 pub const SCENES: &[(&str, &str)] = &[
-    ("sledge", include_str!("../scenes/sledge.toml")),
-    ("ball-in-cone", include_str!("../scenes/ball-in-cone.toml")),
-    ("three-cylinders", include_str!("../scenes/three-cylinders.toml")),
-    ("ball-in-cone-as-printed", include_str!("../scenes/ball-in-cone-as-printed.toml")),
-    ("particle", include_str!("../scenes/particle.toml")),
-    ("heisenberg", include_str!("../scenes/heisenberg.toml")),
-    ("sleigh", include_str!("../scenes/sleigh.toml")),
-    ("disc", include_str!("../scenes/disc.toml")),
-    ("turntable", include_str!("../scenes/turntable.toml")),
-    ("appell-hamel", include_str!("../scenes/appell-hamel.toml")),
-    ("velocity-pendulum", include_str!("../scenes/velocity-pendulum.toml")),
-    ("bowl", include_str!("../scenes/bowl.toml")),
-    ("planar-body", include_str!("../scenes/planar-body.toml")),
-    ("trailer", include_str!("../scenes/trailer.toml")),
+    ("sledge", include_str!("../../scenes/sledge.toml")),
+    ("ball-in-cone", include_str!("../../scenes/ball-in-cone.toml")),
+    ("three-cylinders", include_str!("../../scenes/three-cylinders.toml")),
+    ("ball-in-cone-as-printed", include_str!("../../scenes/ball-in-cone-as-printed.toml")),
+    ("particle", include_str!("../../scenes/particle.toml")),
+    ("heisenberg", include_str!("../../scenes/heisenberg.toml")),
+    ("sleigh", include_str!("../../scenes/sleigh.toml")),
+    ("disc", include_str!("../../scenes/disc.toml")),
+    ("turntable", include_str!("../../scenes/turntable.toml")),
+    ("appell-hamel", include_str!("../../scenes/appell-hamel.toml")),
+    ("velocity-pendulum", include_str!("../../scenes/velocity-pendulum.toml")),
+    ("bowl", include_str!("../../scenes/bowl.toml")),
+    ("planar-body", include_str!("../../scenes/planar-body.toml")),
+    ("trailer", include_str!("../../scenes/trailer.toml")),
 ];
 
 macro_rules! beside {
-    ($($name:literal)*) => { &[$(($name, include_str!(concat!("../classics/", $name, ".toml")))),*] };
+    ($($name:literal)*) => { &[$(($name, include_str!(concat!("../../classics/", $name, ".toml")))),*] };
 }
 
 /// Further systems of the literature, asked one question: which of their motions are vakonomic.
@@ -38,13 +38,13 @@ pub const CLASSICS: &[(&str, &str)] = beside!(
 );
 
 /// Systems whose steady motions are looked at: in no comparison.
-pub const STEADY: &[(&str, &str)] = &[("bicycle", include_str!("../scenes/bicycle.toml"))];
+pub const STEADY: &[(&str, &str)] = &[("bicycle", include_str!("../../scenes/bicycle.toml"))];
 
 /// Systems whose constraints are kept by reactions of their own kind: in no report.
 pub const PRESCRIBED: &[(&str, &str)] = &[
-    ("servo-pendulum", include_str!("../scenes/servo-pendulum.toml")),
-    ("one-motor-robot", include_str!("../scenes/one-motor-robot.toml")),
-    ("rudder-skate", include_str!("../scenes/rudder-skate.toml")),
+    ("servo-pendulum", include_str!("../../scenes/servo-pendulum.toml")),
+    ("one-motor-robot", include_str!("../../scenes/one-motor-robot.toml")),
+    ("rudder-skate", include_str!("../../scenes/rudder-skate.toml")),
 ];
 
 /// Names and texts of scenes.

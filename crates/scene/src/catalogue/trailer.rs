@@ -10,7 +10,7 @@
 //! With n = 3 and minimal coordinates it is the scene `trailer`.
 
 use mechanics::{Completion, Parameter, State, System, View};
-use scene::Scene;
+use crate::Scene;
 use symbolic::{Expr, ParseError};
 
 /// Description of the train.
@@ -78,7 +78,7 @@ pub fn text(trailers: usize, coordinates: Coordinates) -> String {
 /// None for the texts made here, which parse.
 ///
 /// ```
-/// use catalogue::trailer::{Coordinates, scene};
+/// use scene::catalogue::trailer::{Coordinates, scene};
 /// let scene = scene(2, Coordinates::Maximal)?;
 /// assert_eq!((scene.system.dimension(), scene.system.constraints.len()), (9, 7));
 /// # Ok::<(), symbolic::ParseError>(())
