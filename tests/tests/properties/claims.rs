@@ -143,8 +143,8 @@ fn t17_the_family_between_does_not_depend_on_writing() {
 #[test]
 fn t18_a_multiplier_at_the_start_kicks_the_first_order_law() {
     let found = NONINTEGRABLE.holds(18);
-    let (slower, count) = part(&found, "not integrable: from v0 it is O(1/kappa) off");
-    assert!(count > 15 && slower > 0.8, "of {count} only {slower:.2} are farther without the kick");
+    let (slower, count) = part(&found, "not integrable, and Pi C mu0 is not zero: from v0 it is O(1/kappa) off");
+    assert!(count > 8 && slower > 0.8, "of {count} only {slower:.2} are farther without the kick");
 }
 
 #[test]
