@@ -131,25 +131,15 @@ impl Base {
         let own = point.inputs[first..].iter().zip(signs).map(|(&x, &turned)| if turned { -x } else { x });
         inputs.extend(own);
         let outputs = values(program, &inputs)?;
-        let one = C::of(Exact::ONE)?;
-        // the combinations of rows in which the others cancel: eliminated beside the identity
-        let width = if columns.is_empty() { 0 } else { self.rows };
+        // the combinations of rows in which the others cancel
         let row = |i: usize| {
             let slopes = &outputs[self.rows + i * self.others..][..self.others];
-            let unit = (0..width).map(|j| if i == j { one } else { C::ZERO });
-            slopes.iter().copied().chain([outputs[i]]).chain(unit).collect::<Vec<C>>()
+            slopes.iter().copied().chain([outputs[i]]).chain(columns.iter().map(|column| column[i])).collect()
         };
         let mut rows: Vec<Vec<C>> = (0..self.rows).map(row).collect();
         let done = eliminate(&mut rows, 0, self.others).len();
-        let rest = &rows[done..];
-        let column = |column: &Vec<C>| {
-            let entries: Vec<(usize, C)> =
-                column.iter().copied().enumerate().filter(|(_, x)| x.weight() != 0.0).collect();
-            let sum = |row: &Vec<C>| entries.iter().fold(C::ZERO, |sum, &(j, x)| sum + row[self.others + 1 + j] * x);
-            rest.iter().map(sum).collect()
-        };
-        let residual = rest.iter().map(|row| row[self.others]).collect();
-        Ok(Residuals { residual, columns: columns.iter().map(column).collect() })
+        let of = |k: usize| rows[done..].iter().map(|row| row[self.others + k]).collect();
+        Ok(Residuals { residual: of(0), columns: (1..=columns.len()).map(of).collect() })
     }
 }
 

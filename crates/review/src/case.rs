@@ -1,11 +1,12 @@
 //! Their accelerations at several points, held against rows of derivations.
 
+use decision::exact::Exact;
 use symbolic::{Evaluator, Symbol};
 
 use crate::atoms::{Atom, Called};
-use crate::base::Base;
+use crate::base::{Base, Residuals};
 use crate::frame::{Frame, Point, Trouble};
-use crate::number::{Number, constants, values};
+use crate::number::{Number, constants, eliminate, values};
 
 /// Draws until as many are found.
 const DRAWS: u64 = 60;
@@ -18,6 +19,8 @@ const TOLD: usize = 6;
 pub(crate) struct Case<'f, C> {
     pub(crate) frame: &'f Frame<'f>,
     pub(crate) points: Vec<Point<C>>,
+    /// The first of them with one acceleration larger by 1, for each: slopes by accelerations.
+    shifted: Vec<Point<C>>,
 }
 
 /// Columns of mistakes at each point.
@@ -27,6 +30,20 @@ pub(crate) type Columns<C> = Vec<Vec<Vec<C>>>;
 struct Stack<C> {
     residual: Vec<C>,
     columns: Vec<Vec<C>>,
+    /// The same at the shifted points, and how many these are.
+    slopes: Residuals<C>,
+    unknowns: usize,
+}
+
+impl<C: Number> Stack<C> {
+    /// Whether accelerations are determined with these multiples of columns: `0 = 0` explains everything.
+    fn determines(&self, of: &[(usize, C)]) -> bool {
+        let add = |i: usize, x: C| of.iter().fold(x, |sum, &(k, kappa)| sum + kappa * self.slopes.columns[k][i]);
+        let slopes: Vec<C> = self.slopes.residual.iter().enumerate().map(|(i, &x)| add(i, x)).collect();
+        let rows = slopes.len() / self.unknowns.max(1);
+        let mut slopes: Vec<Vec<C>> = slopes.chunks(rows.max(1)).map(<[C]>::to_vec).collect();
+        eliminate(&mut slopes, 0, rows).len() == self.unknowns
+    }
 }
 
 impl<'f, C: Number> Case<'f, C> {
@@ -49,11 +66,24 @@ impl<'f, C: Number> Case<'f, C> {
                     Err(other) => return Err(other),
                 }
                 if points.len() == count {
-                    return Ok(Case { frame, points });
+                    return Ok(Case::at(frame, points));
                 }
             }
         }
         Err(trouble.unwrap_or(Trouble::NoPoint("no point was found".into())))
+    }
+
+    /// With these points.
+    pub(crate) fn at(frame: &'f Frame<'f>, points: Vec<Point<C>>) -> Self {
+        let shifted = points.first().map_or(Vec::new(), |point| {
+            let with = |k: usize| {
+                let mut accelerations = point.accelerations.clone();
+                accelerations[k] = accelerations[k] + C::of(Exact::ONE).unwrap_or(C::ZERO);
+                Point { inputs: point.inputs.clone(), accelerations, broken: Vec::new() }
+            };
+            (0..point.accelerations.len()).map(with).collect()
+        });
+        Case { frame, points, shifted }
     }
 
     /// Texts of their constraints that fail somewhere.
@@ -77,33 +107,50 @@ impl<'f, C: Number> Case<'f, C> {
             let rows = columns.first().map_or(1, Vec::len).max(1);
             Some(outputs.chunks(rows).map(<[C]>::to_vec).collect())
         };
-        self.points.iter().map(at).collect()
+        self.points.iter().chain(&self.shifted).map(at).collect()
     }
 
     /// The residual of `base` and of the columns in it, with these signs of unknowns.
     fn stack(&self, base: &Base, signs: &[bool], columns: &Columns<C>) -> Option<Stack<C>> {
         let mut program = base.program(self.frame).ok()?;
-        let mut stack = Stack { residual: Vec::new(), columns: vec![Vec::new(); columns[0].len()] };
-        for (point, columns) in self.points.iter().zip(columns) {
-            let found = base.residuals(&mut program, point, &point.accelerations, signs, columns).ok()?;
-            stack.residual.extend(found.residual);
-            stack.columns.iter_mut().zip(found.columns).for_each(|(all, own)| all.extend(own));
-        }
-        Some(stack)
+        let (at_points, at_shifted) = columns.split_at(self.points.len());
+        let mut over = |points: &[Point<C>], columns: &[Vec<Vec<C>>]| {
+            let mut all = Residuals { residual: Vec::new(), columns: vec![Vec::new(); columns[0].len()] };
+            for (point, columns) in points.iter().zip(columns) {
+                let found = base.residuals(&mut program, point, &point.accelerations, signs, columns).ok()?;
+                all.residual.extend(found.residual);
+                all.columns.iter_mut().zip(found.columns).for_each(|(all, own)| all.extend(own));
+            }
+            Some(all)
+        };
+        let Residuals { residual, columns } = over(&self.points, at_points)?;
+        Some(Stack { residual, columns, slopes: over(&self.shifted, at_shifted)?, unknowns: self.shifted.len() })
     }
 
     /// Whether theirs are these equations.
-    pub(crate) fn is(&self, base: &Base) -> bool {
-        let Ok(mut program) = base.program::<C>(self.frame) else { return false };
+    ///
+    /// # Errors
+    /// The [`Trouble`] of a point at which these have no value, or determine no accelerations.
+    pub(crate) fn is(&self, base: &Base) -> Result<bool, Trouble> {
+        let mut program = base.program::<C>(self.frame).map_err(|fault| Trouble::NoPoint(fault.to_string()))?;
         let mut agrees = |point: &Point<C>, signs: &[bool]| {
-            let left = base.residuals(&mut program, point, &point.accelerations, signs, &[]);
-            if left.is_ok_and(|left| left.residual.iter().any(|r| !r.vanishes())) {
-                return false;
+            let left = base.residuals(&mut program, point, &point.accelerations, signs, &[])?;
+            if left.residual.iter().any(|r| !r.vanishes()) {
+                return Ok(false);
             }
-            let right = base.accelerations(&mut program, point, signs);
-            right.is_some_and(|a| a.iter().zip(&point.accelerations).all(|(&a, &b)| (a - b).vanishes()))
+            let open = || Trouble::NoPoint(format!("{} determine no accelerations", base.words.join(", ")));
+            let right = base.accelerations(&mut program, point, signs).ok_or_else(open)?;
+            Ok(right.iter().zip(&point.accelerations).all(|(&a, &b)| (a - b).vanishes()))
         };
-        base.signs(self.frame).iter().any(|signs| self.points.iter().all(|point| agrees(point, signs)))
+        for signs in base.signs(self.frame) {
+            let found = self.points.iter().map(|point| agrees(point, &signs)).find(|found| found != &Ok(true));
+            match found {
+                None => return Ok(true),
+                Some(Err(trouble)) => return Err(trouble),
+                Some(Ok(_)) => {}
+            }
+        }
+        Ok(false)
     }
 
     /// The single mistakes, or pairs, with which `base` becomes theirs.
@@ -134,7 +181,7 @@ fn named<C: Number>(called: &Called, kappa: C) -> Option<(usize, String)> {
 }
 
 fn one<C: Number>(stack: &Stack<C>, called: &[&Called], found: &mut Vec<(usize, Vec<String>)>) {
-    for (column, called) in stack.columns.iter().zip(called) {
+    for (k, (column, called)) in stack.columns.iter().zip(called).enumerate() {
         let open = (0..column.len()).filter(|&i| !column[i].vanishes());
         let Some(place) = open.max_by(|&a, &b| column[a].weight().total_cmp(&column[b].weight())) else { continue };
         // in proportion; quotients are dear in a field
@@ -143,7 +190,8 @@ fn one<C: Number>(stack: &Stack<C>, called: &[&Called], found: &mut Vec<(usize, 
             continue;
         }
         let Some(over) = u.inverse() else { continue };
-        if let Some((odd, words)) = named(called, -(r * over)) {
+        let kappa = -(r * over);
+        if let Some((odd, words)) = named(called, kappa).filter(|_| stack.determines(&[(k, kappa)])) {
             found.push((odd, vec![words]));
         }
     }
@@ -181,7 +229,9 @@ fn two<C: Number>(stack: &Stack<C>, called: &[&Called], found: &mut Vec<(usize, 
             if all.into_iter().any(|((&r, &a), &b)| !(r + kappas[0] * a + kappas[1] * b).vanishes()) {
                 continue;
             }
-            if let (Some((x, one)), Some((y, two))) = (named(called[i], kappas[0]), named(called[j], kappas[1])) {
+            if let (Some((x, one)), Some((y, two))) = (named(called[i], kappas[0]), named(called[j], kappas[1]))
+                && stack.determines(&[(i, kappas[0]), (j, kappas[1])])
+            {
                 found.push((x + y, vec![one, two]));
             }
         }

@@ -17,6 +17,19 @@ pub(crate) enum Trouble {
     Undetermined(Vec<String>),
 }
 
+impl Trouble {
+    /// What is said of it.
+    pub(crate) fn words(&self) -> String {
+        match self {
+            Trouble::NoPoint(why) => why.clone(),
+            Trouble::Contradiction => {
+                "no accelerations fulfil all of these equations where the constraints hold".into()
+            }
+            Trouble::Undetermined(names) => format!("these equations do not determine {}", names.join(", ")),
+        }
+    }
+}
+
 impl From<Flaw> for Trouble {
     fn from(flaw: Flaw) -> Self {
         Trouble::NoPoint(flaw.to_string())
@@ -172,12 +185,23 @@ impl<'r> Frame<'r> {
 
     /// Parameters of `L`, `f` and `Q` that stand in none of their equations.
     pub(crate) fn absent(&self) -> Vec<String> {
-        let (g, system) = (&self.reading.system.graph, &self.reading.system);
-        let theirs: Vec<Expr> = self.reading.equations.iter().map(|s| s.expression).collect();
-        let own = self.reading.of_scene(g, &system.written());
+        let g = &self.reading.system.graph;
+        let [own, theirs] = self.formulas();
         let stands = |es: &[Expr], s: Symbol| es.iter().any(|&e| g.depends_on(e, s));
         let parameters = self.reading.parameters.iter().map(|p| p.0);
         parameters.filter(|&s| stands(&own, s) && !stands(&theirs, s)).map(|s| g.name(s)).collect()
+    }
+
+    /// Whether something stands under a root, or has a kink.
+    pub(crate) fn has_roots(&self) -> bool {
+        !self.reading.system.graph.ends_of_pieces(&self.formulas().concat()).is_empty()
+    }
+
+    /// Those of the scene, and theirs.
+    fn formulas(&self) -> [Vec<Expr>; 2] {
+        let system = &self.reading.system;
+        let theirs = self.reading.equations.iter().map(|s| s.expression).collect();
+        [self.reading.of_scene(&system.graph, &system.written()), theirs]
     }
 
     fn evaluator<C: Number>(&self, linear: &Linear) -> Result<Evaluator<At<C>>, Trouble> {

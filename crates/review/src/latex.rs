@@ -1,4 +1,4 @@
-//! Equations in LaTeX of the common kind, as lines in the notation of scenes.
+//! Equations in LaTeX of the common kind, rewritten in the notation of scenes.
 
 use std::collections::HashMap;
 
@@ -17,20 +17,16 @@ const FUNCTIONS: &str = "sin cos tan cot sec csc sinh cosh tanh exp ln log arcsi
 /// [`ReviewError::Unreadable`] with the place.
 pub(crate) fn lines(g: &Graph, names: &[String], file: &str, text: &str) -> Result<Vec<Line>, ReviewError> {
     let plain = |latex: String| latex.replace(['{', '}', ' '], "");
-    let table: HashMap<String, String> =
-        names.iter().map(|name| (plain(g.latex_symbol(g.symbol(name))), name.clone())).collect();
+    let table = names.iter().map(|name| (plain(g.latex_symbol(g.symbol(name))), name.clone())).collect();
     let mut lines = Vec::new();
     for (number, piece) in pieces(text) {
-        let characters: Vec<char> = piece.chars().collect();
-        let mut reader = Reader { characters: &characters, at: 0, depth: 0, table: &table };
+        let mut reader = Reader { tokens: tokens(&piece), at: 0, depth: 0, table: &table };
         let place = format!("{file}:{number}");
-        let text = reader.sum(None).map_err(|what| {
-            let near: String = characters.iter().skip(reader.at.saturating_sub(1)).take(20).collect();
-            ReviewError::Unreadable { place: place.clone(), what: format!("{what}, near `{}`", near.trim()) }
+        let text = reader.sum("").map_err(|what| {
+            let near: String = reader.tokens.iter().skip(reader.at.saturating_sub(1)).take(12).copied().collect();
+            ReviewError::Unreadable { place: place.clone(), what: format!("{what}, near `{near}`") }
         })?;
-        if !text.trim().is_empty() {
-            lines.push(Line { place, text, defines: false });
-        }
+        lines.push(Line { place, text, defines: false });
     }
     Ok(lines)
 }
@@ -41,34 +37,23 @@ fn pieces(text: &str) -> Vec<(usize, String)> {
     let mut pieces: Vec<(usize, String)> = vec![(1, String::new())];
     for (number, line) in (1..).zip(text.lines()) {
         let line = line.split('%').next().unwrap_or_default().trim();
-        let ends = line.is_empty() || line.starts_with("```");
-        let open = pieces.last().is_some_and(|(_, piece)| piece.contains('='));
-        if ends || open && line.contains('=') {
-            pieces.push((number, String::new()));
-        }
-        if line.starts_with("```") {
-            continue;
-        }
-        let mut rest = line.to_owned();
+        let mut rest = if line.is_empty() || line.starts_with("```") { "$".to_owned() } else { line.to_owned() };
         for mark in ["\\begin", "\\end"] {
             while let Some(at) = rest.find(mark) {
                 let end = rest[at..].find('}').map_or(rest.len(), |end| at + end + 1);
-                rest.replace_range(at..end, "\\\\");
+                rest.replace_range(at..end, "$");
             }
         }
-        for mark in ["\\[", "\\]", "$$", "$"] {
-            rest = rest.replace(mark, "\\\\");
+        if line.contains('=') && pieces.last().is_some_and(|(_, piece)| piece.contains('=')) {
+            rest.insert(0, '$');
         }
-        for (i, part) in rest.split("\\\\").enumerate() {
-            if i > 0 {
-                pieces.push((number, String::new()));
-            }
-            if let Some((first, piece)) = pieces.last_mut() {
-                if piece.trim().is_empty() {
-                    *first = number;
-                }
-                piece.push(' ');
-                piece.push_str(part);
+        for mark in ["\\\\", "\\[", "\\]"] {
+            rest = rest.replace(mark, "$");
+        }
+        for (i, part) in rest.split('$').enumerate() {
+            match pieces.last_mut() {
+                Some((_, piece)) if i == 0 && !piece.trim().is_empty() => *piece += &format!(" {part}"),
+                _ => pieces.push((number, part.to_owned())),
             }
         }
     }
@@ -77,222 +62,166 @@ fn pieces(text: &str) -> Vec<(usize, String)> {
     pieces
 }
 
-struct Reader<'a> {
-    characters: &'a [char],
+/// Commands, digits and other signs, without those that only arrange.
+fn tokens(text: &str) -> Vec<&str> {
+    let (mut tokens, mut rest) = (Vec::new(), text);
+    while let Some(c) = rest.chars().next() {
+        let letters = |text: &str| text.find(|c: char| !c.is_ascii_alphabetic()).unwrap_or(text.len());
+        let second = rest[c.len_utf8()..].chars().next().map_or(0, char::len_utf8);
+        let length = match c {
+            '\\' => 1 + letters(&rest[1..]).max(second),
+            _ => c.len_utf8(),
+        };
+        let (token, after) = rest.split_at(length);
+        let command = token.strip_prefix('\\').unwrap_or("x");
+        let is_spacing = !command.starts_with(|c: char| c.is_ascii_alphabetic());
+        rest = match token {
+            "\\label" => after.split_once('}').unwrap_or_default().1,
+            _ => after,
+        };
+        let arranges =
+            c.is_whitespace() || "&~".contains(c) || is_spacing || BLANKS.split(' ').any(|own| own == command);
+        if !arranges && token != "\\label" {
+            tokens.push(token);
+        }
+    }
+    tokens
+}
+
+struct Reader<'t> {
+    tokens: Vec<&'t str>,
     at: usize,
     /// Operands that are within one another.
     depth: usize,
-    table: &'a HashMap<String, String>,
+    table: &'t HashMap<String, String>,
 }
 
-impl Reader<'_> {
-    fn peek(&mut self) -> Option<char> {
-        while self.characters.get(self.at).is_some_and(|c| c.is_whitespace() || *c == '&' || *c == '~') {
-            self.at += 1;
-        }
-        self.characters.get(self.at).copied()
+impl<'t> Reader<'t> {
+    fn peek(&self) -> &'t str {
+        self.tokens.get(self.at).unwrap_or(&"")
     }
 
-    fn word(&mut self, part: impl Fn(char) -> bool) -> String {
-        self.at = self.at.min(self.characters.len());
-        let from = self.at;
-        while self.characters.get(self.at).is_some_and(|&c| part(c)) {
-            self.at += 1;
-        }
-        self.characters[from..self.at].iter().collect()
+    fn next(&mut self) -> &'t str {
+        self.at += 1;
+        self.tokens.get(self.at - 1).unwrap_or(&"")
     }
 
     /// Everything up to `end`.
-    fn sum(&mut self, end: Option<char>) -> Result<String, String> {
+    fn sum(&mut self, end: &str) -> Result<String, String> {
         let (mut text, mut operand) = (String::new(), false);
-        while let Some(c) = self.peek() {
-            if Some(c) == end {
-                self.at += 1;
-                return Ok(text);
-            }
-            if ",.;".contains(c) && end.is_none() {
-                self.at += 1;
-            } else if "+-=*/".contains(c) {
-                self.at += 1;
-                text.push(c);
-                operand = false;
-            } else if c == '^' {
-                self.at += 1;
-                text += &format!("^({})", self.argument()?);
-            } else if let Some(part) = self.operand()? {
-                match part.as_str() {
-                    "*" => operand = false,
-                    _ if operand => text.push('*'),
-                    _ => operand = true,
+        loop {
+            match self.next() {
+                token if token == end => return Ok(text),
+                "" => return Err(format!("`{end}` is missing")),
+                "," | "." | ";" if end.is_empty() => {}
+                sign @ ("+" | "-" | "=" | "*" | "/") => (text, operand) = (text + sign, false),
+                "\\cdot" | "\\times" => (text, operand) = (text + "*", false),
+                "^" => text += &format!("^({})", self.argument()?),
+                token => {
+                    let times = if operand { "*" } else { "" };
+                    (text, operand) = (text + times + &self.operand(token)?, true);
                 }
-                text += &part;
             }
         }
-        end.map_or(Ok(text), |end| Err(format!("`{end}` is missing")))
     }
 
     /// `{…}`, or the next sign.
     fn argument(&mut self) -> Result<String, String> {
-        match self.peek() {
-            Some('{') => {
-                self.at += 1;
-                self.sum(Some('}'))
-            }
-            Some(c) if c.is_ascii_digit() => {
-                self.at += 1;
-                Ok(c.to_string())
-            }
-            _ => self.operand()?.ok_or_else(|| "something is missing".into()),
+        match self.next() {
+            "{" => self.sum("}"),
+            "" => Err("the formula ends too early".into()),
+            digit if is_number(digit) => Ok(digit.into()),
+            token => self.operand(token),
         }
     }
 
-    /// A number, name, group or function; nothing where a sign only arranges.
-    fn operand(&mut self) -> Result<Option<String>, String> {
-        let Some(c) = self.peek() else { return Err("the formula ends too early".into()) };
+    /// `{…}`, or the next sign, as it stands, without brackets.
+    fn raw(&mut self) -> String {
+        let (mut text, mut depth) = (String::new(), 0);
+        loop {
+            match self.next() {
+                "{" => depth += 1,
+                "}" => depth -= 1,
+                token => text += token,
+            }
+            if depth <= 0 || self.at >= self.tokens.len() {
+                return text;
+            }
+        }
+    }
+
+    /// A number, name, group or function.
+    fn operand(&mut self, token: &str) -> Result<String, String> {
         if self.depth == 200 {
             return Err("more than 200 operands stand within one another".into());
         }
         self.depth += 1;
-        let found = self.operand_at(c);
-        self.depth -= 1;
-        found
-    }
-
-    fn operand_at(&mut self, c: char) -> Result<Option<String>, String> {
-        let group = |reader: &mut Self, end| {
-            reader.at += 1;
-            reader.sum(Some(end)).map(|inner| Some(format!("({inner})")))
+        let command = token.strip_prefix('\\').unwrap_or_default();
+        let found = match token {
+            "(" => format!("({})", self.sum(")")?),
+            "[" => format!("({})", self.sum("]")?),
+            "{" => format!("({})", self.sum("}")?),
+            "\\frac" | "\\dfrac" | "\\tfrac" => format!("(({})/({}))", self.argument()?, self.argument()?),
+            "\\sqrt" if self.peek() != "[" => format!("sqrt({})", self.argument()?),
+            "\\dot" | "\\ddot" => {
+                let letter = self.raw();
+                self.name(letter, command.len() - 2)
+            }
+            "\\mathrm" | "\\operatorname" | "\\text" | "\\mathit" => {
+                let word = format!("\\mathrm{}", self.raw());
+                self.name(word, 0)
+            }
+            "\\sqrt" | "\\int" | "\\sum" | "\\partial" => return Err(format!("`{token}` is not read")),
+            _ if FUNCTIONS.split(' ').any(|own| own == command) => self.call(command)?,
+            _ if is_number(token) => {
+                let mut number = token.to_owned();
+                while is_number(self.peek()) || self.peek() == "." {
+                    number += self.next();
+                }
+                number.trim_end_matches('.').to_owned()
+            }
+            _ if !command.is_empty() || token.chars().all(char::is_alphabetic) => self.name(token.into(), 0),
+            _ => return Err(format!("`{token}` cannot stand here")),
         };
-        match c {
-            '(' => group(self, ')'),
-            '[' => group(self, ']'),
-            '{' => group(self, '}'),
-            c if c.is_ascii_digit() => Ok(Some(self.word(|c| c.is_ascii_digit() || c == '.'))),
-            c if c.is_alphabetic() => {
-                self.at += 1;
-                self.name(c.to_string(), 0).map(Some)
-            }
-            '\\' => {
-                self.at += 1;
-                let command = self.word(|c| c.is_ascii_alphabetic());
-                self.command(&command)
-            }
-            other => Err(format!("`{other}` cannot stand here")),
-        }
+        self.depth -= 1;
+        Ok(found)
     }
 
-    fn command(&mut self, command: &str) -> Result<Option<String>, String> {
-        if command.is_empty() {
-            self.at += 1;
-            return Ok(None);
-        }
-        if BLANKS.split(' ').any(|own| own == command) {
-            return Ok(None);
-        }
-        if FUNCTIONS.split(' ').any(|own| own == command) {
-            return self.call(&command.replace("arc", "a").replace("log", "ln")).map(Some);
-        }
-        match command {
-            "cdot" | "times" => Ok(Some("*".into())),
-            "frac" | "dfrac" | "tfrac" => {
-                let (top, bottom) = (self.argument()?, self.argument()?);
-                Ok(Some(format!("(({top})/({bottom}))")))
-            }
-            "sqrt" if self.peek() != Some('[') => Ok(Some(format!("sqrt({})", self.argument()?))),
-            "dot" | "ddot" => self.name(String::new(), command.len() - 2).map(Some),
-            "mathrm" | "operatorname" | "text" | "mathit" | "label" => {
-                self.peek();
-                self.at += 1;
-                let word = self.word(|c| c != '}').replace('\\', "");
-                self.at += 1;
-                if command == "label" { Ok(None) } else { self.name(format!("\\mathrm{word}"), 0).map(Some) }
-            }
-            "sqrt" | "int" | "sum" | "partial" => Err(format!("`\\{command}` is not read")),
-            letter => self.name(format!("\\{letter}"), 0).map(Some),
-        }
-    }
-
-    /// A function: its power before its argument, which is a group, or a number and a name.
-    fn call(&mut self, function: &str) -> Result<String, String> {
+    /// A function: its power before its argument, which is a group, or numbers, a name and `t`.
+    fn call(&mut self, command: &str) -> Result<String, String> {
         let mut power = String::new();
-        if self.peek() == Some('^') {
+        if self.peek() == "^" {
             self.at += 1;
             power = format!("^({})", self.argument()?);
         }
-        let mut parts = Vec::new();
+        let mut parts: Vec<String> = Vec::new();
         loop {
-            let number = self.peek().is_some_and(|c| c.is_ascii_digit());
-            let Some(part) = self.operand()? else { continue };
-            parts.push(part);
-            if !number {
-                break;
+            let token = self.next();
+            if token.is_empty() {
+                return Err("the formula ends too early".into());
+            }
+            parts.push(self.operand(token)?);
+            if !is_number(token) && (self.peek() != "t" || parts[0].starts_with('(')) {
+                return Ok(format!("{}({}){power}", command.replace("arc", "a").replace("log", "ln"), parts.join("*")));
             }
         }
-        if self.peek() == Some('t') && !parts[0].starts_with('(') {
-            self.at += 1;
-            parts.push("t".into());
-        }
-        Ok(format!("{function}({}){power}", parts.join("*")))
     }
 
     /// The scene's name for a letter with dots and a subscript.
-    fn name(&mut self, mut letter: String, mut dots: usize) -> Result<String, String> {
-        if letter.is_empty() {
-            let braced = self.peek() == Some('{');
-            self.at += usize::from(braced);
-            self.peek();
-            letter = match self.word(|c| c == '\\').len() {
-                0 => self.characters.get(self.at).map(char::to_string).unwrap_or_default(),
-                _ => format!("\\{}", self.word(|c| c.is_ascii_alphabetic())),
-            };
-            self.at += usize::from(!letter.starts_with('\\'));
-            if letter == "\\mathrm" {
-                self.at += 1;
-                letter += &self.word(|c| c != '}');
-                self.at += 1;
-            }
-            letter += &self.subscript();
-            if braced && self.peek() == Some('}') {
-                self.at += 1;
-            }
+    fn name(&mut self, mut letter: String, mut dots: usize) -> String {
+        if self.peek() == "_" {
+            self.at += 1;
+            letter += &format!("_{}", self.raw());
         }
-        letter += &self.subscript();
-        while self.peek() == Some('\'') {
+        while self.peek() == "'" {
             self.at += 1;
             dots += 1;
         }
-        let plain = || {
-            let bare = letter.replace("\\mathrm", "").replace("\\var", "").replace('\\', "");
-            bare.replace(',', "_")
-        };
-        Ok(self.table.get(&letter).cloned().unwrap_or_else(plain) + &"'".repeat(dots))
+        let bare = || letter.replace("\\mathrm", "").replace("\\var", "").replace('\\', "").replace(',', "_");
+        self.table.get(&letter).cloned().unwrap_or_else(bare) + &"'".repeat(dots)
     }
+}
 
-    fn subscript(&mut self) -> String {
-        if self.peek() != Some('_') {
-            return String::new();
-        }
-        self.at += 1;
-        if self.peek() != Some('{') {
-            let sign = self.peek().map_or_else(String::new, String::from);
-            self.at += 1;
-            return format!("_{sign}");
-        }
-        self.at += 1;
-        let mut depth = 1;
-        let mut text = String::from("_");
-        while let Some(&c) = self.characters.get(self.at) {
-            self.at += 1;
-            match c {
-                '{' => depth += 1,
-                '}' => depth -= 1,
-                c if !c.is_whitespace() => text.push(c),
-                _ => {}
-            }
-            if depth == 0 {
-                break;
-            }
-        }
-        text
-    }
+fn is_number(token: &str) -> bool {
+    token.starts_with(|c: char| c.is_ascii_digit())
 }

@@ -136,13 +136,20 @@ pub(crate) fn review(
     if let Some(rows) = rows {
         let points = held.points(rows, to_be.tolerance);
         review.differences = held.differences(&points, &mut review.state);
-        held.decide(&Case { frame: &frame, points }, None, &mut review);
+        if let Err(trouble) = held.decide(&Case::at(&frame, points), None, &mut review) {
+            review.notes.push(trouble.words());
+        }
         if review.verdict == Verdict::Right {
             (review.differences, review.state) = Default::default();
         }
         return Ok(review);
     }
-    let mut trouble = in_field(&FIELDS[0], || held.decide_at_random::<Modular>(&mut review)).err();
+    // a root has two signs in a field, and that of a square need not be the base
+    let mut trouble = if frame.has_roots() {
+        Some(Trouble::NoPoint(String::new()))
+    } else {
+        in_field(&FIELDS[0], || held.decide_at_random::<Modular>(&mut review)).err()
+    };
     if let Some(Trouble::NoPoint(_)) = trouble {
         trouble = held.decide_at_random::<Bounded>(&mut review).err();
     }
@@ -150,12 +157,9 @@ pub(crate) fn review(
         None => {}
         Some(Trouble::Contradiction) => {
             review.verdict = Verdict::Wrong;
-            review.notes.push("no accelerations fulfil all of these equations where the constraints hold".into());
+            review.notes.push(Trouble::Contradiction.words());
         }
-        Some(Trouble::Undetermined(names)) => {
-            review.notes.push(format!("these equations do not determine {}", names.join(", ")));
-        }
-        Some(Trouble::NoPoint(why)) => review.notes.push(why),
+        Some(trouble) => review.notes.push(trouble.words()),
     }
     for seed in 0..if review.verdict == Verdict::Wrong { 10 } else { 0 } {
         let drawn = frame.draw::<Bounded>(seed, u32::from(seed > 0), true).and_then(|inputs| frame.at(inputs));
@@ -215,18 +219,23 @@ impl Held<'_> {
     fn decide_at_random<C: Number>(&self, review: &mut Review) -> Result<(), Trouble> {
         let case = Case::<C>::new(self.frame, false)?;
         let own = Case::new(self.frame, true).ok();
-        review.numbers = Some(if C::PROVES { Numbers::Field } else { Numbers::Floats });
-        self.decide(&case, own.as_ref(), review);
-        Ok(())
+        self.decide(&case, own.as_ref(), review)
     }
 
     /// Decides by `case`; `own` has the scene's numbers for its parameters.
-    fn decide<C: Number>(&self, case: &Case<C>, own: Option<&Case<C>>, review: &mut Review) {
-        let is_right = |case: &Case<C>| case.broken().is_empty() && self.asked.iter().any(|base| case.is(base));
-        review.numbers.get_or_insert(Numbers::Floats);
+    fn decide<C: Number>(&self, case: &Case<C>, own: Option<&Case<C>>, review: &mut Review) -> Result<(), Trouble> {
+        let is_right = |case: &Case<C>| -> Result<bool, Trouble> {
+            let found: Vec<_> = self.asked.iter().map(|base| case.is(base)).collect();
+            // what has no value here is not wrong
+            let open = found.iter().find(|found| found.is_err()).filter(|_| !found.contains(&Ok(true)));
+            open.cloned().unwrap_or(Ok(found.contains(&Ok(true))))
+        };
         review.broken = case.broken();
-        review.verdict = if is_right(case) { Verdict::Right } else { Verdict::Wrong };
-        if review.verdict == Verdict::Wrong && own.is_some_and(is_right) {
+        let right = review.broken.is_empty() && is_right(case)?;
+        review.verdict = if right { Verdict::Right } else { Verdict::Wrong };
+        review.numbers = Some(if C::PROVES { Numbers::Field } else { Numbers::Floats });
+        let at_own = |own: &Case<C>| own.broken().is_empty() && is_right(own) == Ok(true);
+        if review.verdict == Verdict::Wrong && own.is_some_and(at_own) {
             let absent = self.frame.absent();
             if absent.is_empty() {
                 review.notes.push("for the numbers of the scene, and not for others, they agree".into());
@@ -240,6 +249,7 @@ impl Held<'_> {
         if review.verdict == Verdict::Wrong {
             review.explanations = explanations(self.scene, self.frame.reading, case, self.asked, self.formulation);
         }
+        Ok(())
     }
 
     fn points(&self, rows: &[Row], tolerance: f64) -> Vec<Point<Bounded>> {
@@ -301,7 +311,7 @@ fn explanations<C: Number>(
     let terms: Vec<symbolic::Expr> = pieces.iter().map(|(_, l)| *l).collect();
     let substituted = substituted(scene, reading, &terms);
     let exact = |bases: &mut dyn Iterator<Item = &Base>| -> Vec<Vec<String>> {
-        bases.filter(|base| case.is(base)).map(|base| base.words.clone()).collect()
+        bases.filter(|base| case.is(base) == Ok(true)).map(|base| base.words.clone()).collect()
     };
     let mut found = exact(&mut substituted.iter().map(|(base, _)| base).chain(&others));
     let atoms: Vec<Atom> = atoms(reading);

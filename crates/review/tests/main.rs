@@ -4,3 +4,4 @@ mod drawn;
 mod named;
 mod right;
 mod support;
+mod textbook;

@@ -4,7 +4,7 @@ use comparison::{Answer, membership};
 use mechanics::ConstantsRule;
 use motion::{CHETAEV, FIRST_ORDER, KAPPA, Motion, REMOVED_CONSTRAINT, VAKONOMIC, solve_choice};
 use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
-use random::realization::with_friction;
+use random::realization::{at_momentum, massive, with_added_mass, with_friction};
 use scene::Scene;
 
 use super::support::{
@@ -279,6 +279,60 @@ fn friction_needs_the_right_half_plane() {
             must("friction, M = (1, 1, 1): slip after 0.3 s", slip, 0.03);
         } else {
             must_exceed("friction, M = (1, 1, −1): slip after 0.3 s", slip, 1.0);
+        }
+    }
+}
+
+/// Theorem 9(b): in `(q, v, μ = N f)` added mass is a regular perturbation of the vakonomic motion, in velocities
+/// alone it is stiff.
+#[test]
+fn added_mass_is_a_regular_perturbation_with_its_multiplier() {
+    let own = scene("particle", &[]);
+    let strength = 1e6;
+    let setting = motion::setting(&own);
+    let (start, multipliers) = at_momentum(setting, strength, &[0.4]).expect("momenta");
+    let setting = motion::Setting { start: &start, ..setting };
+    let (free, equations_in_mu) = massive(&own.system, strength, 0.0).expect("equations");
+    let run = |system: &mechanics::System, equations, constants: &[f64]| {
+        let settings = motion::Settings {
+            tolerance: 1e-9,
+            method: Some(integrate::Method::Dop853),
+            ..motion::Settings::default()
+        };
+        let rule = ConstantsRule::Given(constants.to_vec());
+        let motion = motion::solve(motion::Setting { system, ..setting }, equations, &rule, &settings);
+        motion.unwrap_or_else(|e| panic!("{e}"))
+    };
+    let mut with = run(&free, equations_in_mu, &multipliers);
+    let stiff = with_added_mass(&own.system, strength);
+    let mut without = run(&stiff, equations(&stiff, CHETAEV, None), &[]);
+    let [few, many] = [&with, &without].map(|motion| motion.work.evaluations);
+    println!("particle, N = 1e6: {few} evaluations with μ, {many} without");
+    assert!(with.is_complete() && 20 * few < many, "{few} evaluations with μ, {many} without");
+    // the limit, and the same motion by other equations as far as these get
+    let end = without.end();
+    must(
+        "added mass with and without μ",
+        (at(&mut with, end).coordinates[1] - at(&mut without, end).coordinates[1]).abs(),
+        1e-6,
+    );
+    must("added mass and vakonomic", gap(&mut vakonomic(&own, &[0.4]), &mut with).0, 1e-4);
+    must_exceed("they are not the same", gap(&mut vakonomic(&own, &[0.4]), &mut with).0, 1e-9);
+}
+
+/// Theorem 7(a, b): at generic starts the order `h` is enough, and it is attained.
+#[test]
+fn the_order_h_is_attained() {
+    use comparison::Finding;
+    for (name, h) in [("three-cylinders", 4), ("sledge", 1)] {
+        let own = scene(name, &[]);
+        assert_eq!(own.system.constraints.len(), h, "{name}");
+        let found = membership(&own, own.start.t + 1.0).expect("decided").expect("constrained");
+        let Finding::None(none) = &found.proof.almost_every_start else { panic!("{name}: {:?}", found.proof) };
+        println!("{name}: none for almost every start, order {} of h = {h}", none.order);
+        assert!(none.order <= h, "{name}: order {} > {h}", none.order);
+        if name == "three-cylinders" {
+            assert_eq!(none.order, h, "{name}");
         }
     }
 }

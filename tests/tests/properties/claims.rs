@@ -16,7 +16,7 @@ static CONSTRAINED: LazyLock<Suite> = LazyLock::new(|| Suite::new(Kind::ALL[1..]
 static LINEAR: LazyLock<Suite> = LazyLock::new(|| Suite::new(linear(), &[(7, 96), (8, 24)]));
 static INTEGRABLE: LazyLock<Suite> = LazyLock::new(|| Suite::new(integrable(), &[(1, 96), (14, 96)]));
 static NONINTEGRABLE: LazyLock<Suite> =
-    LazyLock::new(|| Suite::new(nonintegrable(), &[(5, 96), (15, 24), (16, 48), (17, 48)]));
+    LazyLock::new(|| Suite::new(nonintegrable(), &[(5, 96), (15, 24), (16, 48), (17, 48), (18, 24)]));
 static AFFINE: LazyLock<Suite> = LazyLock::new(|| Suite::new(vec![Kind::Affine], &[(6, 48)]));
 
 /// Kinds with constraints that are linear (or affine) in the velocities and well conditioned.
@@ -138,6 +138,13 @@ fn t17_the_family_between_does_not_depend_on_writing() {
     let what = "not integrable: kappa with recombined constraints and the same mu0 is another";
     let (differ, count) = part(&found, what);
     assert!(count > 20 && differ > 0.3, "of {count} only {differ:.2} differ");
+}
+
+#[test]
+fn t18_a_multiplier_at_the_start_kicks_the_first_order_law() {
+    let found = NONINTEGRABLE.holds(18);
+    let (slower, count) = part(&found, "not integrable, and Pi C mu0 is not zero: from v0 it is O(1/kappa) off");
+    assert!(count > 8 && slower > 0.8, "of {count} only {slower:.2} are farther without the kick");
 }
 
 #[test]

@@ -1,4 +1,4 @@
-//! The claims T1–T17 on random systems that nobody chose, drawn and shrunk by proptest.
+//! The claims T1–T18 on random systems that nobody chose, drawn and shrunk by proptest.
 //!
 //! Systems are those of `evidence random`, other seeds. `PROPTEST_RNG_SEED=N` draws others still,
 //! `PROPTEST_CASES=N` more. Failures are shrunk and printed as scene files, seeds kept in `properties.seeds`.

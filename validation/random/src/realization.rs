@@ -6,7 +6,9 @@
 //! both         L + ½ N f·f and the force −κ N Aᵀ f, started at the same p₀   → d/dt 𝓛_v − 𝓛_q = Q − κ Aᵀ μ
 //! ```
 //!
-//! all at the rate 1/N. The removed-constraint motion needs the added mass on `ẇ − B(u̇, …)`, with `u` its
+//! all at the rate 1/N. With added mass the state is `(q, v, μ)`, `μ = N f`: the equations of the family
+//! between with `f = μ/N` instead of `f = 0`, a regular perturbation of the limit that is not stiff in `N`
+//! (theorem 9). The removed-constraint motion needs the added mass on `ẇ − B(u̇, …)`, with `u` its
 //! own coordinates: it is the vakonomic motion of that system (T2), and friction there leads elsewhere.
 //!
 //! Sources: C. Carathéodory 1933; A. V. Karapetyan 1981; V. V. Kozlov 1983.
@@ -14,6 +16,7 @@
 use std::collections::HashMap;
 
 use diffsol_methods::BDF;
+use equations::{Derivation, Equations};
 use integrate::Method;
 use mechanics::{ConstantsRule, Parameter, Removal, State, System, complete_removal_start};
 use motion::{CHETAEV, Metric, Motion, Setting, Settings, SolveError, solve};
@@ -54,13 +57,12 @@ pub fn realize(kind: Realization, strength: f64, setting: Setting, multipliers: 
     match kind {
         Realization::Friction => {
             let system = with_friction(setting.system, strength);
-            run(Setting { system: &system, ..setting }, BDF, setting.system.dimension())
+            let equations = equations(&system, CHETAEV, None)?;
+            run(Setting { system: &system, ..setting }, BDF, equations, &[])
         }
         Realization::AddedMass | Realization::Both { .. } => {
             let kappa = if let Realization::Both { kappa } = kind { kappa } else { 0.0 };
-            let system = unconstrained(setting.system, strength, kappa * strength);
-            let start = at_momentum(setting, &system, multipliers)?;
-            run(Setting { system: &system, start: &start, ..setting }, Method::Dop853, system.dimension())
+            run_massive(strength, kappa, setting, multipliers, setting.system.dimension())
         }
     }
 }
@@ -77,9 +79,45 @@ pub fn realize_removal(
     costates: &[f64],
 ) -> Result<Motion, SolveError> {
     let (system, start, multipliers) = augmented_start(setting, removal, costates)?;
-    let massive = with_added_mass(&system, strength);
-    let start = at_momentum(Setting { system: &system, start: &start, ..setting }, &massive, &multipliers)?;
-    run(Setting { system: &massive, start: &start, ..setting }, Method::Dop853, setting.system.dimension())
+    let augmented = Setting { system: &system, start: &start, ..setting };
+    run_massive(strength, 0.0, augmented, &multipliers, setting.system.dimension())
+}
+
+/// Added mass, and friction `kappa` times as large, from the momenta of `multipliers`.
+fn run_massive(
+    strength: f64,
+    kappa: f64,
+    setting: Setting,
+    multipliers: &[f64],
+    coordinates: usize,
+) -> Result<Motion, SolveError> {
+    let (start, multipliers) = at_momentum(setting, strength, multipliers)?;
+    let (free, mut equations) = massive(setting.system, strength, kappa)?;
+    equations.coordinates.truncate(coordinates);
+    equations.velocities.truncate(coordinates);
+    run(Setting { system: &free, start: &start, ..setting }, Method::Dop853, equations, &multipliers)
+}
+
+/// The system without constraints, and its equations with `L + ½ N f·f` and the force `−κ N Aᵀ f` in `(q, v, μ)`:
+///
+/// ```text
+/// d/dt 𝓛_v − 𝓛_q = Q − κ Aᵀ μ ,        d/dt f = μ̇/N
+/// ```
+///
+/// # Errors
+/// [`SolveError`] where they cannot be derived.
+pub fn massive(system: &System, strength: f64, kappa: f64) -> Result<(System, Equations), SolveError> {
+    let mut equations = (motion::KAPPA.derive)(&with_kappa(system, kappa), &Derivation::default())?;
+    let (g, n) = (&equations.graph, system.dimension());
+    for block in &mut equations.blocks {
+        for (residual, &rate) in block.residuals.iter_mut().zip(&block.unknowns).skip(n) {
+            *residual = g.sub(*residual, g.div(g.variable(rate), g.number(strength)));
+        }
+    }
+    // what holds on f = 0 only
+    (equations.projection, equations.rows) = (None, None);
+    equations.invariants.clear();
+    Ok((unconstrained(system, 0.0, 0.0), equations))
 }
 
 /// The augmented system of a removal with its start and its multipliers `μ_k = −P_k − ∂L/∂ẇ_k`.
@@ -121,14 +159,10 @@ pub fn distance(limit: &mut Motion, motion: &mut Motion, metric: &mut Metric) ->
     Ok(largest)
 }
 
-/// Newton's motion of an unconstrained system, read off in its first coordinates.
-fn run(setting: Setting, method: Method, coordinates: usize) -> Result<Motion, SolveError> {
-    let mut equations = equations(setting.system, CHETAEV, None)?;
-    equations.coordinates.truncate(coordinates);
-    equations.velocities.truncate(coordinates);
+fn run(setting: Setting, method: Method, equations: Equations, constants: &[f64]) -> Result<Motion, SolveError> {
     let at = |tolerance: f64| {
         let settings = Settings { tolerance, method: Some(method), max_steps: MAX_STEPS, ..Settings::default() };
-        solve(setting, equations.clone(), &ConstantsRule::Zero, &settings)
+        solve(setting, equations.clone(), &ConstantsRule::Given(constants.to_vec()), &settings)
     };
     let sharp = at(TOLERANCES[0])?;
     if sharp.is_complete() { Ok(sharp) } else { at(TOLERANCES[1]) }
@@ -167,27 +201,39 @@ pub fn with_kappa(system: &System, value: f64) -> System {
 /// Steps of Newton's method for a momentum; one does where momenta are affine in the velocities.
 const NEWTON: usize = 12;
 
-/// Velocities that give `massive` the start's momenta `L_v + Aᵀ μ₀`, by Newton's method.
+/// Velocities and `μ = N f` that have the start's momenta `L_v + Aᵀ μ₀`, by Newton's method.
 ///
 /// # Errors
 /// [`SolveError`] where momenta or the mass matrix have no value.
-pub fn at_momentum(setting: Setting, massive: &System, multipliers: &[f64]) -> Result<State, SolveError> {
-    let (g, v) = (&massive.graph, massive.velocities());
-    let own = g.gradient(massive.lagrangian, &v);
-    let mass = g.jacobian(&own, &v);
-    let wanted = DVector::from_vec(momenta(setting.system, setting.start)?)
-        + constraint_jacobian(setting.system, setting.start)?.transpose() * DVector::from_column_slice(multipliers);
-    let mut state = setting.start.clone();
+pub fn at_momentum(setting: Setting, strength: f64, multipliers: &[f64]) -> Result<(State, Vec<f64>), SolveError> {
+    let (system, mut state) = (setting.system, setting.start.clone());
+    let (g, v, h) = (&system.graph, system.velocities(), multipliers.len());
+    let wanted = DVector::from_vec(momenta(system, &state)?)
+        + constraint_jacobian(system, &state)?.transpose() * DVector::from_column_slice(multipliers);
+    let mut multipliers = multipliers.to_vec();
+    let symbols = system.multipliers("mu", "");
+    let augmented = g.add(system.lagrangian, g.dot(&g.variables(&symbols), &system.constraints));
+    let rows = [&g.gradient(augmented, &v)[..], &system.constraints].concat();
+    let slopes = g.jacobian(&rows, &[&v[..], &symbols].concat());
     for _ in 0..NEWTON {
-        let left = &wanted - DVector::from_vec(numbers(g, &own, &values(massive, &state))?);
-        let change = matrix(massive, &mass, &state)?.lu().solve(&left);
-        let change = change.unwrap_or_else(|| DVector::from_element(v.len(), f64::NAN));
-        state.v.iter_mut().zip(change.iter()).for_each(|(v, d)| *v += d);
+        let mut numbers_at = values(system, &state);
+        numbers_at.extend(symbols.iter().copied().zip(multipliers.iter().copied()));
+        let mut left = DVector::from_vec(numbers(g, &rows, &numbers_at)?);
+        let mut matrix = DMatrix::from_row_slice(v.len() + h, v.len() + h, &numbers(g, slopes.entries(), &numbers_at)?);
+        for (i, wanted) in wanted.iter().enumerate() {
+            left[i] -= wanted;
+        }
+        for (i, mu) in multipliers.iter().enumerate() {
+            left[v.len() + i] -= mu / strength;
+            matrix[(v.len() + i, v.len() + i)] -= 1.0 / strength;
+        }
+        let change = matrix.lu().solve(&left).unwrap_or_else(|| DVector::from_element(v.len() + h, f64::NAN));
+        state.v.iter_mut().chain(&mut multipliers).zip(change.iter()).for_each(|(x, d)| *x -= d);
         if change.norm() <= f64::EPSILON * DVector::from_column_slice(&state.v).norm() {
             break;
         }
     }
-    Ok(state)
+    Ok((state, multipliers))
 }
 
 /// `∂L/∂v` at a state.

@@ -84,7 +84,7 @@ fn headline(summary: &Summary) -> String {
     };
     let undecided = 100.0 * total.undecided as f64 / total.total().max(1) as f64;
     format!(
-        "On {} random systems {verdict} (T1 to T17); {} of {} verdicts ({} %) are undecided.",
+        "On {} random systems {verdict} (T1 to T18); {} of {} verdicts ({} %) are undecided.",
         summary.systems,
         total.undecided,
         total.total(),

@@ -24,6 +24,20 @@ pub(super) fn check(case: &mut Case) -> Result<(), CheckError> {
     let contradiction = found.contradiction();
     let told = contradiction.as_ref().map_or(note.clone(), ToString::to_string);
     case.found.require(9, "decision and proof agree", contradiction.is_none(), told);
+    // theorem 7(a): a rank that stays once stays, and it has h + 1 columns to grow in
+    let orders = |finding: &Finding| match finding {
+        Finding::None(none) => Some(none.order),
+        Finding::Contained { order, .. } => Some(order - 1),
+        _ => None,
+    };
+    if let Some(order) = orders(&found.proof.almost_every_start) {
+        case.found.require(
+            9,
+            "almost every start: ranks are final at order h",
+            order <= h,
+            format!("order {order} of {h}"),
+        );
+    }
     if decision.verdict != Verdict::NotContained && matches!(found.proof.this_start, Finding::None(_)) {
         // a proved mismatch need not stand out from the noise
         return Ok(());

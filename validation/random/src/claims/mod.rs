@@ -1,4 +1,4 @@
-//! Claims T1–T17, each a check of one random system. Reports say what they say, checks what they assume.
+//! Claims T1–T18, each a check of one random system. Reports say what they say, checks what they assume.
 
 mod agreement;
 mod control;
@@ -7,6 +7,7 @@ mod fairness;
 mod growth;
 mod invariance;
 mod invariants;
+mod kick;
 mod natural;
 mod null_tests;
 mod realization;
@@ -76,6 +77,7 @@ pub const CHECKS: &[Check] = &[
     thorough(15, "vakonomic and removal see L on f = 0 only", dependence::values_on_the_constraint),
     thorough(16, "L + dF/dt has the motions of L, and removal's constants are shifted", dependence::gauge),
     thorough(17, "kappa does not depend on how constraints are written", dependence::writing_of_the_family),
+    thorough(18, "from a fixed mu0 the first-order law has to start with a kick", kick::check),
 ];
 
 const fn check(theorem: u8, title: &'static str, run: fn(&mut Case) -> Result<(), CheckError>) -> Check {

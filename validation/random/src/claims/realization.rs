@@ -90,7 +90,7 @@ fn between(case: &mut Case) -> Result<(), CheckError> {
 }
 
 /// The largest difference of a motion's two runs, as a kinetic length.
-fn own_error(motion: &mut Motion, metric: &mut Metric) -> Result<f64, SolveError> {
+pub(super) fn own_error(motion: &mut Motion, metric: &mut Metric) -> Result<f64, SolveError> {
     let mut largest = 0.0_f64;
     for t in motion.grid(INSTANTS) {
         let (now, difference) = (motion.at(t)?, motion.difference_of_runs(t)?);

@@ -54,7 +54,7 @@ pub enum Section {
     Scenes,
     /// Scenes and 50 random systems derived again by CasADi and SymPy; needs Python 3.11, a package index.
     Casadi,
-    /// The claims T1 to T17 on 1,000 random systems.
+    /// The claims T1 to T18 on 1,000 random systems.
     Random,
     /// Friction, added mass, and what they tend to.
     Realization,
@@ -73,7 +73,7 @@ pub enum Section {
 /// The subcommands.
 #[derive(Subcommand, Debug)]
 pub enum Command {
-    /// Put the claims T1 to T17 to the test on random systems.
+    /// Put the claims T1 to T18 to the test on random systems.
     Random(RandomArguments),
     /// Measure how cost grows with the length of a train of trailers.
     Scaling(ScalingArguments),

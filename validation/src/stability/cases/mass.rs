@@ -8,8 +8,7 @@ use scene::Scene;
 use super::FORMULATIONS;
 use crate::stability::question::{Question, Subject};
 use crate::stability::reference::Reference;
-use random::equations;
-use random::realization::{at_momentum, with_added_mass};
+use random::realization::at_momentum;
 
 /// `μ₀` of the added mass.
 const MULTIPLIER: f64 = 0.4;
@@ -18,27 +17,27 @@ const MULTIPLIER: f64 = 0.4;
 const START: ([f64; 3], [f64; 3]) = ([0.0, -1.0, 0.0], [1.0, 0.5, -1.0]);
 
 pub(super) fn added(strength: f64) -> Vec<Question> {
-    // from the start that f64 can hold: μ₀ = N f₀, and f₀ is a difference of velocities
-    let start = massive(strength).map(|subject| subject.start);
-    let (q, v, multiplier) = start.map_or((START.0, START.1, MULTIPLIER), |State { q, v, .. }| {
-        ([q[0], q[1], q[2]], [v[0], v[1], v[2]], strength * (-q[1]).mul_add(v[0], v[2]))
-    });
+    let start = massive(strength).map(|subject| (subject.start, subject.constants));
+    let (q, v, multiplier) = match start {
+        Ok((State { q, v, .. }, ConstantsRule::Given(mu))) => ([q[0], q[1], q[2]], [v[0], v[1], v[2]], mu[0]),
+        _ => (START.0, START.1, MULTIPLIER),
+    };
     let reference = Reduced { z_mass: 1.0, weakness: 1.0 / strength }.from((q, v), multiplier);
     vec![Question::new(strength, "Newton, with added mass", move || massive(strength), reference)]
 }
 
 fn massive(strength: f64) -> Result<Subject, String> {
     let scene = scene::catalogue::find("particle", &[]).map_err(|error| error.to_string())?;
-    let system = with_added_mass(&scene.system, strength);
     let setting = Setting { system: &scene.system, start: &scene.start, end: scene.duration };
-    let start = at_momentum(setting, &system, &[MULTIPLIER]).map_err(|error| error.to_string())?;
-    let equations = equations(&system, CHETAEV, None).map_err(|error| error.to_string())?;
+    let (start, multipliers) = at_momentum(setting, strength, &[MULTIPLIER]).map_err(|error| error.to_string())?;
+    let (system, equations) =
+        random::realization::massive(&scene.system, strength, 0.0).map_err(|error| error.to_string())?;
     Ok(Subject {
         system,
         start,
         end: scene.duration,
         equations,
-        constants: ConstantsRule::Zero,
+        constants: ConstantsRule::Given(multipliers),
         choice: None,
         measured: scene.system,
     })
