@@ -94,7 +94,8 @@ impl ExactStart {
         let given: Vec<Expr> = system.parameters.iter().map(|p| system.written_parameter(p)).chain([time]).collect();
         let mut written = given.clone();
         let given = Written::new(g, &symbols, &given)?;
-        let mut problem = completion.projected.map(|_| NoExactStart::Projected);
+        let is_projected = completion.projected.is_some_and(|length| length > 0.0);
+        let mut problem = is_projected.then_some(NoExactStart::Projected);
         if !completion.equations.is_empty() {
             problem = Some(NoExactStart::Equations);
         }
@@ -104,7 +105,7 @@ impl ExactStart {
                 problem = Some(fault);
                 vec![g.zero(); v.len()]
             })
-        } else if rates.is_empty() || completion.projected.is_some() {
+        } else if rates.is_empty() || is_projected {
             supplied = (0..v.len()).filter(|&i| completion.supplied.contains(&g.name(v[i]))).collect();
             let decimals = state.v.iter().enumerate();
             decimals.map(|(i, x)| if supplied.contains(&i) { g.zero() } else { decimal(x) }).collect()

@@ -1,6 +1,7 @@
 //! The program as a person meets it, run as a process: one program, one module per subject.
 
 mod bad_scenes;
+mod bombs;
 mod borders;
 mod columns;
 mod commands;

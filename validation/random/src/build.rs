@@ -200,10 +200,12 @@ impl<'a> Builder<'a> {
         }
     }
 
-    /// The root for its part, in one of the `allowed` coordinates.
+    /// The root and the rare function for their part, in one of the `allowed` coordinates each.
     fn rooted(&self, part: Part, allowed: &[usize]) -> Expr {
+        let g = &self.system.graph;
         let passed = |place: usize| self.passed(allowed[place % allowed.len()]);
-        self.recipe.features.rooted(&self.system.graph, part, passed)
+        let clock = self.recipe.moves().then(|| g.sub(self.time(), g.integer(self.recipe.first_time())));
+        self.recipe.features.rooted(g, part, passed, clock)
     }
 
     /// The time after this number of eighths of the run.

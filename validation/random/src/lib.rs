@@ -31,7 +31,7 @@ pub use claims::{
 pub use class::{Classes, Force, Sudden, Surface, Units};
 pub use derived::{equations, free_constants};
 pub use fault::Fault;
-pub use feature::{Edge, Far, Features, Part, Root, Switch};
+pub use feature::{Edge, FORMS, Far, Features, Form, Part, Root, Switch};
 pub use finding::{Finding, Findings, Observation, Word};
 pub use found_out::{FoundOut, Unjudged, found_out, referee};
 pub use kind::{Kind, Truth};

@@ -9,7 +9,7 @@ use proptest::strategy::ValueTree;
 use proptest::test_runner::{Config, RngAlgorithm, TestRng, TestRunner};
 
 use super::class::{Classes, classes};
-use super::feature::{Features, features};
+use super::feature::{Features, features, form};
 use super::{Kind, Truth};
 
 /// Most coordinates of a random system, except those of the class that has more.
@@ -273,9 +273,9 @@ pub fn recipes(kind: Kind) -> impl Strategy<Value = Recipe> {
     let removal = vec((-3..=3_i64, 0..MOST), MOST * (MOST + 1) / 2);
     let all = (sizes, inertia, constraint, removal, start, features(MOST), classes(MOST, LARGEST));
     // drawn last: the same number makes the same system as before
-    let all = (all, prop::option::weighted(0.3, 0..8_usize));
-    all.prop_map(move |((sizes, inertia, constraint, removal, start, features, drawn), writing)| {
-        let features = Features { writing, ..features };
+    let all = (all, prop::option::weighted(0.3, 0..8_usize), form(MOST));
+    all.prop_map(move |((sizes, inertia, constraint, removal, start, features, drawn), writing, form)| {
+        let features = Features { writing, form, ..features };
         let (coordinates, constraints, order) = sizes;
         let (masses, mass_terms, potential, gyroscopic, driving) = inertia;
         let (rows, mixing, along, drift, closeness, cyclic) = constraint;

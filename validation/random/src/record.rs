@@ -47,7 +47,7 @@ pub struct Record {
     pub coordinates: usize,
     /// Number of constraints.
     pub constraints: usize,
-    /// What it has besides: a switch, a root, a start far from the origin.
+    /// What it has besides: a switch, a root, a rare function, a start far from the origin.
     #[serde(default)]
     pub features: Vec<String>,
     /// Why the run was shortened, if it was.

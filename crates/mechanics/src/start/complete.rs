@@ -103,14 +103,16 @@ impl StartProgram {
         }
         let mut completion = self.completion.clone();
         self.regularity.check(&state, varied)?;
-        if let Some(projection) = &mut self.projection {
+        let limit = NewtonOptions::default().limit;
+        let (mut residual, _) = largest(&self.residuals.at(&state, varied)?);
+        completion.projected = self.projection.is_some().then_some(0.0);
+        if let Some(projection) = self.projection.as_mut().filter(|_| residual > limit) {
             let (projected, length) = projection.project(&mut self.regularity, &state, varied)?;
-            state = projected;
+            (state, completion.projected) = (projected, Some(length));
             self.regularity.check(&state, varied)?;
-            completion.projected = Some(length);
+            (residual, _) = largest(&self.residuals.at(&state, varied)?);
         }
-        let (residual, _) = largest(&self.residuals.at(&state, varied)?);
-        if residual > NewtonOptions::default().limit {
+        if residual > limit {
             return Err(self.contradiction(numbers, state, None)?);
         }
         completion.residual = residual;

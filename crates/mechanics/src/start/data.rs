@@ -68,7 +68,8 @@ pub struct Completion {
     pub equations: Vec<Expr>,
     /// Largest residual of a constraint or start equation, relative to the size of its terms.
     pub residual: f64,
-    /// Length `√(δvᵀ M δv)` of the projection onto the constraint, where one was asked for.
+    /// Length `√(δvᵀ M δv)` of the projection onto the constraint, where one was asked for; 0 where the
+    /// velocities as given fulfil it.
     pub projected: Option<f64>,
     /// Positions and given velocities or rates as they were written, in parameters, time and earlier
     /// positions, and the time of a formula: exact where the state is rounded. Empty where there are numbers
