@@ -76,6 +76,15 @@ export async function after(page, act) {
   await page.waitForFunction(isNewer, { timeout: 60000 }, before);
 }
 
+// Milliseconds of processor that all pages and their workers have taken so far. Other programs make a page slow; they do not
+// make it take more of this.
+export async function processor(browser) {
+  const session = await browser.target().createCDPSession();
+  const { processInfo } = await session.send("SystemInfo.getProcessInfo");
+  await session.detach();
+  return processInfo.filter(({ type }) => type === "renderer").reduce((sum, { cpuTime }) => sum + 1000 * cpuTime, 0);
+}
+
 // Chooses a built-in scene, and waits for its motions.
 export const choose = (page, name) => after(page, () => page.select("#scene", name));
 

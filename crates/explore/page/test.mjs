@@ -21,18 +21,18 @@ import { frames, growth } from "./growth.test.mjs";
 import * as hands from "./hand.test.mjs";
 import * as looking from "./look.test.mjs";
 import * as checks from "./shown.test.mjs";
-import { Pages, after, choose, resize } from "./pages.test.mjs";
+import { Pages, after, choose, processor, resize } from "./pages.test.mjs";
 import { eachBody, everyScene } from "./scenes.test.mjs";
 import * as takes from "./take.test.mjs";
 import { tasks } from "./tasks.test.mjs";
 import { tour } from "./tour.test.mjs";
 
 const [executablePath, deltaq, file, pictures, what] = process.argv.slice(2);
-// Times may be BUSY times as long, as other programs may be running; the measured times are printed.
-const BUSY = 8;
 // Rounds of slider moves within all checks, and seconds of frames when rounds are asked for.
 const [ROUNDS, SECONDS] = [6, 300];
-const LIMITS = { megabytes: 2.3, first: 500, sledge: 10, updates: 60, cone: 50, difference: 1e-12 };
+// Milliseconds are of processor, of the page and its workers, until the first motion, for an update while a hand is on a slider,
+// for a motion in a cone. What a clock says depends on what else the machine does, and is printed only.
+const LIMITS = { megabytes: 2.3, first: 1000, update: 60, cone: 200, difference: 1e-12 };
 const OWN = `title = "Skate"
 [coordinates]
 x = { unit = "m", start = 0 }
@@ -114,14 +114,18 @@ function nativeMilliseconds(scene) {
 async function opening() {
   const size = statSync(file).size / 1e6;
   must(size <= LIMITS.megabytes, `${size.toFixed(2)} MB, at most ${LIMITS.megabytes}`);
-  const firsts = [];
+  const [firsts, took] = [[], []];
   for (let i = 0; i < 3; i++) {
-    const page = await open(link({ scene: "sledge" }), { alone: true });
+    const page = await open("about:blank", { alone: true, until: "body" });
+    const before = await processor(browser);
+    await page.goto(link({ scene: "sledge" }), { waitUntil: "domcontentloaded" });
+    await page.waitForFunction(() => window.explored?.first, { timeout: 60000 });
+    took.push((await processor(browser)) - before);
     firsts.push(await page.evaluate(() => window.explored.first));
     await leave(page);
   }
-  must(Math.min(...firsts) <= BUSY * LIMITS.first, `first motion after ${Math.min(...firsts).toFixed(0)} ms, at most ${LIMITS.first}`);
-  said.push(`${size.toFixed(2)} MB; first motion after ${Math.min(...firsts).toFixed(0)} ms`);
+  must(Math.min(...took) <= LIMITS.first, `the first motion takes ${took.map(Math.round)} ms of processor, at most ${LIMITS.first}`);
+  said.push(`${size.toFixed(2)} MB; first motion after ${Math.min(...firsts).toFixed(0)} ms, ${Math.min(...took).toFixed(0)} ms of processor`);
 }
 
 async function sliders() {
@@ -130,22 +134,24 @@ async function sliders() {
   await after(page, () => slide(page, "phi'", 800));
   const moved = await rows(page, "Chetaev");
   must(Math.abs(moved.at(-1)[3] - before.at(-1)[3]) > 1, "a slider changes nothing");
-  // a hand on a slider: for two seconds while the browser still compiles, and for two more
-  const hand = () => page.evaluate(async () => {
+  // a hand on a slider: for thirty updates while the browser still compiles, and for sixty more
+  const hand = (updates) => page.evaluate(async (updates) => {
     const slider = document.querySelector('[data-name="alpha"] input[type=range]');
     const [took, from, began] = [[], window.explored.drawn, performance.now()];
-    for (let i = 0; performance.now() - began < 2000; i++) {
+    for (let i = 0; window.explored.drawn < from + updates && performance.now() - began < 30000; i++) {
       slider.value = 300 + 200 * Math.sin(i / 20);
       slider.dispatchEvent(new Event("input"));
       await new Promise(requestAnimationFrame);
       took.push(window.explored.milliseconds);
     }
-    return [(window.explored.drawn - from) / ((performance.now() - began) / 1000), took];
-  });
-  const [[, cold], [updates, took]] = [await hand(), await hand()];
-  must(Math.min(...took) <= BUSY * LIMITS.sledge, `sledge recomputed in ${Math.min(...took).toFixed(1)} ms, at most ${LIMITS.sledge}`);
-  must(updates >= LIMITS.updates / BUSY, `${updates.toFixed(0)} updates a second, at least ${LIMITS.updates}`);
-  said.push(`sledge ${median(took).toFixed(1)} ms (least ${Math.min(...took).toFixed(1)}, in the first seconds ${median(cold).toFixed(1)}), ${updates.toFixed(0)} updates a second, native in two runs ${nativeMilliseconds("sledge").toFixed(1)} ms`);
+    return [window.explored.drawn - from, (performance.now() - began) / 1000, took];
+  }, updates);
+  const [, , cold] = await hand(30);
+  const before_hand = await processor(browser);
+  const [updates, seconds, took] = await hand(60);
+  const each = ((await processor(browser)) - before_hand) / updates;
+  must(each <= LIMITS.update, `${updates} updates take ${each.toFixed(1)} ms of processor each, at most ${LIMITS.update}`);
+  said.push(`sledge ${median(took).toFixed(1)} ms (least ${Math.min(...took).toFixed(1)}, in the first seconds ${median(cold).toFixed(1)}), ${(updates / seconds).toFixed(0)} updates a second of ${each.toFixed(1)} ms of processor, native in two runs ${nativeMilliseconds("sledge").toFixed(1)} ms`);
   await page.keyboard.press("Escape");
   await page.focus("#stage");
   const label = () => page.$eval("#play", (button) => button.getAttribute("aria-label"));
@@ -158,16 +164,18 @@ async function sliders() {
   await leave(page);
 
   const cone = await open(link({ scene: "ball-in-cone" }));
-  const times = [];
+  const [times, turns] = [[], []];
   for (let i = 0; i < 8; i++) {
+    const began = await processor(browser);
     const { drawn } = await cone.evaluate(() => ({ drawn: window.explored.drawn }));
     await slide(cone, "alpha", 320 + i, false);
     await cone.waitForFunction((drawn) => window.explored.drawn > drawn, {}, drawn);
     times.push(await cone.evaluate(() => window.explored.milliseconds));
+    turns.push((await processor(browser)) - began);
   }
-  must(Math.min(...times) <= BUSY * LIMITS.cone, `cone recomputed in ${Math.min(...times).toFixed(1)} ms, at most ${LIMITS.cone}`);
+  must(Math.min(...turns) <= LIMITS.cone, `the cone takes ${turns.map(Math.round)} ms of processor, at most ${LIMITS.cone}`);
   const native = nativeMilliseconds("ball-in-cone").toFixed(1);
-  said.push(`cone ${median(times).toFixed(1)} ms (least ${Math.min(...times).toFixed(1)}), native in two runs ${native} ms`);
+  said.push(`cone ${median(times).toFixed(1)} ms (least ${Math.min(...times).toFixed(1)}; ${Math.min(...turns).toFixed(1)} of processor), native in two runs ${native} ms`);
   // κ brings its motion
   await slide(cone, "kappa", 500);
   await cone.waitForFunction(() => window.explored.answer.motions.some(({ formulation }) => formulation === "kappa"));
@@ -257,7 +265,7 @@ async function looks() {
 // A browser that was never here.
 const fresh = () => browser.createBrowserContext();
 
-const tools = { made: pages.made.bind(pages), open, leave, look, forget, fresh, link, must, after, choose, slide, type, said, OWN, url, pictures, deltaq };
+const tools = { browser, made: pages.made.bind(pages), open, leave, look, forget, fresh, link, must, after, choose, slide, type, said, OWN, url, pictures, deltaq };
 // tests without settings that only Chromium has; all scenes run in Chromium only, and here eachBody for a
 // part of them
 const ELSEWHERE = ["eachBody", "costates", "cleared", "refusals", "overlaps", "wayBack", "badLinks", "table", "tabs", "forces", "down", "camera", "differences",
