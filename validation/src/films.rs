@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use anyhow::Result;
 use equations::Formulation;
-use fit::{Aim, Design, Deviations, EXCLUDED, Film, Point, Question, Sampling, Unknown};
+use fit::{Aim, Design, Deviations, EXCLUDED, Film, Point, Question, Sampling, Unknown, significance};
 use motion::{CHETAEV, Settings, VAKONOMIC, choices_among};
 use pages::Table;
 use program::{File, parallel};
@@ -19,7 +19,7 @@ const STARTS: usize = 16;
 struct Told {
     seconds: f64,
     point: Point,
-    shortest: Option<f64>,
+    shortest: Option<(f64, Point)>,
 }
 
 /// `films.md`; `done` hears of every scene.
@@ -37,10 +37,14 @@ pub fn files(scenes: &[&str], done: impl Fn(&str) + Sync) -> Result<Vec<File>> {
     for (name, found) in scenes.iter().zip(found) {
         let (own, shortest) = match found {
             Ok(Some(Told { seconds, point, shortest })) => {
-                short += usize::from(shortest.is_some_and(|length| length < 1.0));
-                let tells = if point.value >= EXCLUDED { "excluded at" } else { "cannot tell," };
-                let own = format!("{seconds} s: {tells} {:.0} σ, {} minima", point.value.sqrt(), point.minima);
-                (own, shortest.map_or("none found".into(), |length| format!("{length:.3} s")))
+                short += usize::from(shortest.as_ref().is_some_and(|(length, _)| *length < 1.0));
+                let tells = match point.value >= EXCLUDED {
+                    true => format!("excluded at {}", significance(point.value.sqrt())),
+                    false => format!("cannot tell, {:.0} σ", point.value.sqrt()),
+                };
+                let own = format!("{seconds} s: {tells}; {}", by_starts(&point));
+                let shortest = shortest.map(|(length, point)| format!("{length:.3} s; {}", by_starts(&point)));
+                (own, shortest.unwrap_or("none found".into()))
             }
             Ok(None) => continue,
             Err(reason) => (format!("{reason}"), String::new()),
@@ -55,8 +59,9 @@ pub fn files(scenes: &[&str], done: impl Fn(&str) + Sync) -> Result<Vec<File>> {
          noise. Vakonomic motions are fitted to it with start and μ₀ free, parameters as in the scene, from {STARTS} \
          starting guesses. The recording decides if the least χ² found is {EXCLUDED} or more. *Its own film* has the duration of the \
          scene; shortest films are searched up to eight times that, to 2 %. *None found* is expected if some μ₀ \
-         makes the motions equal. Each length was searched again from four times as many \
-         guesses. A missed minimum makes a recording look too good, so lengths are lower bounds.\n\n\
+         makes the motions equal. Beside each number stands the least χ² from half as many, as many and twice as many \
+         guesses: where these differ, the number depends on the search. A missed minimum makes a recording look too good, so \
+         lengths are lower bounds.\n\n\
          `deltaq design SCENE --tell chetaev,vakonomic --free start --film 60Hz,1e-3,10s` asks the same; `--over` looks for \
          motions that decide sooner.\n"
     );
@@ -71,6 +76,12 @@ pub fn files(scenes: &[&str], done: impl Fn(&str) + Sync) -> Result<Vec<File>> {
         );
     }
     Ok(vec![File { path: "evidence/films.md".into(), text }])
+}
+
+/// The least χ² by number of starts.
+fn by_starts(point: &Point) -> String {
+    let each = point.by_starts.iter().map(|(_, value)| format!("{value:.1}"));
+    format!("χ² {}", each.collect::<Vec<_>>().join(", "))
 }
 
 /// None for a scene without one of the two.

@@ -50,12 +50,13 @@ fn text(scene: &Scene, formulation: &str, aim: &Aim, found: &Connections) -> Str
     );
     let led = found.found.iter().map(|motion| motion.starts).sum::<usize>();
     text += &format!(
-        "{} unknowns ({}); {led} of {} starts led to {} motion{}; {} runs, {} of them with derivatives\n",
+        "{} unknowns ({}); {led} of {} starts led to {} motion{}, the first half to {}; {} runs, {} of them with derivatives\n",
         found.unknowns.len(),
         found.unknowns.join(", "),
         aim.starts,
         found.found.len(),
         if found.found.len() == 1 { "" } else { "s" },
+        found.found.iter().filter(|motion| motion.by_half).count(),
         found.runs[0],
         found.runs[1]
     );
@@ -144,6 +145,7 @@ fn json_of(scene: &Scene, formulation: &str, aim: &Aim, found: &Connections) -> 
             "minimum": motion.is_minimum,
             "second_variation": motion.second_variation.words(),
             "starts": motion.starts,
+            "by_half": motion.by_half,
         })
     };
     json!({

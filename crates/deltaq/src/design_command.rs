@@ -113,7 +113,7 @@ impl Found<'_> {
                 let sigmas = point.value.sqrt();
                 let tells = match point.value >= EXCLUDED {
                     true => format!("excluded at {}", significance(sigmas)),
-                    false => format!("cannot tell, {sigmas:.1} σ"),
+                    false => format!("cannot tell, {sigmas:.0} σ"),
                 };
                 let [truth, rival] = [0, 1].map(|i| &self.design.labels()[i]);
                 let minima = if point.minima == 1 {
@@ -121,9 +121,12 @@ impl Found<'_> {
                 } else {
                     format!("the least of {} minima", point.minima)
                 };
+                let by_starts: Vec<String> =
+                    point.by_starts.iter().map(|(starts, value)| format!("{value:.2} from {starts}")).collect();
                 format!(
-                    "where {truth} is right, {rival}: {tells} (chi squared {:.2} above that of noise, {minima})",
+                    "where {truth} is right, {rival}: {tells} (chi squared {:.2} above that of noise, {minima}; by                      number of starts {})",
                     point.value,
+                    by_starts.join(", ")
                 )
             }
         }

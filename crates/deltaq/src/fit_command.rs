@@ -126,8 +126,9 @@ fn fit_text(text: &mut String, fit: &Fit) {
     let seen = if minima == 1 { "one minimum".into() } else { format!("the least of {minima} minima") };
     let _ = writeln!(
         text,
-        "  chi squared {:.2} for {} degrees of freedom, BIC {:.2}; {seen}, reached from {} of {starts} starts",
-        fit.chi_squared, fit.freedom, fit.bic, fit.reached
+        "  chi squared {:.2} for {} degrees of freedom, BIC {:.2}; {seen}, reached from {} of {starts} starts; from half of \
+         them {:.2}",
+        fit.chi_squared, fit.freedom, fit.bic, fit.reached, fit.by_half
     );
     for hidden in &fit.hidden {
         let _ = writeln!(text, "  these films do not show a change of {hidden}");

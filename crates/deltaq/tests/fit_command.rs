@@ -19,7 +19,7 @@ fn a_sledge_is_chetaevs() {
     let found = run(&[&fit[..], &["--law", "eps", "--format", "json"]].concat());
     assert_eq!(found.status.code(), Some(0), "{}", String::from_utf8_lossy(&found.stderr));
     let answer: Value = serde_json::from_slice(&found.stdout).unwrap();
-    assert_eq!(answer["schema"], "deltaq/fit/1");
+    assert_eq!(answer["schema"], "deltaq/fit/2");
     assert_eq!((&answer["films"][0]["samples"], &answer["films"][0]["numbers"]), (&60.into(), &120.into()));
     let verdicts: Vec<&Value> = answer["formulations"].as_array().unwrap().iter().map(|row| &row["verdict"]).collect();
     assert_eq!(verdicts, ["supported", "excluded", "supported"]);

@@ -191,6 +191,7 @@ fn add(known: &mut Fitted, again: Fitted) {
     keep_less(known, again);
     if let (Some(((a, starts, reached), (b, more, others))), Ok((_, fit))) = (both, known) {
         fit.starts = starts + more;
+        fit.by_half = a;
         let same = (a - b).abs() <= SAME + 1e-3 * a.min(b);
         fit.reached = if same {
             reached + others

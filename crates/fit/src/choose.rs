@@ -3,8 +3,8 @@
 use std::sync::{Mutex, PoisonError};
 
 use motion::over_threads;
+use motion::shooting::spread;
 
-use crate::search::evenly;
 use crate::{Design, EXCLUDED, FitError, Point};
 
 /// Points of the scan from which the search goes on.
@@ -18,7 +18,7 @@ const LAST_STEP: f64 = 1.0 / 64.0;
 pub struct Best {
     /// Films of the scene's own numbers, which may lie outside the bounds.
     pub own: Result<Point, FitError>,
-    /// The best one, verified from four times as many starts.
+    /// The best one, verified from twice as many starts.
     pub best: Point,
     /// Other ends of the search, the best first; by fewer starts.
     pub others: Vec<Point>,
@@ -52,7 +52,8 @@ impl Design {
         let corners = if width < 8 && 1 << width <= points { 1 << width } else { 0 };
         let corner = |number: usize| (0..width).map(|i| f64::from(number >> i & 1 == 1)).collect::<Vec<_>>();
         let mut scan: Vec<Vec<f64>> = (0..corners).map(corner).collect();
-        scan.extend((0..points).map(|number| evenly(width, number)));
+        let inside = |number| spread(number, width).into_iter().map(|x| 0.5 * (1.0 + x)).collect();
+        scan.extend((0..points).map(inside));
         seen.look_at(scan);
         let mut starts: Vec<usize> = (0..seen.points.len()).collect();
         starts.sort_by(|a, b| seen.order(*a, *b));
@@ -87,7 +88,7 @@ impl Design {
     }
 
     fn shortest_where_it_tells(&self, best: &Point) -> Option<f64> {
-        if best.value >= EXCLUDED { self.shortest(&best.at) } else { None }
+        if best.value >= EXCLUDED { self.shortest(&best.at).map(|(length, _)| length) } else { None }
     }
 }
 

@@ -88,8 +88,8 @@ fn end(problem: &Problem, i: usize, kept: &Fit) -> f64 {
     let scale: Vec<f64> = (0..others.len()).map(|j| known(j).unwrap_or(1.0)).collect();
     let mut rises = |slip: f64| {
         let found = least(&problem.without(i, slip), &others, &scale, Stage::Profile).ok()?;
-        others = found.theta;
-        Some(found.chi_squared - kept.chi_squared > RISE)
+        others = found.unknowns;
+        Some(found.value - kept.chi_squared > RISE)
     };
     let (mut low, mut high) = (0.0, problem.unknowns()[i].bound.unwrap_or(0.0));
     for _ in 0..OUTWARDS {

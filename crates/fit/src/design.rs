@@ -14,6 +14,7 @@ use std::cell::RefCell;
 use std::str::FromStr;
 
 use equations::Formulation;
+use motion::shooting::least_from;
 use motion::{CHETAEV, Choice, choices_among};
 use scene::Scene;
 
@@ -105,6 +106,9 @@ pub struct Point {
     pub numbers: Vec<(String, f64)>,
     /// Minima that the search for it saw.
     pub minima: usize,
+    /// The least χ² from the first so many starts: half of those asked for, all, and twice as many where
+    /// these were tried; empty for a standard error.
+    pub by_starts: Vec<(usize, f64)>,
     /// Combinations of unknowns that such films do not show.
     pub hidden: Vec<String>,
 }
@@ -272,12 +276,12 @@ impl Design {
         self.tried(d, 1.0, self.starts, None)
     }
 
-    /// The same by four times as many starts: the least χ² that is found is less or equal.
+    /// The same by twice as many starts: the least χ² that is found is less or equal.
     ///
     /// # Errors
     /// As [`Design::point`].
     pub fn point_again(&self, d: &[f64]) -> Result<Point, FitError> {
-        self.tried(d, 1.0, 4 * self.starts, None)
+        self.tried(d, 1.0, 2 * self.starts, None)
     }
 
     fn tried(&self, d: &[f64], longer: f64, starts: usize, near: Option<&[f64]>) -> Result<Point, FitError> {
@@ -285,7 +289,8 @@ impl Design {
             let problem = self.truth.at(d);
             let shown = standard_errors(&problem, problem.start())?;
             let value = shown.errors[self.unknown];
-            return Ok(Point { at: d.to_vec(), value, numbers: Vec::new(), minima: 1, hidden: shown.hidden });
+            let (numbers, by_starts) = (Vec::new(), Vec::new());
+            return Ok(Point { at: d.to_vec(), value, numbers, minima: 1, by_starts, hidden: shown.hidden });
         };
         let films = self.truth.problem.foreseen(&self.truth.theta(d), longer);
         let films = films.map_err(|reason| FitError::NoMotion { starts: 1, reason })?;
@@ -302,9 +307,13 @@ impl Design {
         let spread = |name: &str| is_constant(name) || is_of_a_law(name);
         let found = search(&problem, &spread, starts, false)?;
         let labels = problem.unknowns().iter().map(Unknown::label);
-        let (value, minima) = (found.best.chi_squared, found.minima.len());
-        let numbers = labels.zip(found.best.theta).collect();
-        Ok(Point { at: d.to_vec(), value, numbers, minima, hidden: Vec::new() })
+        let mut counts = vec![self.starts.div_ceil(2), self.starts, 2 * self.starts];
+        counts.retain(|count| *count <= starts);
+        counts.dedup();
+        let by_starts = counts.into_iter().map(|count| (count, least_from(count, &found.minima))).collect();
+        let (value, minima) = (found.best.value, found.minima.len());
+        let numbers = labels.zip(found.best.unknowns).collect();
+        Ok(Point { at: d.to_vec(), value, numbers, minima, by_starts, hidden: Vec::new() })
     }
 
     /// Whether a is better than b.
@@ -313,10 +322,10 @@ impl Design {
     }
 
     /// The length of the shortest film, of the motion with the numbers d, that excludes the second
-    /// formulation, χ² ≥ [`EXCLUDED`]: to 2 %, up to eight times as long as the films; `None` where no such
-    /// length is found. If four times as many starts find a smaller χ² at this length, the search is repeated
-    /// with these.
-    pub fn shortest(&self, d: &[f64]) -> Option<f64> {
+    /// formulation, χ² ≥ [`EXCLUDED`], to 2 %, up to eight times as long as the films, and what it shows by
+    /// twice as many starts; `None` where no such length is found. If these find a smaller χ² at this length,
+    /// the search is repeated with them.
+    pub fn shortest(&self, d: &[f64]) -> Option<(f64, Point)> {
         self.rival.as_ref()?;
         // what fits a film is a start for a longer one
         let near: RefCell<Option<Vec<f64>>> = RefCell::new(None);
@@ -324,14 +333,19 @@ impl Design {
             let found = self.tried(d, longer, starts, near.borrow().as_deref()).ok()?;
             let tells = found.value >= EXCLUDED;
             if !tells {
-                near.replace(Some(found.numbers.into_iter().map(|(_, x)| x).collect()));
+                near.replace(Some(found.numbers.iter().map(|(_, x)| *x).collect()));
             }
-            Some(tells)
+            Some((tells, found))
         };
-        let found = shortest(&|longer| tells(longer, self.starts))?;
-        let sure = tells(found, 4 * self.starts)?;
-        let found = if sure { found } else { shortest(&|longer| tells(longer, 4 * self.starts))? };
-        Some(found * self.length)
+        let least = |starts: usize| shortest(&|longer| tells(longer, starts).map(|(tells, _)| tells));
+        let twice = 2 * self.starts;
+        let found = least(self.starts)?;
+        let (sure, point) = tells(found, twice)?;
+        if sure {
+            return Some((found * self.length, point));
+        }
+        let found = least(twice)?;
+        Some((found * self.length, tells(found, twice)?.1))
     }
 }
 

@@ -129,12 +129,12 @@ fn tried(
             start[i] += by;
         }
         let Ok(minimum) = least(&problem, &start, &scale, Stage::Profile) else { continue };
-        let changes: Vec<f64> = at.iter().map(|&i| minimum.theta[i] - problem.start()[i]).collect();
+        let changes: Vec<f64> = at.iter().map(|&i| minimum.unknowns[i] - problem.start()[i]).collect();
         let part = (&moved * DVector::from_column_slice(&changes)).norm() / extent;
-        if fit.chi_squared - minimum.chi_squared >= needed && part <= PLAIN {
+        if fit.chi_squared - minimum.value >= needed && part <= PLAIN {
             let label = |&i: &usize| problem.unknowns()[i].name.trim_start_matches(ADDED).to_owned();
             let values = at.iter().map(label).zip(changes).collect();
-            let (name, chi_squared) = (candidate.name.clone(), minimum.chi_squared);
+            let (name, chi_squared) = (candidate.name.clone(), minimum.value);
             found.push(Explanation { name, values, chi_squared, part });
         }
     }

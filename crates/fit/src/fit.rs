@@ -1,9 +1,9 @@
 //! One formulation fitted to films: estimates with intervals, and tests on residuals.
 
+use motion::shooting::{Minimum, least_from};
 use nalgebra::{DMatrix, DVector};
 
 use crate::distribution::normal_tails;
-use crate::minimum::Minimum;
 use crate::profile::{NORMAL, Profile, SHOWN};
 use crate::residual_tests::{ResidualTest, residual_tests};
 use crate::search::{Found, Stage, least, scaled, search};
@@ -69,6 +69,8 @@ pub struct Fit {
     pub starts: usize,
     /// How many of these led to the least minimum.
     pub reached: usize,
+    /// The least χ² that the first half of the starts leads to; infinite where they lead nowhere.
+    pub by_half: f64,
     /// The residuals.
     pub residuals: Vec<Residual>,
 }
@@ -176,21 +178,23 @@ fn combination(problem: &Problem, along: &DVector<f64>, lengths: &[f64]) -> Stri
 /// # Errors
 /// [`FitError::NoMotion`], and [`FitError::ShowsNothing`] where all unknowns change nothing.
 pub fn fit(problem: &Problem, spread: &dyn Fn(&str) -> bool, starts: usize, known: bool) -> Result<Fit, FitError> {
+    let half = starts.div_ceil(2);
     let Found { best, minima, starts } = search(problem, spread, starts, known)?;
     let best = off_stationary(problem, best);
     let whole = best.clone();
     let (held, less, best) = without_hidden(problem, &best)?;
     let no_motion = |reason| FitError::NoMotion { starts, reason };
-    let (_, jacobian) = less.clone().weighed(&best.theta, true).map_err(no_motion)?;
-    let Shown { errors, hidden } = shown(&less, &best.theta, &jacobian);
-    let residuals = less.clone().residuals(&best.theta).map_err(no_motion)?;
+    let (_, jacobian) = less.clone().weighed(&best.unknowns, true).map_err(no_motion)?;
+    let Shown { errors, hidden } = shown(&less, &best.unknowns, &jacobian);
+    let by_half = if best.first < half { best.value } else { least_from(half, &minima) };
+    let residuals = less.clone().residuals(&best.unknowns).map_err(no_motion)?;
     let films: Vec<&Film> = problem.films().collect();
     let (count, unknowns) = (problem.count(), errors.len());
     let fitted = unknowns - hidden.len();
     let tests = residual_tests(&films, &residuals, fitted.saturating_sub(priors(problem)), problem.is_robust());
     // what does not fit has no intervals to look for
     let profiles = !tests.iter().any(|test| test.objects && !test.is_too_small());
-    let near = less.limited(&best.theta, PROFILE_STEPS);
+    let near = less.limited(&best.unknowns, PROFILE_STEPS);
     let profile = |i| Profile::new(&near, &jacobian, &best, &errors, i);
     let mut estimates: Vec<Estimate> =
         (0..unknowns).map(|i| estimate(&near, &best, &errors, i, profiles.then(|| profile(i)))).collect();
@@ -208,14 +212,15 @@ pub fn fit(problem: &Problem, spread: &dyn Fn(&str) -> bool, starts: usize, know
     }
     Ok(Fit {
         estimates,
-        chi_squared: best.chi_squared,
+        chi_squared: best.value,
         freedom: count - fitted,
-        bic: best.chi_squared + fitted as f64 * (count as f64).ln(),
+        bic: best.value + fitted as f64 * (count as f64).ln(),
         hidden: names.into_iter().chain(hidden).collect(),
         tests,
-        minima,
+        minima: minima.into_iter().map(|minimum| minimum.value).collect(),
         starts,
         reached: best.reached,
+        by_half,
         residuals,
     })
 }
@@ -227,10 +232,10 @@ const LOOKS: [f64; 4] = [1e-2, 0.03, 0.1, 0.5];
 /// they are stationary there.
 fn moving(problem: &Problem, best: &Minimum, i: usize) -> Option<f64> {
     let mut looked = problem.clone();
-    let (here, _) = looked.weighed(&best.theta, false).ok()?;
-    let size = if best.theta[i] == 0.0 { 1.0 } else { best.theta[i].abs() };
+    let (here, _) = looked.weighed(&best.unknowns, false).ok()?;
+    let size = if best.unknowns[i] == 0.0 { 1.0 } else { best.unknowns[i].abs() };
     LOOKS.into_iter().map(|part| part * size).find(|step| {
-        let mut theta = best.theta.clone();
+        let mut theta = best.unknowns.clone();
         theta[i] += step;
         let moved = looked.weighed(&theta, false);
         moved.is_ok_and(|(there, _)| (there - &here).norm() > 1e3 * NOTHING)
@@ -240,20 +245,20 @@ fn moving(problem: &Problem, best: &Minimum, i: usize) -> Option<f64> {
 /// The least minimum, where one begins beside unknowns at which residuals are stationary: no derivative leads
 /// away from there.
 fn off_stationary(problem: &Problem, best: Minimum) -> Minimum {
-    let Ok((_, jacobian)) = problem.clone().weighed(&best.theta, true) else { return best };
+    let Ok((_, jacobian)) = problem.clone().weighed(&best.unknowns, true) else { return best };
     let lengths: Vec<f64> = jacobian.column_iter().map(|column| column.norm()).collect();
     let mut least_known = best.clone();
-    for i in alone(problem, &best.theta, &lengths) {
+    for i in alone(problem, &best.unknowns, &lengths) {
         let Some(step) = moving(problem, &best, i) else { continue };
         let scale: Vec<f64> = lengths.iter().map(|l| if *l > 0.0 { l.recip() } else { step }).collect();
         for side in [1.0, -1.0] {
-            let mut theta = best.theta.clone();
+            let mut theta = best.unknowns.clone();
             theta[i] += side * step;
             let found = least(problem, &theta, &scale, Stage::Whole);
             if let Some(found) =
-                found.ok().filter(|found| found.chi_squared < least_known.chi_squared - SAME_CHI_SQUARED)
+                found.ok().filter(|found| found.value < least_known.value - SAME_CHI_SQUARED)
             {
-                least_known = Minimum { reached: best.reached, ..found };
+                least_known = Minimum { reached: best.reached, first: best.first, ..found };
             }
         }
     }
@@ -265,19 +270,19 @@ fn off_stationary(problem: &Problem, best: Minimum) -> Minimum {
 fn stationary(problem: &Problem, best: &Minimum, i: usize, step: f64) -> Estimate {
     let unknown = &problem.unknowns()[i];
     let bound = unknown.bound.unwrap_or(f64::NEG_INFINITY);
-    let Ok((_, jacobian)) = problem.clone().weighed(&best.theta, true) else {
-        return Estimate::hidden(unknown, best.theta[i]);
+    let Ok((_, jacobian)) = problem.clone().weighed(&best.unknowns, true) else {
+        return Estimate::hidden(unknown, best.unknowns[i]);
     };
     let lengths = jacobian.column_iter().map(|column| column.norm());
     let mut errors: Vec<f64> = lengths.map(|l| if l > 0.0 { l.recip() } else { 1.0 }).collect();
     errors[i] = step;
-    let near = problem.limited(&best.theta, PROFILE_STEPS);
+    let near = problem.limited(&best.unknowns, PROFILE_STEPS);
     let mut profile = Profile::new(&near, &jacobian, best, &errors, i);
     let [low, high] = [-1.0, 1.0].map(|side| profile.end(side, RISE, bound));
     let error = 0.5 * (high - low) / NORMAL;
     Estimate {
         name: unknown.label(),
-        value: best.theta[i],
+        value: best.unknowns[i],
         error,
         interval: [low, high],
         profiled: true,
@@ -293,11 +298,11 @@ pub fn profile(problem: &Problem, fit: &Fit, name: &str, at: &[f64]) -> Option<V
     let theta: Vec<f64> = own.iter().map(|e| e.value).collect();
     let errors: Vec<f64> = own.iter().map(|e| e.error).collect();
     let (_, jacobian) = problem.clone().weighed(&theta, true).ok()?;
-    let best = Minimum { theta, chi_squared: fit.chi_squared, reached: fit.reached };
+    let best = Minimum { value: fit.chi_squared, ..Minimum::start(0, theta) };
     let mut profile = Profile::new(problem, &jacobian, &best, &errors, i);
     // outwards on either side
     let mut order: Vec<usize> = (0..at.len()).collect();
-    order.sort_by(|a, b| (at[*a] - best.theta[i]).abs().total_cmp(&(at[*b] - best.theta[i]).abs()));
+    order.sort_by(|a, b| (at[*a] - best.unknowns[i]).abs().total_cmp(&(at[*b] - best.unknowns[i]).abs()));
     let mut rises = vec![0.0; at.len()];
     order.into_iter().for_each(|place| rises[place] = profile.rise(at[place]));
     Some(rises)
@@ -307,13 +312,13 @@ pub fn profile(problem: &Problem, fit: &Fit, name: &str, at: &[f64]) -> Option<V
 /// and its minimum.
 fn without_hidden(problem: &Problem, best: &Minimum) -> Result<(Vec<usize>, Problem, Minimum), FitError> {
     let no_motion = |reason| FitError::NoMotion { starts: 1, reason };
-    let (_, jacobian) = problem.clone().weighed(&best.theta, true).map_err(no_motion)?;
+    let (_, jacobian) = problem.clone().weighed(&best.unknowns, true).map_err(no_motion)?;
     let lengths: Vec<f64> = jacobian.column_iter().map(|column| column.norm()).collect();
-    let held = alone(problem, &best.theta, &lengths);
+    let held = alone(problem, &best.unknowns, &lengths);
     if held.len() == lengths.len() && held.iter().all(|&i| moving(problem, best, i).is_none()) {
         return Err(FitError::ShowsNothing);
     }
-    let (mut shown, mut theta, mut scale) = (problem.clone(), best.theta.clone(), lengths);
+    let (mut shown, mut theta, mut scale) = (problem.clone(), best.unknowns.clone(), lengths);
     for &i in held.iter().rev() {
         shown = shown.without(i, problem.start()[i]);
         theta.remove(i);
@@ -324,10 +329,10 @@ fn without_hidden(problem: &Problem, best: &Minimum) -> Result<(Vec<usize>, Prob
     }
     scale.iter_mut().for_each(|length| *length = 1.0 / *length);
     let found = least(&shown, &theta, &scale, Stage::Whole).map_err(no_motion)?;
-    if found.chi_squared > best.chi_squared + SAME_CHI_SQUARED {
+    if found.value > best.value + SAME_CHI_SQUARED {
         return Ok((Vec::new(), problem.clone(), best.clone()));
     }
-    Ok((held, shown, Minimum { reached: best.reached, ..found }))
+    Ok((held, shown, Minimum { reached: best.reached, first: best.first, ..found }))
 }
 
 fn priors(problem: &Problem) -> usize {
@@ -337,7 +342,7 @@ fn priors(problem: &Problem) -> usize {
 /// The interval of unknown `i`; by standard errors alone without a profile.
 fn estimate(problem: &Problem, best: &Minimum, errors: &[f64], i: usize, profile: Option<Profile>) -> Estimate {
     let unknown = &problem.unknowns()[i];
-    let (value, error) = (best.theta[i], errors[i]);
+    let (value, error) = (best.unknowns[i], errors[i]);
     let bound = unknown.bound.unwrap_or(f64::NEG_INFINITY);
     if error.is_infinite() {
         return Estimate::hidden(unknown, value);

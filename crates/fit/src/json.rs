@@ -94,7 +94,7 @@ fn fitted(fit: &Fit) -> Value {
     json!({
         "estimates": estimates.collect::<Vec<_>>(), "tests": tests.collect::<Vec<_>>(), "chi_squared": fit.chi_squared,
         "freedom": fit.freedom, "bic": fit.bic, "hidden": fit.hidden, "minima": fit.minima, "starts": fit.starts,
-        "reached": fit.reached,
+        "reached": fit.reached, "by_half": fit.by_half,
     })
 }
 
@@ -125,8 +125,9 @@ pub fn design_value(scene: &Scene, films: &[Film], design: &Design, best: &Best)
 
 fn point(point: &Point) -> Value {
     let numbers = point.numbers.iter().map(|(name, value)| json!({ "name": name, "value": value }));
+    let by_starts = point.by_starts.iter().map(|(starts, value)| json!({ "starts": starts, "value": value }));
     json!({
         "at": point.at, "value": point.value, "numbers": numbers.collect::<Vec<_>>(), "minima": point.minima,
-        "hidden": point.hidden,
+        "by_starts": by_starts.collect::<Vec<_>>(), "hidden": point.hidden,
     })
 }

@@ -17,10 +17,10 @@ pub(crate) fn length_that_tells(truth: (&Problem, &Fit), rival: (&Problem, &Fit)
     for longer in LENGTHS {
         let films = truth.0.foreseen(&at, longer).ok()?;
         let found = least(&rival.0.of_films(films).ok()?, &start, &scale, Stage::Profile).ok()?;
-        if found.chi_squared >= EXCLUDED {
+        if found.value >= EXCLUDED {
             return Some(longer);
         }
-        start = found.theta;
+        start = found.unknowns;
     }
     None
 }

@@ -66,7 +66,6 @@ pub use film::{Column, Deviations, Film};
 pub use fit::{Estimate, Fit, Shown, fit, profile, standard_errors};
 pub use identifiability::Identifiability;
 pub use json::{design_value, fit_value};
-pub use minimum::Minimum;
 pub use planned::Sampling;
 pub use problem::{Problem, Residual};
 pub use quantity::{quantity, unit};

@@ -8,10 +8,10 @@
 //!
 //! until `|J δ|²` is small; where that does not happen, by Levenberg and Marquardt's method.
 
+use motion::shooting::Minimum;
 use nalgebra::{DMatrix, DVector, Dyn, SVD};
 
 use crate::Problem;
-use crate::minimum::Minimum;
 use crate::search::{Stage, least, scaled};
 
 /// Standard deviations of 95 %.
@@ -93,7 +93,7 @@ impl<'a> Profile<'a> {
             i,
             others,
             derived: 0,
-            known: vec![(best.theta.clone(), 0.0)],
+            known: vec![(best.unknowns.clone(), 0.0)],
         }
     }
 
@@ -104,7 +104,7 @@ impl<'a> Profile<'a> {
         }
         if self.followed(x, HALVINGS).is_none() {
             let Some((theta, chi_squared)) = self.searched(x) else { return f64::INFINITY };
-            self.known.push((theta, chi_squared - self.best.chi_squared));
+            self.known.push((theta, chi_squared - self.best.value));
         }
         self.known[self.known.len() - 1].1
     }
@@ -121,7 +121,7 @@ impl<'a> Profile<'a> {
         let near = self.nearest(x);
         let found = self.chords(x, near).or_else(|| self.renewed(x, near));
         if let Some((theta, chi_squared)) = found {
-            self.known.push((theta, chi_squared - self.best.chi_squared));
+            self.known.push((theta, chi_squared - self.best.value));
             return Some(());
         }
         let halfway = 0.5 * (self.known[near].0[self.i] + x);
@@ -180,15 +180,15 @@ impl<'a> Profile<'a> {
         scale.remove(self.i);
         scale.iter_mut().filter(|x| x.is_infinite()).for_each(|x| *x = 1.0);
         let found = least(&self.problem.without(self.i, x), &start, &scale, Stage::Profile).ok()?;
-        let mut theta = found.theta;
+        let mut theta = found.unknowns;
         theta.insert(self.i, x);
-        Some((theta, found.chi_squared))
+        Some((theta, found.value))
     }
 
     /// Where χ² has risen by `rise` on this side, not beyond `bound`; open where that cannot be found: by
     /// secants of the root of the rise, which is a straight line where χ² is quadratic.
     pub(crate) fn end(&mut self, side: f64, rise: f64, bound: f64) -> f64 {
-        let value = self.best.theta[self.i];
+        let value = self.best.unknowns[self.i];
         let (mut inside, mut outside) = ((value, 0.0), None);
         let mut x = value + side * NORMAL * self.errors[self.i];
         for step in 0..STEPS {

@@ -6,9 +6,10 @@
 //! measurement whose deviation is the change that would move the film by its own extent.
 
 use integrate::{BoundaryError, Residuals, ShootOptions};
+use motion::shooting::{Minimum, spread};
 use nalgebra::DMatrix;
 
-use crate::minimum::{Minimum, distinct, spread_out};
+use crate::minimum::{distinct, spread_out};
 use crate::residual_tests::residual_tests;
 use crate::{FitError, Problem, Residual};
 
@@ -51,27 +52,27 @@ const SAME: [f64; 2] = [0.1, 1e-3];
 pub struct Found {
     /// The least minimum.
     pub best: Minimum,
-    /// χ² of every minimum that was seen over the whole film, the least first.
-    pub minima: Vec<f64>,
+    /// Every minimum that was seen over the whole film, the least first.
+    pub minima: Vec<Minimum>,
     /// Number of starts that were followed: fewer than asked for if some coincide.
     pub starts: usize,
 }
 
 /// The least minimum from several starts: the first is [`Problem::start`]; in the others unknowns for which
-/// `spread` says so are moved, by parts of their scales that no period fits; further ones are known before:
+/// `moves` says so are moved, by parts of their scales that no period fits; further ones are known before:
 /// each goes by way of beginnings and at once. Beginnings are left out where
 /// the first start is `known` to come close. Starts for the whole film at once are left out where beginnings
 /// of several lead to residuals of noise.
 ///
 /// # Errors
 /// [`FitError::NoMotion`].
-pub fn search(problem: &Problem, spread: &dyn Fn(&str) -> bool, starts: usize, known: bool) -> Result<Found, FitError> {
+pub fn search(problem: &Problem, moves: &dyn Fn(&str) -> bool, starts: usize, known: bool) -> Result<Found, FitError> {
     // where nothing is moved all starts are one
-    let starts = if problem.unknowns().iter().any(|u| spread(&u.name)) { starts.max(1) } else { 1 };
+    let starts = if problem.unknowns().iter().any(|u| moves(&u.name)) { starts.max(1) } else { 1 };
     let problem = &problem.limited(problem.start(), STEPS);
     let short = problem.beginning(FIRST.max(2 * problem.unknowns().len()))?;
     let (scale, mut reason) = scales(&mut short.clone());
-    let known_before: Vec<Minimum> = problem.known.iter().cloned().map(Minimum::unseen).collect();
+    let known_before: Vec<Minimum> = problem.known.iter().map(|known| Minimum::start(0, known.clone())).collect();
     // they count as starts once, by way of beginnings
     let at_once = known_before.iter().map(|start| Minimum { reached: usize::from(known), ..start.clone() }).collect();
     let mut minima = refined(problem, at_once, &scale, Stage::Rough, &mut reason);
@@ -79,7 +80,7 @@ pub fn search(problem: &Problem, spread: &dyn Fn(&str) -> bool, starts: usize, k
     // beside what is known to fit others are few
     let starts = if minima.first().is_some_and(|m| fits(problem, m)) { starts.min(FEW) } else { starts };
     if !known {
-        let begun = (0..starts).map(|number| moved(problem, &scale, spread, problem.first + number));
+        let begun = (0..starts).map(|number| moved(problem, &scale, moves, number));
         let begun: Vec<Minimum> = begun.chain(known_before).collect();
         tried += begun.len();
         let led = followed(problem, short, &scale, begun, &mut reason)?;
@@ -87,26 +88,28 @@ pub fn search(problem: &Problem, spread: &dyn Fn(&str) -> bool, starts: usize, k
         distinct(&mut minima, &scale);
     }
     if starts == 1 || !minima.first().is_some_and(|least| fits(problem, least)) {
-        let begun = screened(problem, spread, starts);
+        let begun = screened(problem, moves, starts);
         tried += begun.len();
         minima.extend(refined(problem, begun, &scale, Stage::Rough, &mut reason));
     }
     distinct(&mut minima, &scale);
-    let least = minima.first().map_or(f64::INFINITY, |m| m.chi_squared);
+    let least = minima.first().map_or(f64::INFINITY, |m| m.value);
     let close = if is_poor(problem, least) { CLOSE[1] * least } else { CLOSE[0] * least + HOPELESS };
-    let hopeless = minima.split_off(minima.partition_point(|m| m.chi_squared < close));
+    let hopeless = minima.split_off(minima.partition_point(|m| m.value < close));
     let mut minima = refined(problem, minima, &scale, Stage::Whole, &mut reason);
     minima.extend(hopeless);
     distinct(&mut minima, &scale);
     minima.dedup_by(|b, a| {
-        let same = b.chi_squared - a.chi_squared <= SAME[0] + SAME[1] * a.chi_squared;
-        a.reached += if same { b.reached } else { 0 };
+        let same = b.value - a.value <= SAME[0] + SAME[1] * a.value;
+        if same {
+            (a.reached, a.first) = (a.reached + b.reached, a.first.min(b.first));
+        }
         same
     });
     let no_motion = || FitError::NoMotion { starts: tried, reason: reason.unwrap_or_else(|| "no minimum".into()) };
     let mut best = minima.first().cloned().ok_or_else(no_motion)?;
     best.reached = best.reached.max(1);
-    Ok(Found { best, minima: minima.iter().map(|m| m.chi_squared).collect(), starts: tried })
+    Ok(Found { best, minima, starts: tried })
 }
 
 /// The minima near others, the least first; those not found are left out, except for the last stage.
@@ -121,24 +124,24 @@ fn refined(
     for begun in rough {
         // beside one that fits
         let enough =
-            found.iter().any(|m| is_noise(problem, m.chi_squared) && m.chi_squared + HOPELESS < begun.chi_squared);
-        if stage == Stage::Rough && begun.chi_squared.is_finite() && enough {
+            found.iter().any(|m| is_noise(problem, m.value) && m.value + HOPELESS < begun.value);
+        if stage == Stage::Rough && begun.value.is_finite() && enough {
             found.push(begun);
             continue;
         }
         let near = match stage {
             Stage::Beginning => None,
-            _ => Some(problem.limited(&begun.theta, NEAR_STEPS)),
+            _ => Some(problem.limited(&begun.unknowns, NEAR_STEPS)),
         };
-        let poor = stage == Stage::Whole && is_poor(problem, begun.chi_squared);
+        let poor = stage == Stage::Whole && is_poor(problem, begun.value);
         let stage = if poor { Stage::Poor } else { stage };
-        let mut best = least(near.as_ref().unwrap_or(problem), &begun.theta, scale, stage);
-        if let Some(m) = best.as_ref().ok().filter(|m| poor && !is_poor(problem, m.chi_squared)) {
-            best = least(near.as_ref().unwrap_or(problem), &m.theta, scale, Stage::Whole);
+        let mut best = least(near.as_ref().unwrap_or(problem), &begun.unknowns, scale, stage);
+        if let Some(m) = best.as_ref().ok().filter(|m| poor && !is_poor(problem, m.value)) {
+            best = least(near.as_ref().unwrap_or(problem), &m.unknowns, scale, Stage::Whole);
         }
         match best {
-            Ok(minimum) => found.push(Minimum { reached: begun.reached, ..minimum }),
-            Err(_) if stage != Stage::Beginning && begun.chi_squared.is_finite() => found.push(begun),
+            Ok(minimum) => found.push(Minimum { reached: begun.reached, first: begun.first, ..minimum }),
+            Err(_) if stage != Stage::Beginning && begun.value.is_finite() => found.push(begun),
             Err(error) => *reason = reason.take().or(Some(error)),
         }
     }
@@ -154,7 +157,7 @@ pub(crate) fn fits(problem: &Problem, found: &Minimum) -> bool {
         let tests = residual_tests(&films, &residuals, unknowns, problem.is_robust());
         !tests.iter().any(|test| test.objects)
     };
-    is_noise(problem, found.chi_squared) && problem.clone().residuals(&found.theta).is_ok_and(content)
+    is_noise(problem, found.value) && problem.clone().residuals(&found.unknowns).is_ok_and(content)
 }
 
 /// Whether residuals are many deviations.
@@ -179,12 +182,12 @@ fn followed(
     let (mut part, mut starts) = (short, starts);
     for number in 0.. {
         for start in &mut starts {
-            start.theta = within(&part, problem.start(), &start.theta);
+            start.unknowns = within(&part, problem.start(), &start.unknowns);
         }
         let mut found = refined(&part, starts, scale, Stage::Beginning, reason);
         // beside one that fits no other can be the least
-        if let Some(least) = found.first().map(|m| m.chi_squared).filter(|x| is_noise(&part, *x)) {
-            found.retain(|m| m.chi_squared < least + HOPELESS);
+        if let Some(least) = found.first().map(|m| m.value).filter(|x| is_noise(&part, *x)) {
+            found.retain(|m| m.value < least + HOPELESS);
         }
         starts = spread_out(&|x| is_noise(&part, x), found, scale, FOLLOWED[number.min(FOLLOWED.len() - 1)]);
         if part.samples() >= problem.samples() {
@@ -209,7 +212,7 @@ pub(crate) fn begun(problem: &Problem, held: &[usize]) -> Vec<f64> {
     let (scale, _) = scales(&mut less.clone());
     if let Ok(found) = least(&less, less.start(), &scale, Stage::Whole) {
         let seen = (0..start.len()).filter(|i| !held.contains(i)).collect::<Vec<_>>();
-        seen.into_iter().zip(found.theta).for_each(|(i, x)| start[i] = x);
+        seen.into_iter().zip(found.unknowns).for_each(|(i, x)| start[i] = x);
     }
     start
 }
@@ -235,48 +238,42 @@ fn scales(problem: &mut Problem) -> (Vec<f64>, Option<String>) {
 
 /// Start `number` of the search; in every other one parameters are others as well: formulations agree where a
 /// parameter is none of theirs.
-fn moved(problem: &Problem, scale: &[f64], spread: &dyn Fn(&str) -> bool, number: usize) -> Minimum {
-    let width = |i: usize| match spread(&problem.unknowns()[i].name) {
+fn moved(problem: &Problem, scale: &[f64], moves: &dyn Fn(&str) -> bool, own: usize) -> Minimum {
+    let number = problem.first + own;
+    let width = |i: usize| match moves(&problem.unknowns()[i].name) {
         true => scale[i],
         false if number % 2 == 1 => problem.doubt(i),
         false => 0.0,
     };
     let widths: Vec<f64> = (0..scale.len()).map(width).collect();
-    let mut parts = evenly(widths.iter().filter(|w| **w > 0.0).count(), number).into_iter();
+    let mut parts = spread(number, widths.iter().filter(|w| **w > 0.0).count()).into_iter();
     let mut along = |i: usize| {
         let start = problem.start()[i];
         if widths[i] <= 0.0 || number == 0 {
             return start;
         }
-        let x = start + widths[i] * (2.0 * parts.next().expect("one per unknown that is moved") - 1.0);
+        let x = start + widths[i] * parts.next().expect("one per unknown that is moved");
         problem.unknowns()[i].bound.map_or(x, |bound| bound + (x - bound).abs())
     };
-    Minimum::unseen((0..scale.len()).map(&mut along).collect())
-}
-
-/// Point `number` of a sequence that fills a cube of k axes evenly: multiples of powers of the root of
-/// `x^(k+1) = x + 1` (Roberts 2018). The first is its centre.
-pub(crate) fn evenly(k: usize, number: usize) -> Vec<f64> {
-    let root = (0..60).fold(2.0_f64, |x, _| (1.0 + x).powf(1.0 / (k as f64 + 1.0)));
-    (1..=k as i32).map(|axis| (0.5 + number as f64 * root.powi(-axis)).fract()).collect()
+    Minimum::start(own, (0..scale.len()).map(&mut along).collect())
 }
 
 /// Starts for the whole film at once: the first one, and those of the others that come closest to it.
-fn screened(problem: &Problem, spread: &dyn Fn(&str) -> bool, starts: usize) -> Vec<Minimum> {
+fn screened(problem: &Problem, moves: &dyn Fn(&str) -> bool, starts: usize) -> Vec<Minimum> {
     let mut evaluated = problem.clone();
     let (scale, _) = scales(&mut evaluated);
     let mut others: Vec<Minimum> = Vec::new();
     for number in 1..starts {
         // far ones and near ones: nothing is linear as far as the extent of the film
         let nearer: Vec<f64> = scale.iter().map(|s| s * 0.5_f64.powi(number as i32 % NEARER)).collect();
-        let start = moved(problem, &nearer, spread, problem.first + number);
-        if let Ok((values, _)) = evaluated.weighed(&start.theta, false) {
-            others.push(Minimum { chi_squared: values.norm_squared(), ..start });
+        let start = moved(problem, &nearer, moves, number);
+        if let Ok((values, _)) = evaluated.weighed(&start.unknowns, false) {
+            others.push(Minimum { value: values.norm_squared(), ..start });
         }
     }
-    others.sort_by(|a, b| a.chi_squared.total_cmp(&b.chi_squared));
+    others.sort_by(|a, b| a.value.total_cmp(&b.value));
     others.truncate(SCREENED);
-    [Minimum::unseen(problem.start().to_vec())].into_iter().chain(others).collect()
+    [Minimum::start(0, problem.start().to_vec())].into_iter().chain(others).collect()
 }
 
 /// Where motions reach the ends of their films: `theta`, or the first point halfway back to `origin`.
@@ -315,19 +312,19 @@ pub(crate) fn least(problem: &Problem, start: &[f64], scale: &[f64], stage: Stag
     let mut found = match start {
         [] => {
             let (values, _) = problem.clone().weighed(&[], false)?;
-            return Ok(Minimum { chi_squared: values.norm_squared(), ..Minimum::unseen(Vec::new()) });
+            return Ok(Minimum { value: values.norm_squared(), ..Minimum::start(0, Vec::new()) });
         }
         _ => minimise(&mut problem.clone(), start, scale, stage)?,
     };
     let bounds = problem.unknowns().iter().map(|unknown| unknown.bound);
-    let mut each = bounds.zip(&found.theta).enumerate();
+    let mut each = bounds.zip(&found.unknowns).enumerate();
     let below = each.find_map(|(i, (bound, x))| bound.filter(|bound| x < bound).map(|bound| (i, bound)));
     if let Some((i, bound)) = below {
         let mut scale = scale.to_vec();
-        found.theta.remove(i);
+        found.unknowns.remove(i);
         scale.remove(i);
-        found = least(&problem.without(i, bound), &found.theta, &scale, stage)?;
-        found.theta.insert(i, bound);
+        found = least(&problem.without(i, bound), &found.unknowns, &scale, stage)?;
+        found.unknowns.insert(i, bound);
     }
     Ok(found)
 }
@@ -346,7 +343,7 @@ fn minimise(problem: &mut Problem, start: &[f64], scale: &[f64], stage: Stage) -
     let shot = integrate::fit(&mut squares, rows, &guess, &options).map_err(|error| error.to_string())?;
     let theta: Vec<f64> = shot.unknowns.iter().zip(scale).map(|(x, s)| x * s).collect();
     let (values, _) = problem.weighed(&theta, false)?;
-    Ok(Minimum { chi_squared: values.norm_squared(), ..Minimum::unseen(theta) })
+    Ok(Minimum { value: values.norm_squared(), ..Minimum::start(0, theta) })
 }
 
 /// Residuals as functions of unknowns over their scales.

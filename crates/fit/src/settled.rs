@@ -63,7 +63,7 @@ pub(crate) fn by_beginning(
     while samples < most {
         let of_best = least(&best.beginning(samples).ok()?, &theta, &scale[..theta.len()], Stage::Profile).ok()?;
         let found = search(&problem.beginning(samples).ok()?, spread, starts, false).ok()?.best;
-        let above = found.chi_squared - of_best.chi_squared;
+        let above = found.value - of_best.value;
         if above >= threshold(more) + LOOKS && found.reached >= SEVERAL {
             return Some((samples, sigmas(above, more)));
         }

@@ -72,10 +72,13 @@ fn the_shortest_film_is_that_of_the_closed_form() {
     assert_eq!((best.own.unwrap().at, best.best.at.clone()), (vec![1e-3], vec![2e-3]));
     // μ₀ is the rate of the circle by T9; its sign does not matter here
     for point in [design.point(&[1e-3]).unwrap(), best.best] {
+        // Chetaev's equations have no number that a start could move
+        assert!(point.by_starts.iter().all(|(_, value)| *value == point.value), "{point:?}");
         let known = arc(point.at[0], 360.0, 6.0, 1e-3);
         assert!((point.value / known - 1.0).abs() < 0.02, "{point:?} for {known}");
     }
-    let length = design.shortest(&[2e-3]).unwrap();
+    let (length, point) = design.shortest(&[2e-3]).unwrap();
+    assert!(point.value >= EXCLUDED && point.by_starts.len() == 3, "{point:?}");
     let known = arc(2e-3, 60.0 * length, length, 1e-3);
     assert!((known / EXCLUDED - 1.0).abs() < 0.1, "{length} s has {known}");
     // a straight line is vakonomic, too: no film tells Chetaev's motion from it

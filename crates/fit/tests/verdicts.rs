@@ -15,6 +15,7 @@ fn fitted(chi_squared: f64) -> Result<Fit, FitError> {
         minima: vec![chi_squared],
         starts: 1,
         reached: 1,
+        by_half: chi_squared,
         residuals: Vec::new(),
     })
 }

@@ -5,12 +5,15 @@ use scene::{Scene, SceneErrorKind, Start, Starts};
 use symbolic::Symbol;
 
 use crate::costates::Costates;
+use crate::differences::{derivative, size};
+use crate::direction::Direction;
 use crate::{Choice, Settings, SolveError, Varying};
 
 /// [`Varying`] by the names that [`Scene::starts`] knows, and `P0_w` for the costate of the memory variable
 /// `w` of a removal.
 #[derive(Clone)]
 pub struct ByName {
+    names: Vec<String>,
     varying: Varying,
     choice: Choice,
     starts: Starts,
@@ -36,6 +39,7 @@ impl ByName {
         if let Some(i) = (1..names.len()).find(|&i| names[..i].contains(&names[i])) {
             return refused(format!("`{}` is named twice", names[i]));
         }
+        let own = names.iter().map(|name| name.to_string()).collect();
         let (costates, names) =
             Costates::among(names, scene, choice).map_err(|reason| SolveError::Member { reason })?;
         let choice = costates.choice(choice);
@@ -44,7 +48,7 @@ impl ByName {
             return refused(format!("multipliers vary, and {} does not start from them", choice.formulation.name));
         }
         let varying = Varying::new(scene, &choice, &starts.parameters(), settings)?;
-        Ok(ByName { varying, choice, starts, costates })
+        Ok(ByName { names: own, varying, choice, starts, costates })
     }
 
     /// The start of the motion with the numbers of a row, one per name.
@@ -75,6 +79,43 @@ impl ByName {
         self.varying.set(&found.state, &found.parameters, rule.unwrap_or(&found.constants), false)
     }
 
+    /// How the start and the free constants move with each number of a row, constants as in [`ByName::set`]: a
+    /// map by way of formulas, of velocities that constraints supply, of a projection and of momenta, which
+    /// costs microseconds and is right to the last digits. Its derivatives are differences
+    /// ([`crate::differences`]).
+    ///
+    /// # Errors
+    /// [`SolveError::Member`] for a number with which the start does not move smoothly.
+    ///
+    /// # Panics
+    /// If there are not as many numbers as names.
+    pub(crate) fn directions(
+        &mut self,
+        row: &[f64],
+        rule: Option<&ConstantsRule>,
+    ) -> Result<Vec<Direction>, SolveError> {
+        let mut along = Vec::new();
+        for i in 0..row.len() {
+            let (name, scale, mut moved) = (self.names[i].clone(), size(row[i]), row.to_vec());
+            let both = derivative(&name, row[i], &mut |x| {
+                moved[i] = x;
+                self.set(&moved, rule)?;
+                let prepared = self.varying.prepared();
+                Ok([&prepared.start[..], &prepared.constants].concat())
+            })?;
+            let both: Vec<f64> = both.into_iter().map(|x| x * scale).collect();
+            let (start, constants) = both.split_at(self.varying.prepared().start.len());
+            along.push(Direction { start: start.to_vec(), constants: constants.to_vec(), scale });
+        }
+        self.set(row, rule)?;
+        Ok(along)
+    }
+
+    /// The names.
+    pub fn names(&self) -> &[String] {
+        &self.names
+    }
+
     /// The parameters that vary, in the order of the scene.
     pub fn parameters(&self) -> Vec<Symbol> {
         self.starts.parameters()
@@ -88,11 +129,6 @@ impl ByName {
     /// The equations with these numbers.
     pub fn varying(&self) -> &Varying {
         &self.varying
-    }
-
-    /// The same alone.
-    pub(crate) fn into_varying(self) -> Varying {
-        self.varying
     }
 
     /// The same, to be set otherwise or integrated.

@@ -40,11 +40,11 @@ use scene::Scene;
 
 use crate::carried::{Carried, Which};
 use crate::constants::constant_names;
+use crate::shooting::{Minimum, distinct};
 use crate::{Choice, Motion, Settings, SolveError, TIGHTER, VAKONOMIC, over_threads, solve_choice};
 use action::action;
 pub use conjugate::{ConjugateTime, samples, times};
-use curves::{Exact, one_per_curve};
-pub use guesses::spread;
+use curves::one_per_curve;
 pub use second_variation::SecondVariation;
 use second_variation::second_variation;
 use two_point::TwoPoint;
@@ -105,6 +105,8 @@ pub struct Connection {
     pub is_minimum: Option<bool>,
     /// How many starts led here.
     pub starts: usize,
+    /// Whether the first half of the starts leads here.
+    pub by_half: bool,
 }
 
 impl Connection {
@@ -183,24 +185,26 @@ pub fn connect(scene: &Scene, choice: &Choice, aim: &Aim, settings: &Settings) -
     }
     let mut runs = [0, 0];
     let (mut near, mut failures) = (Vec::new(), Vec::new());
-    for (shot, done) in searched {
+    for (number, (shot, done)) in searched.into_iter().enumerate() {
         runs = [runs[0] + done[0], runs[1] + done[1]];
         match shot {
-            Ok(unknowns) => merge(&mut near, unknowns, 1, ONE[0]),
+            Ok(unknowns) => near.push(Minimum::start(number, unknowns)),
             Err(error) => count(&mut failures, reason(&error), 1),
         }
     }
-    let (near, starts): (Vec<Vec<f64>>, Vec<usize>) = near.into_iter().unzip();
+    each_once(&mut near, ONE[0]);
+    let guesses: Vec<Vec<f64>> = near.iter().map(|near| near.unknowns.clone()).collect();
     let enough = RESIDUAL * TIGHTER * settings.tolerance;
-    let fine = from_all(&problem, aim.threads, &near, |problem, _, guess| search(problem, guess, settings, enough));
-    let mut exact: Vec<(Vec<f64>, usize)> = Vec::new();
-    for ((shot, done), starts) in fine.into_iter().zip(starts) {
+    let fine = from_all(&problem, aim.threads, &guesses, |problem, _, guess| search(problem, guess, settings, enough));
+    let mut exact = Vec::new();
+    for ((shot, done), near) in fine.into_iter().zip(near) {
         runs = [runs[0] + done[0], runs[1] + done[1]];
         match shot {
-            Ok(unknowns) => merge(&mut exact, unknowns, starts, ONE[1]),
-            Err(error) => count(&mut failures, reason(&error), starts),
+            Ok(unknowns) => exact.push(Minimum { unknowns, ..near }),
+            Err(error) => count(&mut failures, reason(&error), near.reached),
         }
     }
+    each_once(&mut exact, ONE[1]);
     let mut problem = problem.into_inner().unwrap_or_else(PoisonError::into_inner);
     let exact = one_per_curve(exact, &mut problem);
     let completed = exact.iter().map(|exact| complete(&mut problem, (scene, choice), exact, settings));
@@ -269,13 +273,10 @@ fn grown(problem: &mut TwoPoint, guess: &[f64], settings: &Settings) -> Option<V
     found
 }
 
-/// Adds to those that were found.
-pub fn merge(all: &mut Vec<(Vec<f64>, usize)>, unknowns: Vec<f64>, starts: usize, one: f64) {
-    let same = |other: &[f64]| unknowns.iter().zip(other).all(|(x, y)| (x - y).abs() <= one * (1.0 + y.abs()));
-    match all.iter_mut().find(|(other, _)| same(other)) {
-        Some((_, count)) => *count += starts,
-        None => all.push((unknowns, starts)),
-    }
+/// Each once: those are one whose unknowns differ by less than this part of their units and sizes.
+pub fn each_once(all: &mut Vec<Minimum>, one: f64) {
+    let near = |(y, x): (&f64, &f64)| (x - y).abs() <= one * (1.0 + y.abs());
+    distinct(all, |known, other| known.unknowns.iter().zip(&other.unknowns).all(near));
 }
 
 fn count(all: &mut Vec<(String, usize)>, reason: String, starts: usize) {
@@ -300,10 +301,10 @@ fn reason(error: &BoundaryError) -> String {
 fn complete(
     problem: &mut TwoPoint,
     (scene, choice): (&Scene, &Choice),
-    (unknowns, starts, several): &Exact,
+    (found, several): &(Minimum, bool),
     settings: &Settings,
 ) -> Result<Connection, SolveError> {
-    let x = problem.in_units(unknowns);
+    let x = problem.in_units(&found.unknowns);
     let (start, constants) = problem.start(&x)?;
     let end = problem.aim.t;
     let own = Scene { start: start.clone(), duration: end - start.t, ..scene.clone() };
@@ -371,7 +372,8 @@ fn complete(
         conjugate,
         second_variation,
         is_minimum: second_variation.is_minimum(),
-        starts: *starts,
+        starts: found.reached,
+        by_half: found.first < problem.aim.starts.div_ceil(2),
         unknowns: x,
         start,
     })

@@ -24,9 +24,9 @@ pub(crate) const ORDER_8: [f64; 4] = [4.0 / 5.0, -1.0 / 5.0, 4.0 / 105.0, -1.0 /
 const ORDER_6: [f64; 4] = [3.0 / 4.0, -3.0 / 20.0, 1.0 / 60.0, 0.0];
 /// Weights of a kink.
 const KINK: [f64; 4] = [14.0 / 5.0, -7.0 / 5.0, 2.0 / 5.0, -1.0 / 20.0];
-/// Distances over the size of the number.
-const DISTANCES: [f64; 7] =
-    [0.0625, 0.015625, 0.00390625, 0.0009765625, 0.000244140625, 0.00006103515625, 0.0000152587890625];
+/// Distances over the size of the number are these powers of 1/4: a start may have a pole nearby, as at a
+/// heading of 90°.
+const DISTANCES: std::ops::Range<i32> = 2..16;
 /// Error of a derivative over the largest one that is accepted.
 const LIMIT: f64 = 1e-10;
 /// With an error like this, of what is linear, no other distance is tried.
@@ -80,8 +80,7 @@ struct Found {
 /// The difference at the best distance.
 fn best(x: f64, here: &[f64], round_off: &[f64], at: &mut dyn FnMut(f64) -> Values) -> Result<Found, SolveError> {
     let (size, mut least, mut failure) = (size(x), None, None);
-    for distance in DISTANCES {
-        let h = size * distance;
+    for h in DISTANCES.map(|power| size * 0.25_f64.powi(power)) {
         let sums = match sums(x, h, here, at) {
             Ok(sums) => sums,
             Err(error) => {

@@ -80,6 +80,7 @@ mod prepared;
 mod sensitivities;
 mod sensitivity_start;
 mod settings;
+pub mod shooting;
 mod single_run;
 mod start_values;
 mod state_scales;

@@ -6,8 +6,6 @@ use mechanics::ConstantsRule;
 use scene::Scene;
 
 use crate::carried::{Carried, Which};
-use crate::differences::{derivative, size};
-use crate::direction::Direction;
 use crate::wanted::wanted;
 use crate::{ByName, Choice, Settings, SolveError};
 
@@ -30,7 +28,6 @@ use crate::{ByName, Choice, Settings, SolveError};
 #[derive(Clone)]
 pub struct Model {
     by_name: ByName,
-    names: Vec<String>,
     times: Vec<f64>,
     settings: Settings,
     start: f64,
@@ -72,8 +69,7 @@ impl Model {
         let method = by_name.varying().prepared().method.method;
         Carried::check(method)?;
         let settings = Settings { method: Some(method), ..settings.clone() };
-        let names = names.iter().map(|name| name.to_string()).collect();
-        Ok(Model { by_name, names, times: times.to_vec(), settings, start })
+        Ok(Model { by_name, times: times.to_vec(), settings, start })
     }
 
     /// The same at other times; nothing is derived anew.
@@ -114,7 +110,7 @@ impl Model {
 
     /// Names of the numbers.
     pub fn names(&self) -> &[String] {
-        &self.names
+        self.by_name.names()
     }
 
     /// The times.
@@ -160,7 +156,7 @@ impl Model {
 
     fn read_with_derivatives(&mut self, row: &[f64], found: &mut Reading) -> Result<(), String> {
         self.set(row)?;
-        let along = self.directions(row).map_err(|error| error.to_string())?;
+        let along = self.by_name.directions(row, None).map_err(|error| error.to_string())?;
         let (end, options) = self.end();
         let prepared = self.by_name.varying_mut().prepared_mut();
         let carried = Carried::run(prepared, &along, end, &options, Which::Kept);
@@ -175,8 +171,8 @@ impl Model {
     }
 
     fn set(&mut self, row: &[f64]) -> Result<(), String> {
-        assert_eq!(row.len(), self.names.len(), "numbers");
-        if let Some((name, x)) = self.names.iter().zip(row).find(|(_, x)| !x.is_finite()) {
+        assert_eq!(row.len(), self.names().len(), "numbers");
+        if let Some((name, x)) = self.names().iter().zip(row).find(|(_, x)| !x.is_finite()) {
             return Err(format!("{name} is {x}; it must be finite"));
         }
         self.by_name.set(row, None).map_err(|error| error.to_string())
@@ -186,27 +182,6 @@ impl Model {
         let end = self.times[self.times.len() - 1];
         let wanted = Some(wanted([self.start, end], &self.times));
         (end, integrate::Options { wanted, ..self.settings.options(self.settings.tolerance) })
-    }
-
-    /// How the start and the constants move with each number.
-    fn directions(&mut self, row: &[f64]) -> Result<Vec<Direction>, SolveError> {
-        let mut along = Vec::new();
-        for (i, name) in self.names.iter().enumerate() {
-            let (by_name, mut moved) = (&mut self.by_name, row.to_vec());
-            let scale = size(row[i]);
-            let both = derivative(name, row[i], &mut |x| {
-                moved[i] = x;
-                by_name.set(&moved, None)?;
-                let prepared = by_name.varying().prepared();
-                Ok([&prepared.start[..], &prepared.constants].concat())
-            })?;
-            let states = by_name.varying().prepared().start.len();
-            let (start, constants) = both.split_at(states);
-            let scaled = |part: &[f64]| part.iter().map(|x| x * scale).collect();
-            along.push(Direction { start: scaled(start), constants: scaled(constants), scale });
-        }
-        self.by_name.set(row, None)?;
-        Ok(along)
     }
 }
 
@@ -231,6 +206,6 @@ fn ended(status: &Status) -> Result<(), String> {
 
 impl std::fmt::Debug for Model {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("Model").field("names", &self.names).field("times", &self.times).finish_non_exhaustive()
+        f.debug_struct("Model").field("names", &self.names()).field("times", &self.times).finish_non_exhaustive()
     }
 }

@@ -3,7 +3,7 @@
 pub use crate::band::accumulated_round_off::{Looked, RoundOff, accumulated as round_off, is_small, largest, look};
 pub use crate::band::limits::{STRETCHES, WATCHED};
 pub use crate::band::ulp_perturbation::{move_digits, signs};
-pub use crate::connect::{merge, samples, spread, times};
+pub use crate::connect::{each_once, samples, times};
 pub use crate::constants::searched;
 pub use crate::ensemble::instants;
 pub use crate::state_scales::{sizes, unbounded_sizes};

@@ -1,6 +1,6 @@
 //! Derivatives of a motion by numbers of its scene: parameters, start, free constants.
 //!
-//! `x ↦ (y(t₀), c) ↦ y(t) ↦ outputs`. The first map is [`crate::sensitivity_start`]; derivatives of the
+//! `x ↦ (y(t₀), c) ↦ y(t) ↦ outputs`. The first map is [`ByName::directions`]; derivatives of the
 //! second are carried with the motion, eight at a time ([`equations::Tangents`]). They are under the error
 //! control of the time loop, and as each motion is integrated twice, so are they: what the two runs differ
 //! by is their error estimate.
@@ -24,7 +24,7 @@ use crate::constants::places;
 use crate::direction::Direction;
 use crate::ending::vanishing_guard;
 use crate::kinks::refuse_kinks;
-use crate::sensitivity_start::{Numbers, kept_natural};
+use crate::sensitivity_start::{directions, kept_natural};
 use crate::wanted::wanted;
 use crate::{ByName, Choice, Ending, Prepared, Settings, SolveError, TIGHTER, setting};
 
@@ -87,17 +87,13 @@ pub fn sensitivities(
         return Err(SolveError::Member { reason });
     }
     settings.method.map_or(Ok(()), Carried::check)?;
-    let by_name = ByName::new(scene, choice, names, settings)?;
-    let mut numbers = Numbers::new(by_name, scene, choice, names)?;
-    let mut along = (0..names.len()).map(|i| numbers.along_name(i)).collect::<Result<Vec<_>, _>>()?;
-    numbers.reset()?;
+    let mut by_name = ByName::new(scene, choice, names, settings)?;
+    let [mut along, constants] = directions(&mut by_name, scene, choice)?;
     let (start, end) = (scene.start.t, setting(scene).end);
+    let prepared = by_name.varying_mut().prepared_mut();
     if let ConstantsRule::Natural { horizon } = choice.constants {
-        let constants = (0..numbers.own()).map(|i| numbers.along_constant(i)).collect::<Result<Vec<_>, _>>()?;
-        numbers.reset()?;
-        keep_natural(numbers.varying.prepared_mut(), horizon, settings, &mut along, &constants)?;
+        keep_natural(prepared, horizon, settings, &mut along, &constants)?;
     }
-    let prepared = numbers.varying.prepared_mut();
     let named = |list: &[equations::Named]| list.iter().map(|n| n.name.clone()).collect();
     let (multipliers, invariants) = (named(&prepared.equations.multipliers), named(&prepared.equations.invariants));
     let wanted = Some(wanted([start, end], times));

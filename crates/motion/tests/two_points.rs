@@ -1,6 +1,7 @@
 //! Searches for motions between two points: where they start, which are one, and conjugate times.
 
-use motion::parts::{merge, samples, spread, times};
+use motion::parts::{each_once, samples, times};
+use motion::shooting::{Minimum, least_from, spread};
 use nalgebra::DMatrix;
 
 #[test]
@@ -8,11 +9,16 @@ fn motions_are_one_up_to_a_part_of_their_unknowns() {
     // |x − y| against 10⁻³ (1 + |y|), each unknown by itself
     let known = [99.0, 0.0];
     for (moved, found) in [([0.09, 0.0], 1), ([0.11, 0.0], 2), ([0.0, 0.9e-3], 1), ([0.0, 1.1e-3], 2)] {
-        let mut all = vec![(known.to_vec(), 2)];
-        merge(&mut all, vec![known[0] + moved[0], known[1] + moved[1]], 3, 1e-3);
+        let first = Minimum { reached: 2, value: 1.0, ..Minimum::start(7, known.to_vec()) };
+        let other = vec![known[0] + moved[0], known[1] + moved[1]];
+        let mut all = vec![Minimum { reached: 3, value: 2.0, ..Minimum::start(1, other) }, first];
+        each_once(&mut all, 1e-3);
         assert_eq!(all.len(), found, "{moved:?}");
-        assert_eq!(all.iter().map(|(_, starts)| starts).sum::<usize>(), 5);
-        assert_eq!(all[0].1, if found == 1 { 5 } else { 2 });
+        assert_eq!(all.iter().map(|end| end.reached).sum::<usize>(), 5);
+        assert_eq!((all[0].reached, all[0].first), if found == 1 { (5, 1) } else { (2, 7) });
+        // what half of eight starts would have found
+        let by_half = if found == 1 { 1.0 } else { 2.0 };
+        assert_eq!([8, 4, 1].map(|starts| least_from(starts, &all)), [1.0, by_half, f64::INFINITY]);
     }
 }
 

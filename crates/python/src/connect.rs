@@ -86,11 +86,13 @@ pub(crate) struct Connection {
     second_variation: String,
     /// How many starts led here.
     starts: usize,
+    /// Whether the first half of the starts leads here.
+    by_half: bool,
 }
 
 kept!(
     Connection: system unknowns errors constants velocities action action_error residuals condition is_isolated
-    conjugate_times conjugate_errors multiplicities is_minimum second_variation starts
+    conjugate_times conjugate_errors multiplicities is_minimum second_variation starts by_half
 );
 
 #[pymethods]
@@ -202,5 +204,6 @@ fn one(
         is_minimum: motion.is_minimum,
         second_variation: motion.second_variation.words().to_string(),
         starts: motion.starts,
+        by_half: motion.by_half,
     })
 }

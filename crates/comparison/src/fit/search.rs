@@ -11,10 +11,11 @@
 //! where that comes to another gap, the number of starts matters.
 
 use equations::Equations;
+use motion::shooting::{Minimum, least_from, spread};
+use motion::{Metric, Motion, Setting, Settings, SolveError};
 
 use super::squares::Power;
 use super::{COARSE, Differences, FINE, LOOKED_AT, MANY_TOLERANCE};
-use motion::{Metric, Motion, Setting, Settings, SolveError};
 
 /// Number of starts: as many as this work allows (steps times operations times runs), within these bounds.
 const WORK: usize = 1_300_000;
@@ -66,20 +67,6 @@ impl Found {
     }
 }
 
-/// A start.
-struct Start {
-    constants: Vec<f64>,
-    /// Of a guess, the first part of the motion that it is fitted to, and the factor of the next ones.
-    growth: Option<[f64; 2]>,
-}
-
-/// Constants on their way to a minimum, and the largest gap as far as they were followed.
-struct Candidate {
-    start: usize,
-    constants: Vec<f64>,
-    gap: f64,
-}
-
 /// Searches from the guesses and from other starts. `None` where no guess leads to a motion.
 ///
 /// # Errors
@@ -102,51 +89,51 @@ pub(crate) fn search(
         count = STARTS[0];
     }
     let limit = DRAWN * differences.largest(&first, 1.0, COARSE);
-    let starts = starts(aim, &first, &differences.sizes_at(&first), count);
     let (mut guessed, mut drawn) = (Vec::new(), Vec::new());
-    for (i, Start { constants, growth }) in starts.iter().enumerate() {
-        let Some([part, longer]) = *growth else {
-            let gap = differences.largest(constants, 1.0, COARSE);
-            drawn.extend((gap <= limit).then(|| Candidate { start: i, constants: constants.clone(), gap }));
+    let starts = Starts::new(aim, &first, &differences.sizes_at(&first));
+    for number in 0..count {
+        let Start { constants, growth } = starts.at(number);
+        let Some([part, longer]) = growth else {
+            let value = differences.largest(&constants, 1.0, COARSE);
+            drawn.extend((value <= limit).then(|| Minimum { value, ..Minimum::start(number, constants) }));
             continue;
         };
-        let constants = differences.grown(constants, part, longer, BEGINNING);
-        let gap = differences.largest(&constants, BEGINNING, FINE);
+        let constants = differences.grown(&constants, part, longer, BEGINNING);
         if aim.may_vanish && differences.is_close(&constants, BEGINNING) {
             let whole = differences.grown(&constants, BEGINNING * longer, longer, 1.0);
             if differences.is_close(&whole, 1.0) {
                 let constants = differences.squares(&whole, settings).unwrap_or(whole);
-                return Ok(Some(Found { by_half: constants.clone(), constants, starts: aim.guesses.len().max(i + 1) }));
+                let starts = aim.guesses.len().max(number + 1);
+                return Ok(Some(Found { by_half: constants.clone(), constants, starts }));
             }
         }
-        guessed.push(Candidate { start: i, constants, gap });
+        let value = differences.largest(&constants, BEGINNING, FINE);
+        guessed.push(Minimum { value, ..Minimum::start(number, constants) });
     }
-    let half = guessed.partition_point(|guess| guess.start < count / 2);
-    let mut best = [&guessed[..half], &guessed].map(better_half).concat();
-    best.sort_unstable();
-    best.dedup();
-    let guessed = guessed.into_iter().filter(|guess| best.contains(&guess.start));
-    let mut ends: Vec<Candidate> = guessed.chain(drawn).collect();
+    let half = guessed.partition_point(|guess| guess.first < count / 2);
+    let better = [&guessed[..half], &guessed].map(better_half);
+    guessed.retain(|guess| better.iter().any(|better| better.contains(&guess.first)));
+    let mut ends: Vec<Minimum> = guessed.into_iter().chain(drawn).collect();
     for end in &mut ends {
-        let [part, longer] = starts[end.start].growth.map_or([1.0, 1.0], |[_, longer]| [BEGINNING * longer, longer]);
-        end.constants = differences.grown(&end.constants, part, longer, 1.0);
-        end.gap = differences.largest(&end.constants, 1.0, FINE);
+        let [part, longer] = starts.at(end.first).growth.map_or([1.0, 1.0], |[_, longer]| [BEGINNING * longer, longer]);
+        end.unknowns = differences.grown(&end.unknowns, part, longer, 1.0);
+        end.value = differences.largest(&end.unknowns, 1.0, FINE);
     }
     for power in POWERS {
         let beyond = ((LOOKED_AT / FINE) as f64).powf(1.0 / power);
-        let limit = beyond * ends.iter().fold(f64::INFINITY, |least, end| least.min(end.gap));
-        for end in ends.iter_mut().filter(|end| end.gap <= limit) {
-            let sum = Power { power, scale: end.gap, stride: FINE, part: 1.0 };
-            let constants = differences.minimum(&end.constants, &sum);
-            let gap = differences.largest(&constants, 1.0, FINE);
-            if gap < end.gap {
-                (end.constants, end.gap) = (constants, gap);
+        let limit = beyond * least_from(count, &ends);
+        for end in ends.iter_mut().filter(|end| end.value <= limit) {
+            let sum = Power { power, scale: end.value, stride: FINE, part: 1.0 };
+            let unknowns = differences.minimum(&end.unknowns, &sum);
+            let value = differences.largest(&unknowns, 1.0, FINE);
+            if value < end.value {
+                (end.unknowns, end.value) = (unknowns, value);
             }
         }
     }
     let mut least = |below: usize| {
-        let of = ends.iter().filter(|end| end.start < below);
-        let constants = of.min_by(|a, b| a.gap.total_cmp(&b.gap)).map_or(&first, |end| &end.constants);
+        let of = ends.iter().filter(|end| end.first < below);
+        let constants = of.min_by(|a, b| a.value.total_cmp(&b.value)).map_or(&first, |end| &end.unknowns);
         let vanishes = aim.may_vanish && differences.is_close(constants, 1.0);
         let exact = if vanishes { differences.squares(constants, settings) } else { None };
         exact.unwrap_or_else(|| constants.clone())
@@ -155,10 +142,10 @@ pub(crate) fn search(
 }
 
 /// The starts of the better half.
-fn better_half(guessed: &[Candidate]) -> Vec<usize> {
-    let mut best: Vec<&Candidate> = guessed.iter().filter(|guess| guess.gap.is_finite()).collect();
-    best.sort_by(|a, b| a.gap.total_cmp(&b.gap));
-    best.into_iter().take(guessed.len().div_ceil(2)).map(|guess| guess.start).collect()
+fn better_half(guessed: &[Minimum]) -> Vec<usize> {
+    let mut best: Vec<&Minimum> = guessed.iter().filter(|guess| guess.value.is_finite()).collect();
+    best.sort_by(|a, b| a.value.total_cmp(&b.value));
+    best.into_iter().take(guessed.len().div_ceil(2)).map(|guess| guess.first).collect()
 }
 
 impl Differences {
@@ -176,35 +163,49 @@ impl Differences {
     }
 }
 
+/// A start.
+struct Start {
+    constants: Vec<f64>,
+    /// Of a guess, the first part of the motion that it is fitted to, and the factor of the next ones.
+    growth: Option<[f64; 2]>,
+}
+
 /// Guesses, among them some along the directions; and drawn starts around zero and around `near`, spread
-/// evenly (Roberts' sequence).
-fn starts(aim: &Aim, near: &[f64], sizes: &[f64], count: usize) -> Vec<Start> {
-    let n = sizes.len();
-    let size = |direction: &[f64]| direction.iter().zip(sizes).map(|(d, s)| (d * s).abs()).fold(0.0, f64::max);
-    let along = aim.directions.iter().flat_map(|direction| {
-        let moved = |by: f64| aim.guesses[0].iter().zip(direction).map(|(c, d)| c + by * d).collect();
-        [size(direction), -size(direction)].map(moved)
-    });
-    let mut guesses: Vec<Vec<f64>> = Vec::new();
-    for guess in aim.guesses.iter().cloned().chain([vec![0.0; n]]).chain(along) {
-        if !guesses.contains(&guess) {
-            guesses.push(guess);
+/// evenly.
+struct Starts<'a> {
+    guesses: Vec<Vec<f64>>,
+    near: &'a [f64],
+    sizes: Vec<f64>,
+}
+
+impl<'a> Starts<'a> {
+    fn new(aim: &Aim, near: &'a [f64], sizes: &[f64]) -> Self {
+        let size = |direction: &[f64]| direction.iter().zip(sizes).map(|(d, s)| (d * s).abs()).fold(0.0, f64::max);
+        let along = aim.directions.iter().flat_map(|direction| {
+            let moved = |by: f64| aim.guesses[0].iter().zip(direction).map(|(c, d)| c + by * d).collect();
+            [size(direction), -size(direction)].map(moved)
+        });
+        let mut guesses: Vec<Vec<f64>> = Vec::new();
+        for guess in aim.guesses.iter().cloned().chain([vec![0.0; near.len()]]).chain(along) {
+            if !guesses.contains(&guess) {
+                guesses.push(guess);
+            }
         }
+        Starts { guesses, near, sizes: sizes.to_vec() }
     }
-    // the root of x^(n + 3) = x + 1
-    let root = (0..60).fold(2.0_f64, |x, _| (1.0 + x).powf(1.0 / (n + 3) as f64));
-    let geometric = |[from, to]: [f64; 2], part: f64| from * (to / from).powf(part);
-    let start = |i: usize| {
-        let part = |j: usize| (0.5 + i as f64 * root.powi(-(j as i32 + 1))).fract();
-        if i < guesses.len() || i.is_multiple_of(GUESSES) {
-            let guess = if i < guesses.len() { i } else { i / GUESSES };
-            let growth = [geometric([EARLIEST, BEGINNING], part(n + 1)), geometric(LONGER, part(n))];
-            return Start { constants: guesses[guess % guesses.len()].clone(), growth: Some(growth) };
+
+    fn at(&self, number: usize) -> Start {
+        let n = self.near.len();
+        let geometric = |[from, to]: [f64; 2], by: f64| from * (to / from).powf(0.5 * (1.0 + by));
+        let by = spread(number, n + 2);
+        if number < self.guesses.len() || number.is_multiple_of(GUESSES) {
+            let guess = if number < self.guesses.len() { number } else { number / GUESSES };
+            let growth = [geometric([EARLIEST, BEGINNING], by[n + 1]), geometric(LONGER, by[n])];
+            return Start { constants: self.guesses[guess % self.guesses.len()].clone(), growth: Some(growth) };
         }
-        let radius = geometric(REACH, part(n));
-        let center = |j: usize| if i.is_multiple_of(2) { 0.0 } else { near[j] };
-        let constants = (0..n).map(|j| center(j) + radius * sizes[j] * (2.0 * part(j) - 1.0)).collect();
+        let radius = geometric(REACH, by[n]);
+        let center = |j: usize| if number.is_multiple_of(2) { 0.0 } else { self.near[j] };
+        let constants = (0..n).map(|j| center(j) + radius * self.sizes[j] * by[j]).collect();
         Start { constants, growth: None }
-    };
-    (0..count).map(start).collect()
+    }
 }

@@ -2,6 +2,7 @@
 
 use crate::carried::{Carried, Which};
 use crate::connect::two_point::TwoPoint;
+use crate::shooting::spread;
 use crate::{Metric, SolveError};
 
 /// Where searches start.
@@ -108,13 +109,4 @@ fn shifted(x: &[f64], units: &[f64], by: &[f64], half: f64, moved: usize) -> Vec
         *x += half * by[i] * units[i];
     }
     shifted
-}
-
-/// Point `k` of an additive recurrence in `[−1, 1]ᵈ`: multiples of the powers of `1/φ`, `φ^(d+1) = φ + 1`.
-pub fn spread(k: usize, d: usize) -> Vec<f64> {
-    let mut phi = 2.0_f64;
-    for _ in 0..60 {
-        phi = (1.0 + phi).powf(1.0 / (d + 1) as f64);
-    }
-    (1..=d).map(|j| 2.0 * (0.5 + k as f64 * phi.powi(-(j as i32))).fract() - 1.0).collect()
 }

@@ -65,7 +65,7 @@ class FormulationFit:
     "not-fitted", in `words`. `names`: of the unknowns, in the order of theta. `estimates`: by name value, error, low, high
     (of 95 %), profiled and at_bound, None for infinite. `shown`: whether such films can show the unknowns at all, with answer
     "proved", "hidden" or "open", hidden, order and words. `chi_squared`, `freedom`, `bic`, `tests`, `hidden`, `minima`,
-    `starts`, `reached` as in the schema of `deltaq fit`; without a fit `estimates` is empty.
+    `starts`, `reached`, `by_half` as in the schema of `deltaq fit`; without a fit `estimates` is empty.
     """
 
     def __init__(self, fitted: _Fitted, place: int, answer: Mapping[str, Any]):
@@ -87,6 +87,7 @@ class FormulationFit:
         self.minima: list[float] = fit.get("minima", [])
         self.starts: int = fit.get("starts", 0)
         self.reached: int = fit.get("reached", 0)
+        self.by_half: float | None = fit.get("by_half")
         self._bounds = dict(fitted.unknowns(place))
         self.names: list[str] = list(self._bounds)
 
@@ -198,7 +199,7 @@ class FilmFit:
     def __init__(self, system: System, call: dict[str, Any]):
         self.system, self._call = system, call
         self._fitted = system._fit(**call)
-        self.answer: dict[str, Any] = {"schema": "deltaq/fit/1"} | json.loads(self._fitted.answer)
+        self.answer: dict[str, Any] = {"schema": "deltaq/fit/2"} | json.loads(self._fitted.answer)
         self.rows = [FormulationFit(self._fitted, place, row) for place, row in enumerate(self.answer["formulations"])]
 
     @property
@@ -483,7 +484,7 @@ def design(
     found: dict[str, Any] = json.loads(
         self._design(aim, ranges, film, films, list(columns), _sigmas(sigma), list(free), list(law), starts, points, tolerance, max_steps, threads)
     )
-    return Design.of({"schema": "deltaq/design/1"} | found)
+    return Design.of({"schema": "deltaq/design/2"} | found)
 
 
 class _DesignPart(_Grid):

@@ -1569,6 +1569,8 @@ class Connection:
     """What the second variation of the action says, in words."""
     starts: Final[int]
     """How many starts led here."""
+    by_half: Final[bool]
+    """Whether the first half of the starts leads here."""
 
 @final
 class Residuals:

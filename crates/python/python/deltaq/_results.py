@@ -195,6 +195,16 @@ class Chosen(Record):
 
 
 @dataclass(frozen=True, eq=False, repr=False)
+class ByStarts(Record):
+    """What a search from so many starts finds."""
+
+    starts: int
+    """Number of starts, the first of a longer search."""
+    value: float | None
+    """The least chi squared that they lead to; None if they lead nowhere."""
+
+
+@dataclass(frozen=True, eq=False, repr=False)
 class DesignPoint(Record):
     """What films with some numbers show."""
 
@@ -206,6 +216,8 @@ class DesignPoint(Record):
     """Numbers of the second formulation there, by name."""
     minima: int
     """Minima that the search found."""
+    by_starts: tuple[ByStarts, ...]
+    """The same value by number of starts: half, as many and twice as many as were asked for."""
     hidden: tuple[str, ...]
     """Combinations of unknowns that such films do not show."""
 
