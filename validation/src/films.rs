@@ -39,7 +39,8 @@ pub fn files(scenes: &[&str], done: impl Fn(&str) + Sync) -> Result<Vec<File>> {
             Ok(Some(Told { seconds, point, shortest })) => {
                 short += usize::from(shortest.is_some_and(|length| length < 1.0));
                 let tells = if point.value >= EXCLUDED { "excluded at" } else { "cannot tell," };
-                let own = format!("{seconds} s: {tells} {:.0} σ, {} minima", point.value.sqrt(), point.minima);
+                let minima = if point.minima == 1 { "one minimum".into() } else { format!("{} minima", point.minima) };
+                let own = format!("{seconds} s: {tells} {:.0} σ, {minima}", point.value.sqrt());
                 (own, shortest.map_or("none found".into(), |length| format!("{length:.3} s")))
             }
             Ok(None) => continue,
