@@ -126,7 +126,7 @@ fn what_nearly_dependent_constraints_lose_is_in_the_estimate() {
 #[test]
 fn steps_that_round_off_decides_are_said() {
     // added mass in velocities alone: f is a difference of terms that agree to ten digits
-    let scene = catalogue::find("particle", &[]).expect("built in");
+    let scene = scene::catalogue::find("particle", &[]).expect("built in");
     let massive = with_added_mass(&scene.system, 1e10);
     let settings = Settings { tolerance: 1e-10, method: Some(Method::Dop853), max_steps: 4_000, ..Settings::default() };
     let newton = random::equations(&massive, CHETAEV, None).expect("equations");

@@ -189,9 +189,9 @@ Milliseconds of one run (times those of deltaq).
 {data(races).list(1)}
 ## How this was made
 
-`cargo xtask peers` on {provenance["date"]}, commit {provenance["commit"]}, in {provenance["seconds"]:.0f} s; {provenance["machine"]}. \
-{provenance["effort"].rounds} turns of at least {provenance["effort"].repeat} s for each time that counts, a limit of {provenance["effort"].limit} s on \
-each step of each tool, one thread. {MEMBERS} at a time (`by-hand.csv`): {MEMBERS} motions from other starts in one call.
+`cargo xtask peers` on {provenance["date"]}, commit {provenance["commit"]}, in {provenance["seconds"]:.0f} s on {provenance["machine"]}. \
+Each time that counts is the least of {provenance["effort"].rounds} turns of at least {provenance["effort"].repeat} s. Each step of each tool may take \
+{provenance["effort"].limit} s on one thread. {MEMBERS} at a time (`by-hand.csv`): {MEMBERS} motions from other starts in one call.
 
 {", ".join(f"{name} {version}" for name, version in provenance["versions"].items())}. Licences: {LICENCES}
 """
@@ -199,10 +199,10 @@ each step of each tool, one thread. {MEMBERS} at a time (`by-hand.csv`): {MEMBER
 
 LICENCES = """\
 heyoka MPL-2.0; CasADi LGPL-3.0, with SUNDIALS BSD-3-Clause; NumPy, SciPy, SymPy and mpmath BSD-3-Clause; numba and llvmlite BSD-2-Clause. \
-They are run, and nothing of ours is linked with them."""
+deltaq is not linked with any of them."""
 
-INTRODUCTION = r"""Every tool gets the text of the scene and derives and compiles in its own way, in the best form that we know for it. A tool is timed \
-only if its right-hand side at the start agrees with ours to 1e-12. All run from Python, each in a process of its own.
+INTRODUCTION = r"""We give every tool the text of the scene. It derives and compiles in its own way, in the best form that we know for it. A tool is timed \
+only if its right-hand side at the start agrees with ours to 1e-12. All tools run from Python, each in its own process.
 
 | tool | what it was given | how it runs |
 |---|---|---|

@@ -49,7 +49,7 @@ def headline(problem, shown):
     return f"{problem}: to {TARGET:.0e} " + ", ".join(f"{named(row)} {ratio:.2g} ×" for ratio, row in known) + " the time of deltaq"
 
 
-def lines(text, limit=72):
+def lines(text, limit=66):
     """Words in lines of at most so many letters."""
     found = [""]
     for word in text.split():

@@ -202,6 +202,7 @@ impl Map {
             columns: VALUES,
             value: Axis::linear("integrals linear in the velocities"),
             cells: found.iter().map(linear).collect(),
+            empty: "not decided".into(),
             marked: found.iter().map(|found| matches!(found.measure, Measure::Local { .. })).collect(),
             mark: "an invariant measure".into(),
         };
@@ -280,7 +281,7 @@ fn head() -> String {
      answers for the parameters of a scene. **Near a generic point q:** σ is smooth there, and \
      integrals have analytic coefficients; both may be multivalued around angles and singular elsewhere. \
      Without a potential every measure that is smooth and positive near rest is of this kind; with one, densities may depend on p. Weaker \
-     measures may exist ([García-Naranjo, Ortega, Ureña 2024](https://arxiv.org/abs/2404.14156)).\n\n\
+     measures may exist ([García-Naranjo, Ortega & Ureña 2024](../../docs/references.bib#GarciaNaranjoEtAl2024)).\n\n\
      *None* is proved by a nonzero minor and has a certificate (`--certificates`) that `validation/proof/verify.py` reads. \
      Counts are computed by ranks at random points and are proved upper bounds.\n"
         .into()

@@ -92,18 +92,20 @@ fn the_page_of_a_sweep_counts_its_rows_and_draws_its_columns() {
         "4.0,,,,,,,,,\"no motion\"",
         "5.0,different,1.5,8.0,5e-9,none proved,3,,2.0,",
     ];
+    let sledge = catalogue::find("sledge", &[]).expect("a scene");
+    let scene = scene::Scene { name: "s".into(), title: "A sweep".into(), ..sledge };
     let files = |rows: &[&str]| {
         let ranges = [("k".to_string(), 0.0, 5.0, rows.len())];
         let table = head.to_owned() + &rows.iter().map(|row| format!("{row}\n")).collect::<String>();
-        sweep_files("s", "A sweep", ["one", "two"], &ranges, &table).expect("files")
+        sweep_files(&scene, ["one", "two"], &ranges, &table).expect("files")
     };
     let text = |files: &[program::File], name: &str| {
         files.iter().find(|file| file.path.ends_with(name)).map(|file| file.text.clone()).expect("a file")
     };
     let all = files(&rows);
     let page = text(&all, "s-sweep.md");
-    let headline = "The motions differ at 3 of 6 points and agree at 1; 1 points are undecided, 1 have no motion. That no constants \
-                    make the two motion the one one is proved at 2 points; at 2 points some do.";
+    let headline = "The motions differ at 3 of 6 points and agree at 1; 1 points are undecided, 1 have no motion. It is proved \
+                    at 2 points that no constants make the two motion the one one; at 2 points some do.";
     assert!(page.contains(headline), "{page}");
     assert!(page.contains("- k = 2: some\n- k = 3: some proved\n"), "{page}");
     // each picture is of one column, and of no other

@@ -14,8 +14,9 @@ fn every_claim_has_the_word_that_its_data_expect_and_the_headline_counts_the_tab
     assert_eq!(claims + answered + open, rows.len());
     let found: Vec<String> = words.iter().filter(|(_, n)| *n > 0).map(|(word, n)| format!("{n} {word}")).collect();
     let expected = format!(
-        "{claims} claims whose abstract was read were computed on the systems here: {}. {answered} further questions from the \
-         literature are answered for the systems named, without a verdict on their sources. {open} statements were not computed.",
+        "Of {} entries from the literature, {claims} are claims that were computed after their abstract was read: {}. For {answered} \
+         entries a question is answered for the systems named, without a verdict on the source. {open} entries were not computed.",
+        rows.len(),
         found.join(", ")
     );
     assert_eq!(report.headline(), expected);

@@ -1,4 +1,4 @@
-//! Error against run time: every formulation of a scene, method and tolerance, against a reference.
+//! Work–precision measurements: error against run time of every formulation, method and tolerance.
 //!
 //! A measurement is one run of the time loop (not the two of [`motion::solve`]) with dense output, from
 //! compiled equations. Its time is the least of several; its error is the largest kinetic distance from the

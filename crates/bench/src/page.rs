@@ -35,7 +35,7 @@ pub fn bench_headline(benches: &[Bench]) -> String {
     )
 }
 
-/// Pictures that the page shows; the others are linked.
+/// Pictures of the page; of all scenes there are tables.
 const SHOWN: usize = 5;
 
 /// Page, pictures and tables, with those of ensembles where any were measured.
@@ -43,16 +43,12 @@ const SHOWN: usize = 5;
 /// # Errors
 /// Where a picture cannot be drawn.
 pub fn bench_files(benches: &[Bench], ensembles: &[Throughput]) -> Result<Vec<File>> {
-    let (mut files, mut shown, mut linked) = (Vec::new(), String::new(), String::new());
-    for bench in benches {
+    let (mut files, mut shown) = (Vec::new(), String::new());
+    for bench in benches.iter().take(SHOWN) {
         let path = format!("error-vs-time/{}.svg", bench.scene);
         match picture(bench) {
-            Ok(text) if files.len() < SHOWN => {
-                let _ = writeln!(shown, "!{}\n", link(&title(bench), &path));
-                files.push(File { path: path.into(), text });
-            }
             Ok(text) => {
-                let _ = writeln!(linked, "- {}", link(&bench.title, &path));
+                let _ = writeln!(shown, "!{}\n", link(&title(bench), &path));
                 files.push(File { path: path.into(), text });
             }
             Err(PictureError::NothingToDraw { .. }) => {}
@@ -75,7 +71,7 @@ pub fn bench_files(benches: &[Bench], ensembles: &[Throughput]) -> Result<Vec<Fi
     let columns = ["scene", "formulation", "both runs (ms)", "error", "single (ms)", "ratio"];
     let page = format!(
         "# Error against run time\n\n**{}**\n\n{INTRODUCTION}\n## Without options\n\n{sentence}\n\n{}\n## Pictures\n\n\
-         Work–precision diagrams, lower left is better. Colour and dash: method. The black or white dot is the default run.\n\n{shown}{linked}\n## Data\n\n{}",
+         Work–precision diagrams, lower left is better. Colour and dash: method. The black or white dot is the default run.\n\n{shown}## Data\n\n{}",
         bench_headline(benches),
         usual.only(&columns),
         data.list(0)
@@ -121,7 +117,7 @@ fn usual(benches: &[Bench]) -> (Table, String) {
                 entry.label.clone(),
                 format!("{}, {}", usual.form, usual.method.map_or("", Method::name)),
                 short(1e3 * usual.seconds),
-                short(usual.error),
+                if usual.error < reached { format!("< {reached:.0e}") } else { short(usual.error) },
                 short(usual.estimate),
                 single.map_or("none so accurate".into(), |single| short(1e3 * single.seconds)),
                 ratio.map_or(String::new(), |ratio| format!("{ratio:.2}")),

@@ -1,6 +1,8 @@
 //! # The d'Alembert–Lagrange equations of nonholonomic systems (Chetaev's condition)
 //!
-//! Wheels, skates and rolling bodies follow these equations, because friction holds their constraints.
+//! Wheels, skates and rolling bodies follow these equations, because friction holds their constraints. The
+//! rule is that of `Chetaev1932`; textbooks are `NeimarkFufaev1972` and `Bloch2003` (keys of
+//! `docs/references.bib`).
 //!
 //! Given are coordinates `q ∈ Rⁿ`, a Lagrangian `L(q, v, t)` with `v = q̇`, constraints `f(q, v, t) = 0 ∈ Rʰ`
 //! and generalized forces `Q(q, v, t)`. Write `A = ∂f/∂v` (h×n) and `M = ∂²L/∂v²` (n×n).

@@ -1,8 +1,8 @@
 //! # Decides whether the formulations of a nonholonomic system agree
 //!
-//! Two motions of one system, by two formulations, are the same or they differ. Where a formulation has free
-//! constants, as vakonomic mechanics has its initial multipliers, the question is whether *some* of them give
-//! the motion of the other.
+//! Two formulations of one system have the same trajectory or different ones. If a formulation has free
+//! constants, such as the initial multipliers of vakonomic mechanics, the question is whether *some* of them
+//! give the trajectory of the other.
 //!
 //! - [`compare`]: a scene in every formulation, pair by pair, with fits of the free constants.
 //! - [`compare_motions`]: two motions.

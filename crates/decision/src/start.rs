@@ -30,7 +30,7 @@ pub enum NoExactStart {
     Projected,
     /// Random positions on which the constraints on positions hold are not found.
     #[error(
-        "at random places the constraints on positions are not solved: each coordinate stands in several, or with a degree over 2"
+        "the constraints on positions cannot be solved at random points: each coordinate occurs in several of them, or with a degree over 2"
     )]
     Positions,
     /// The constraints hold on several surfaces, and which of them the start is on is not seen in the field.

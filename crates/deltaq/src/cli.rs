@@ -70,13 +70,13 @@ pub struct Cli {
 /// The subcommands.
 #[derive(Subcommand, Debug)]
 pub enum Command {
-    /// List the built-in scenes.
+    /// List the built-in scenes: classic nonholonomic and holonomic systems.
     List(ListArguments),
     /// Write a commented scene to begin with.
     New(NewArguments),
     /// Find every fault in scene files, without deriving anything.
     Check(CheckArguments),
-    /// Show the equations of a scene, what was left out of them, and whether its constraints are integrable.
+    /// Show the equations of motion of a scene, omitted equations, and whether its constraints are holonomic.
     Show(ShowArguments),
     /// Integrate a scene in one formulation.
     Solve(SolveArguments),
@@ -129,8 +129,8 @@ pub struct ListArguments {
 pub struct SolveArguments {
     #[command(flatten)]
     pub motion: MotionArguments,
-    /// Time-stepping method: auto, the one that suits equations and motion (taylor, or else dop853 or
-    /// radau5); Taylor series, of the order that the tolerance asks for; explicit Runge–Kutta of order 8
+    /// Time-stepping method: auto, which deltaq chooses by equations and motion (taylor, or else dop853 or
+    /// radau5); Taylor series, whose order follows from the tolerance; explicit Runge–Kutta of order 8
     /// (dop853); stiff: implicit Runge–Kutta of order 5 (radau5); leapfrog, a discrete variational principle
     /// in equal steps, which keeps constraints, reversibility and (vakonomic, removed) the symplectic form.
     /// A program built with `--features diffsol` has those of the library diffsol as well: explicit
@@ -168,19 +168,19 @@ pub struct CompareArguments {
     /// Print the whole page, in Markdown, and not only the answer.
     #[arg(long, conflicts_with_all = ["out", "format"])]
     pub markdown: bool,
-    /// Formulations to compare; if left out, all for which the scene has what they need.
+    /// Formulations to compare; by default all whose parameters the scene has.
     #[arg(long, short, value_name = "NAME,…", value_delimiter = ',', value_parser = formulations())]
     pub formulation: Vec<&'static Formulation>,
-    /// Also fit free constants where it is decided whether some constants give the motion.
+    /// Also fit free constants if it is already decided whether some constants give the motion.
     #[arg(long = "with", value_name = "PART")]
     pub with: Option<Searched>,
-    /// Fit no free constants, not even where nothing is decided.
+    /// Fit no free constants, even if the decision stays open.
     #[arg(long, value_name = "PART", conflicts_with = "with")]
     pub without: Option<Searched>,
     /// Vary a parameter, a start value, `mu0_1`, … or `P0_w`, … and compare two motions at each value, both
-    /// ends included: a table. The motions are Chetaev's and the vakonomic one, or of costates `P0_w` the one
-    /// without constraints, or two given by `--formulation`. Several combine; with `--out` a file, which goes
-    /// on where it was cut off.
+    /// ends included: a table. The motions are Chetaev's and the vakonomic one, for costates `P0_w` Chetaev's
+    /// and the removed-constraint one, or two given by `--formulation`. Several options combine. With `--out`
+    /// the table is a file, and the same call resumes an interrupted one.
     #[arg(long, value_name = "NAME=FROM:TO:COUNT", value_parser = range::range,
           conflicts_with_all = ["markdown", "format", "with"])]
     pub sweep: Vec<Range>,
@@ -235,7 +235,7 @@ pub struct ProveArguments {
     /// deltaq did not write is not replaced.
     #[arg(long, value_name = "FILE")]
     pub out: PathBuf,
-    /// Prove it for a start drawn at random, and so for almost every start, instead of the scene's own.
+    /// Prove it for a random start, and so for almost every start, instead of the scene's own.
     #[arg(long)]
     pub almost_every: bool,
     /// Output format of the answer; a certificate is JSON.

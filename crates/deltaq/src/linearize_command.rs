@@ -10,7 +10,7 @@ use serde_json::{Map, Value, json};
 use crate::cli::{LinearizeArguments, TableFormat};
 use crate::columns::header;
 use crate::solve_command::choice;
-use pages::{sweep_picture, sweep_text};
+use pages::{sweep_picture, sweep_text, with_unit};
 use program::pretty;
 use program::{File, write_all};
 
@@ -48,7 +48,7 @@ pub(crate) fn run(arguments: &LinearizeArguments) -> Result<String> {
         let text = format!("{}\n![Eigenvalues over {}]({picture})\n", page(), sweep.name);
         let files = [
             File { path: format!("{}-eigenvalues.md", scene.name).into(), text },
-            File { path: picture.into(), text: sweep_picture(&scene.title, &sweep)? },
+            File { path: picture.into(), text: sweep_picture(&scene.title, &with_unit(&scene, &sweep.name), &sweep)? },
         ];
         write_all(folder, &files)?;
     }

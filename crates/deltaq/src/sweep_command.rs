@@ -36,7 +36,7 @@ pub(crate) fn run(arguments: &CompareArguments, quiet: bool) -> Result<String> {
     let Some(told) = written else { return Ok(String::new()) };
     let (Some(path), Some(folder)) = (&path, &arguments.output.out) else { return Ok(told) };
     let table = std::fs::read_to_string(path).with_context(|| format!("cannot read {}", path.display()))?;
-    write_all(folder, &sweep_files(&scene.name, &scene.title, sweep.titles(), &grid.swept(), &table)?)?;
+    write_all(folder, &sweep_files(&scene, sweep.titles(), &grid.swept(), &table)?)?;
     Ok(told)
 }
 

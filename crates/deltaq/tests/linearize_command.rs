@@ -26,7 +26,7 @@ fn every_format_has_the_same_numbers() {
     // m/s, the weave speed of the paper
     let weave = value["changes"][0]["value"].as_f64().expect("a change");
     assert!((weave - 4.292382536).abs() < 1e-9, "{weave}");
-    let said = "Stability to first order changes at v = 4.292382536";
+    let said = "Linear stability changes at v = 4.292382536";
     let table = with("table");
     assert!(table.contains(said));
     assert!(table.contains("2 have a positive real part below this value, no eigenvalue has above"));

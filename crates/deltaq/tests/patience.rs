@@ -48,7 +48,7 @@ fn what_takes_too_long_or_too_much_memory_stays_open() {
     // brackets are left; ranks over a finite field tell, if there is time for them, but not how deep they are
     // at the start
     let constraint = told.lines().find(|line| line.starts_with("Constraint: ")).expect("a line");
-    let said = ["Constraint: undecided: stopped after 1 s", "Constraint: nonintegrable: brackets nested 1 deep"];
+    let said = ["Constraint: undecided: stopped after 1 s", "Constraint: nonholonomic, bracket-generating of step 2"];
     assert!(said.iter().any(|said| constraint.starts_with(said)), "{constraint}");
     let (_, complaint) = answer(&["linearize", &long, "--patience", "1"], 2);
     assert!(complaint.contains("not a steady motion"), "{complaint}");

@@ -1,7 +1,7 @@
-//! # A scene explored
+//! # Answers for the browser page
 //!
-//! What the page `reports/explore.html` asks, and what it is answered: text in, text and numbers out, so that
-//! it can run as WebAssembly in a browser, without files, threads and a clock. Nothing is derived, integrated
+//! The page `reports/explore.html` asks questions as text and gets text and numbers, so that this crate can
+//! run as WebAssembly in a browser, without files, threads and a clock. Nothing is derived, integrated
 //! or decided here; that is `deltaq`'s.
 //!
 //! A [`Question`] is about the text of a scene, with numbers `set` instead of those of the text:

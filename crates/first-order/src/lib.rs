@@ -1,4 +1,7 @@
-//! # The constraint law of first order: ε and slip
+//! # The first-order constraint law near the d'Alembert–Lagrange limit: ε and slip
+//!
+//! Friction instead of an ideal nonholonomic constraint has such corrections: `Eldering2016` of
+//! `docs/references.bib`.
 //!
 //! Given: coordinates `q ∈ Rⁿ`, a Lagrangian `L(q, v, t)`, constraints `f(q, v, t) = 0 ∈ Rʰ`, forces `Q`, and
 //! two small numbers: `ε`, the parameter `epsilon`, a time of either sign, and `1/N`, the parameter `slip`.

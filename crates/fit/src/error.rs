@@ -42,7 +42,7 @@ pub enum FitError {
         unknowns: usize,
     },
     /// There are more numbers in the films than are fitted.
-    #[error("the films have {found} numbers, and at most {limit} are fitted: leave out rows or columns")]
+    #[error("the films have {found} numbers; deltaq fits at most {limit}: leave out rows or columns")]
     TooLong { found: usize, limit: usize },
     /// A quantity cannot be read.
     #[error("`{text}` is not a number with a unit; units are {units}")]
@@ -66,7 +66,7 @@ pub enum FitError {
     #[error("`{0}` is unknown twice")]
     Twice(String),
     /// Nothing is unknown.
-    #[error("nothing is unknown: there is nothing to fit")]
+    #[error("no number is unknown, so there is nothing to fit")]
     NoUnknown,
     /// No start of the search leads to a motion through the film.
     #[error("of {starts} starts of the search none leads to a motion: {reason}")]

@@ -1,4 +1,4 @@
-//! # Films of motions: estimates with intervals, and which formulation a film supports
+//! # Fits of nonholonomic models to recordings (films): estimates with intervals, and the formulation supported
 //!
 //! Given: a scene, films, and unknowns of the scene. A film is a table of times `t_k` and columns
 //! `c(t, q, v, p)` with standard deviations σ; unknown numbers θ are parameters, start values, multipliers

@@ -100,7 +100,7 @@ fn films_share_parameters_and_have_starts_of_their_own() {
         |films: &[Film], unknowns: &[&str]| problem(&scene, films, unknowns).map(|_| ()).unwrap_err().to_string();
     assert!(refused(&two, &["x@3"]).contains("there is no film 3, there are 2"));
     assert!(refused(&two, &["g", "g"]).contains("`g` is unknown twice"));
-    assert!(refused(&two, &[]).contains("nothing is unknown"));
+    assert!(refused(&two, &[]).contains("no number is unknown"));
     assert!(
         refused(std::slice::from_ref(&film), &["x", "y", "phi", "x'", "phi'"])
             .contains("the films have 5 numbers, and there are 5")

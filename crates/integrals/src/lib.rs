@@ -1,4 +1,4 @@
-//! # Integrals and invariant measures: printed, counted, or proved not to exist
+//! # First integrals and invariant measures of nonholonomic systems: printed, counted, or proved not to exist
 //!
 //! There are two methods, both linear algebra over a finite field, on the numbers as they are written
 //! ([`decision`] has the fields and says which numbers have images there).

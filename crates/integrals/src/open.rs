@@ -67,7 +67,7 @@ pub enum Open {
     #[error("the equations of order {order} have more than {most} unknowns")]
     Columns { order: usize, most: usize },
     /// Coefficients are free at the last weight: what is left bounds nothing.
-    #[error("{free} coefficients are free still at order {order}, the highest that was looked at: there is no bound")]
+    #[error("{free} coefficients are still free at order {order}, the highest one tried: no bound follows")]
     Free { order: usize, free: usize },
     /// It takes longer than a question may.
     #[error("{0}; fewer coordinates in L and f, or a lower --degree, need less")]

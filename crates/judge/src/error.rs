@@ -23,7 +23,7 @@ pub enum JudgeError {
     )]
     TooMany { found: usize, limit: usize },
     /// The scene has no constraint.
-    #[error("the scene has no constraint: there is one law only")]
+    #[error("the scene has no constraint, so all laws are the same")]
     Unconstrained,
     /// The mass matrix is not positive definite, so that no length of a force is defined.
     #[error("at t = {t}: the mass matrix is not positive definite")]

@@ -1,4 +1,4 @@
-//! # Which law does the program that computed these motions integrate?
+//! # Identification of the constraint law that a program integrates, from its trajectories
 //!
 //! Given: a scene, `L(q, v, t)`, `f(q, v, t) = 0`, `Q`, and samples `(t, q)` or `(t, q, v)` of a motion
 //! computed by any program. `A = ∂f/∂v` (h×n), `M = ∂²L/∂v²`, `C = (∂f/∂q)ᵀ − Ȧᵀ`, and at each sample

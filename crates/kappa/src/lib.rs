@@ -1,4 +1,4 @@
-//! # The family between the vakonomic and the Chetaev formulation
+//! # The family between the vakonomic and the d'Alembert–Lagrange (Chetaev) equations of nonholonomic systems
 //!
 //! Given: coordinates `q ∈ Rⁿ`, a Lagrangian `L(q, v, t)`, constraints `f(q, v, t) = 0 ∈ Rʰ`, forces `Q` and
 //! `κ ≥ 0`, the parameter `kappa`, in 1/s. `A = ∂f/∂v` (h×n), `𝓛 = L + μ·f`, multipliers `μ(t) ∈ Rʰ`.

@@ -63,7 +63,7 @@ pub enum LinearError {
     )]
     NotFound { iterations: usize, state: String, rate: f64, limit: f64 },
     /// States that may leave the constraints.
-    #[error("a steady motion is looked for where the constraints are linear in the velocities; these are not")]
+    #[error("--find needs constraints that are linear in the velocities; these are not")]
     NotLinear,
     /// A scene that cannot start so.
     #[error("{0}")]

@@ -1,4 +1,4 @@
-//! # Steady motions, and what deviates from them
+//! # Linear (spectral) stability of steady motions of nonholonomic systems
 //!
 //! Equations of motion `ẏ = F(t, y)` of any formulation, a motion, and a deviation `δ` from it:
 //!

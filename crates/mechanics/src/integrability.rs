@@ -67,8 +67,8 @@ impl std::fmt::Display for Growth {
         write!(f, "at {place}, growth vector ({}); ", vector(&self.generic))?;
         match (self.start == self.generic, self.start.last() == self.generic.last()) {
             (true, _) => write!(f, "the same at this start"),
-            (_, true) => write!(f, "{} deep at this start, ({})", self.start.len() - 1, vector(&self.start)),
-            _ => write!(f, "more than {} deep at this start, ({}, ...)", self.start.len() - 1, vector(&self.start)),
+            (_, true) => write!(f, "step {} at this start, ({})", self.start.len(), vector(&self.start)),
+            _ => write!(f, "a step above {} at this start, ({}, ...)", self.start.len(), vector(&self.start)),
         }
     }
 }
@@ -103,17 +103,17 @@ impl std::fmt::Display for Integrability {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
             Integrability::Unconstrained => write!(f, "no constraint"),
-            Integrability::Integrable { exact: true } => write!(f, "integrable (identically)"),
-            Integrability::Integrable { exact: false } => write!(f, "integrable (by ranks over a finite field)"),
+            Integrability::Integrable { exact: true } => write!(f, "holonomic (identically)"),
+            Integrability::Integrable { exact: false } => write!(f, "holonomic (by ranks over a finite field)"),
             Integrability::PartlyIntegrable { integrals, constraints, exact } => {
                 let by = if *exact { "exactly" } else { "by ranks over a finite field" };
                 write!(
                     f,
-                    "partly integrable: {integrals} of {constraints} constraints are integrable combinations ({by})"
+                    "nonholonomic, partly integrable: {integrals} of {constraints} constraints are integrable combinations ({by})"
                 )
             }
             Integrability::Nonintegrable { depth, growth } => {
-                write!(f, "nonintegrable: brackets nested {depth} deep reach every direction")?;
+                write!(f, "nonholonomic, bracket-generating of step {}", depth + 1)?;
                 growth.as_ref().map_or(Ok(()), |growth| write!(f, " {growth}"))
             }
             Integrability::Undecided { why, depth, at_most, constraints } => {

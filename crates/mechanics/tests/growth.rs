@@ -50,7 +50,7 @@ fn singular_starts_need_more_brackets_than_almost_every_place() {
     has_growth(&coordinates, &trailers, &[0.0, 0.0, 0.3, 0.1, 0.0], &[2, 3, 4, 5], &[2, 3, 4, 5]);
     has_growth(&coordinates, &trailers, &[0.0, 0.0, FRAC_PI_2, 0.0, 0.0], &[2, 3, 4, 5], &[2, 3, 4, 4, 5]);
     let words = verdict(&coordinates, &trailers, &[0.0, 0.0, FRAC_PI_2, 0.0, 0.0]).to_string();
-    let end = "at almost every place, growth vector (2, 3, 4, 5); 4 deep at this start, (2, 3, 4, 4, 5)";
+    let end = "at almost every place, growth vector (2, 3, 4, 5); step 5 at this start, (2, 3, 4, 4, 5)";
     assert!(words.ends_with(end), "{words}");
 }
 

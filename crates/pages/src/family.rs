@@ -56,8 +56,8 @@ pub(crate) fn family(
         _ => format!("= a + s (b − a), s from 0 to {END}"),
     };
     let band = format!("vakonomic, μ₀ {which}{failed}");
-    let met = if decided.is_some() { "is Chetaev's" } else { "is the nearest found to Chetaev's" };
-    let point = format!("vakonomic, μ₀ = {} {met}", words(&b));
+    let met = if decided.is_some() { "equal to Chetaev's" } else { "nearest found" };
+    let point = format!("vakonomic, {met}: μ₀ = {}", words(&b));
     let curve = |(i, motion): (usize, Result<MemberMotion, String>)| {
         let (label, style) = if i + 1 < rows.len() { (&band, Style::Family) } else { (&point, Style::Member(1)) };
         let outputs = motion.map_or(Vec::new(), |motion| motion.outputs);

@@ -1,5 +1,4 @@
-//! Pages and pictures of what was compared: Markdown that reads well on a code host, SVG by relative link,
-//! one JSON value for machines.
+//! Pages and pictures of a comparison: Markdown with SVG by relative link, CSV tables, and one JSON value.
 
 mod bodies;
 mod data;
@@ -26,7 +25,7 @@ pub use linear_page::{pairs, sweep_picture, sweep_text};
 pub use pictures::pictures;
 pub use scene_page::scene_files;
 pub use summary::summary;
-pub use sweep_page::{Swept, sweep_files};
+pub use sweep_page::{Swept, sweep_files, with_unit};
 pub use table::Table;
 pub use tables::verdict_words;
 pub use verdicts::{difference_of_verdicts, verdicts};

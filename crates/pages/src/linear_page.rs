@@ -156,7 +156,7 @@ fn changes(scene: &Scene, sweep: &Sweep, found: bool) -> String {
         };
         let _ = writeln!(
             text,
-            "\nStability to first order changes at {} = {}: {below} a positive real part below this value, {above} above; {kind} crosses.{from}",
+            "\nLinear stability changes at {} = {}: {below} a positive real part below this value, {above} above; {kind} crosses.{from}",
             sweep.name,
             sure(change.value, change.width)
         );
@@ -185,7 +185,7 @@ fn sure(x: f64, error: f64) -> String {
 ///
 /// # Errors
 /// Where it cannot be drawn.
-pub fn sweep_picture(title: &str, sweep: &Sweep) -> Result<String> {
+pub fn sweep_picture(title: &str, axis: &str, sweep: &Sweep) -> Result<String> {
     let tracks = tracks(sweep);
     let panel = |label: &str, part: fn(Complex<f64>) -> f64| {
         let curve = |points: &Vec<(f64, Complex<f64>)>| Curve {
@@ -203,7 +203,7 @@ pub fn sweep_picture(title: &str, sweep: &Sweep) -> Result<String> {
         Panel::new(Axis::linear(label), curves)
     };
     let panels = vec![panel("real part (1/s)", |z| z.re), panel("imaginary part (1/s)", |z| z.im)];
-    Ok(Picture::panels(title, Axis::linear(&sweep.name), panels, 1).to_svg()?)
+    Ok(Picture::panels(title, Axis::linear(axis), panels, 1).to_svg()?)
 }
 
 /// Eigenvalues from value to value, each continued by the nearest one.

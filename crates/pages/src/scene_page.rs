@@ -45,7 +45,7 @@ fn data(comparison: &mut Comparison) -> Result<DataPackage> {
     let [residuals, constant] = tables::invariants(comparison)?;
     let trace = first_trace(comparison)?;
     let comparison = &*comparison;
-    data.table("pairs", "All pairs of motions", &tables::pairs(comparison, &comparison.pairs));
+    data.table("pairs", "All pairs of motions", &tables::pairs(comparison, &comparison.pairs, false));
     data.table("growth", "How the gaps begin, measured and predicted", &tables::growth(comparison));
     data.table("fits", "What other free constants leave of a gap", &tables::fits(comparison));
     data.table("families", "Which family has which motion", &membership::table(comparison));
@@ -70,7 +70,7 @@ fn page(comparison: &Comparison, moving: Option<&File>, still: &[File], data: &D
         let _ = writeln!(page, "\n{}", inert(&scene.notes));
     }
     let _ = writeln!(page, "\n{sure}\n\n{why}");
-    let pairs = tables::pairs(comparison, principal(comparison)).only(&tables::SHOWN);
+    let pairs = tables::pairs(comparison, principal(comparison), true).only(&tables::SHOWN);
     let (shown, all) = (pairs.first(PAIRS), comparison.pairs.len());
     if !shown.is_empty() {
         let _ = writeln!(

@@ -6,7 +6,8 @@ use anyhow::Result;
 use comparison::{Comparison, Pair, Verdict};
 use motion::{CHETAEV, Ending, VAKONOMIC, error_estimate, setting};
 
-use comparison::words::{Headline, answer, at_most, or_dash, rows, short};
+use crate::tables::{is_seen, largest};
+use comparison::words::{Headline, answer, or_dash, rows, short};
 use picture::{Axis, Curve, Picture, Style};
 
 /// Rows of the plot.
@@ -79,14 +80,8 @@ fn pairs(comparison: &Comparison, plotted: &[&Pair]) -> String {
         let letter = letter.and_then(|i| ('a'..='z').nth(i)).map_or(String::new(), String::from);
         let names = format!("{} – {}", label(pair.first), label(pair.second));
         let [first, second, _] = pair.gap.passes.map(|t| or_dash(t.map(|t| pair.gap.after(t))));
-        let seen = pair.gap.verdict != Verdict::Different || pair.gap.certain_from.is_some();
-        let verdict = if seen { pair.gap.verdict.word() } else { "different (proved)" };
-        let largest = match pair.gap.verdict {
-            Verdict::Same => format!("< {:.0e}", at_most(pair.gap.bound())),
-            _ if seen => short(pair.gap.largest),
-            _ => format!("< {}", short(pair.gap.bound())),
-        };
-        table.push([letter, names, verdict.into(), first, second, largest].to_vec());
+        let verdict = if is_seen(&pair.gap) { pair.gap.verdict.word() } else { "different (proved)" };
+        table.push([letter, names, verdict.into(), first, second, largest(&pair.gap)].to_vec());
     }
     let mut rest = String::new();
     for pair in others.iter().filter(|p| p.gap.verdict != Verdict::Same) {

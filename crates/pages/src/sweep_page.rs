@@ -6,11 +6,22 @@ use anyhow::Result;
 use picture::{Axis, Curve, HeatMap, Picture, Style};
 
 use crate::markdown::inert;
+use comparison::words::short;
 use program::File;
-use scene::{Table, TableError};
+use scene::{Scene, Table, TableError};
 
 /// What varies: name, first value, last value, number of values.
 pub type Swept = (String, f64, f64, usize);
+
+/// The name of a number with its unit, which is known of coordinates and their velocities at the start.
+pub fn with_unit(scene: &Scene, name: &str) -> String {
+    let coordinates = &scene.system.coordinates;
+    match coordinates.iter().find(|c| c.name == name.trim_end_matches('\'')) {
+        Some(c) if c.name == name => format!("{name} ({})", c.unit),
+        Some(c) => format!("{name} ({}/s)", c.unit),
+        None => name.to_owned(),
+    }
+}
 
 /// A row of the table, as read.
 struct Point {
@@ -21,8 +32,13 @@ struct Point {
     mismatch: Option<f64>,
 }
 
-/// A point, as drawn.
-type Measure = fn(&Point) -> Option<f64>;
+/// What is drawn: the end of the file's name, the axis, what a point without it is, and how it is read off.
+type Measure = (&'static str, &'static str, &'static str, fn(&Point) -> Option<f64>);
+
+const MEASURES: [Measure; 2] = [
+    ("apart", "time to a gap of 1e-3 (s)", "none by the end", |point| point.apart),
+    ("decision", "least mismatch of accelerations, relative", "not decided", |point| point.mismatch),
+];
 
 impl Point {
     fn has_some(&self) -> bool {
@@ -36,14 +52,13 @@ impl Point {
 /// # Errors
 /// Where the table is none, or a picture cannot be drawn.
 pub fn sweep_files(
-    name: &str,
-    title: &str,
+    scene: &Scene,
     [first, second]: [&str; 2],
     ranges: &[Swept],
     table: &str,
 ) -> Result<Vec<File>> {
-    let count = ranges.len();
-    let title = &format!("{title}: {first} and {second}");
+    let (count, name) = (ranges.len(), &scene.name);
+    let title = &format!("{}: {first} and {second}", scene.title);
     let mark = &format!("constants make the {second} motion the {first} one");
     let table = Table::read(name, table)?;
     let point = |row: usize| -> Result<Point, TableError> {
@@ -56,20 +71,19 @@ pub fn sweep_files(
     let points: Vec<Point> = table.rows().map(point).collect::<Result<_, _>>()?;
     let mut text = page(title, mark, ranges, &points);
     let mut files = Vec::new();
-    let measures: [(&str, &str, Measure); 2] = [
-        ("apart", "time to a gap of 1e-3 (s)", |point| point.apart),
-        ("decision", "least mismatch ρ", |point| point.mismatch),
-    ];
-    for (kind, label, value) in measures {
-        let svg = match ranges {
-            [one] => line(title, (second, mark), one, label, &points, value),
-            [y, x] => Ok(map(title, mark, x, y, label, &points, value)),
+    let labelled: Vec<Swept> =
+        ranges.iter().map(|(name, from, to, count)| (with_unit(scene, name), *from, *to, *count)).collect();
+    for measure in &MEASURES {
+        let says = message(&scene.title, [first, second], measure, &points);
+        let svg = match &labelled[..] {
+            [one] => line(&says, (second, mark), one, measure, &points),
+            [y, x] => Ok(map(&says, mark, x, y, measure, &points)),
             _ => break,
         };
-        let path = format!("{name}-{kind}.svg");
+        let path = format!("{name}-{}.svg", measure.0);
         match svg {
             Ok(svg) => {
-                let _ = writeln!(text, "![{label}]({path})");
+                let _ = writeln!(text, "![{}]({path})\n", inert(&says));
                 files.push(File { path: path.into(), text: svg });
             }
             // motions that never part have no times to be drawn
@@ -81,6 +95,25 @@ pub fn sweep_files(
     Ok(files)
 }
 
+/// What a picture shows.
+fn message(title: &str, [first, second]: [&str; 2], (kind, .., value): &Measure, points: &[Point]) -> String {
+    let (all, mut values) = (points.len(), points.iter().filter_map(value).collect::<Vec<f64>>());
+    values.sort_by(f64::total_cmp);
+    match (*kind, values.first().zip(values.last())) {
+        ("apart", Some((least, most))) => format!(
+            "{title}: {first} and {second} differ by 1e-3 within {} to {} s at {} of {all} points",
+            short(*least),
+            short(*most),
+            values.len()
+        ),
+        ("decision", _) => {
+            let some = points.iter().filter(|point| point.has_some()).count();
+            format!("{title}: constants make the {second} motion the {first} one at {some} of {all} points")
+        }
+        _ => format!("{title}: {first} and {second}"),
+    }
+}
+
 fn page(title: &str, mark: &str, ranges: &[Swept], points: &[Point]) -> String {
     let number = |word: &str| points.iter().filter(|point| point.verdict == word).count();
     let some: Vec<&Point> = points.iter().filter(|point| point.has_some()).collect();
@@ -88,8 +121,8 @@ fn page(title: &str, mark: &str, ranges: &[Swept], points: &[Point]) -> String {
     let names: Vec<&str> = ranges.iter().map(|(name, ..)| name.as_str()).collect();
     let title = inert(title);
     let mut text = format!(
-        "# {title} over {}\n\n**The motions differ at {} of {} points and agree at {}; {} points are undecided, {} have no motion. That no \
-         {mark} is proved at {proved} points; at {} points some do.**\n",
+        "# {title} over {}\n\n**The motions differ at {} of {} points and agree at {}; {} points are undecided, {} have no motion. It is \
+         proved at {proved} points that no {mark}; at {} points some do.**\n",
         names.join(" and "),
         number("different"),
         points.len(),
@@ -114,17 +147,17 @@ fn map(
     mark: &str,
     (x, x0, x1, columns): &Swept,
     (y, y0, y1, _): &Swept,
-    label: &str,
+    (_, label, empty, value): &Measure,
     points: &[Point],
-    value: Measure,
 ) -> String {
     HeatMap {
         title: title.into(),
         x: Axis { range: Some((*x0, *x1)), ..Axis::linear(x.clone()) },
         y: Axis { range: Some((*y0, *y1)), ..Axis::linear(y.clone()) },
         columns: *columns,
-        value: Axis::log(label),
+        value: Axis::log(*label),
         cells: points.iter().map(value).collect(),
+        empty: (*empty).into(),
         marked: points.iter().map(Point::has_some).collect(),
         mark: format!("some {mark}"),
     }
@@ -135,9 +168,8 @@ fn line(
     title: &str,
     (second, mark): (&str, &str),
     (name, ..): &Swept,
-    label: &str,
+    (_, label, _, value): &Measure,
     points: &[Point],
-    value: Measure,
 ) -> Result<String, picture::PictureError> {
     let along = points.iter().filter_map(|point| Some((point.at[0], value(point)?))).collect();
     let mut curves = vec![Curve { label: second.into(), style: Style::Vakonomic, points: along }];
@@ -146,5 +178,5 @@ fn line(
         curves.push(Curve { label: format!("some {mark}"), style: Style::Threshold, points: at.into_iter().collect() });
     }
     curves.retain(|curve| !curve.points.is_empty());
-    Picture::new(title, Axis::linear(name.clone()), Axis::log(label), curves).to_svg()
+    Picture::new(title, Axis::linear(name.clone()), Axis::log(*label), curves).to_svg()
 }

@@ -1,11 +1,11 @@
 //! The tables of a scene page.
 
 use anyhow::Result;
-use comparison::{Comparison, Pair, Verdict};
+use comparison::{Comparison, Gap, Pair, Verdict};
 use motion::{ChartChange, Ending};
 
 use crate::table::Table;
-use comparison::words::{by_half, or_dash, precise, reached, short, unseen};
+use comparison::words::{at_most, by_half, or_dash, precise, reached, short, unseen};
 
 /// Times at which invariants and residuals are sampled.
 const SAMPLES: usize = 400;
@@ -14,7 +14,7 @@ const SAMPLES: usize = 400;
 const BEFORE_A_STOP: f64 = 0.95;
 
 /// The word on a pair, with the time from which it holds.
-pub fn verdict_words(gap: &comparison::Gap) -> String {
+pub fn verdict_words(gap: &Gap) -> String {
     match &gap.verdict {
         Verdict::Same => "same".into(),
         Verdict::Different => match gap.passes[0] {
@@ -79,8 +79,27 @@ pub(crate) fn runs(comparison: &Comparison) -> Table {
 /// Columns of pairs that a page shows.
 pub(crate) const SHOWN: [&str; 5] = ["pair", "verdict", "1e-3 after (s)", "largest gap", "errors, both"];
 
-/// One line per pair: the verdict, when thresholds are passed, and how sure it is.
-pub(crate) fn pairs<'a>(comparison: &Comparison, pairs: impl IntoIterator<Item = &'a Pair>) -> Table {
+/// The largest gap; of motions without a difference what bounds it, as what was measured is round-off.
+pub(crate) fn largest(gap: &Gap) -> String {
+    match gap.verdict {
+        Verdict::Same => format!("< {:.0e}", at_most(gap.bound())),
+        Verdict::Different if !is_seen(gap) => format!("< {}", short(gap.bound())),
+        _ => short(gap.largest),
+    }
+}
+
+/// Whether a difference was measured, not only proved.
+pub(crate) fn is_seen(gap: &Gap) -> bool {
+    gap.verdict != Verdict::Different || gap.certain_from.is_some()
+}
+
+/// One line per pair: the verdict, when thresholds are passed, and how sure it is; for a page, or with all
+/// digits.
+pub(crate) fn pairs<'a>(
+    comparison: &Comparison,
+    pairs: impl IntoIterator<Item = &'a Pair>,
+    for_page: bool,
+) -> Table {
     let columns = ["pair", "verdict", ">1e-6 after (s)", ">1e-3 after (s)", ">0.1 after (s)", ">largest gap"];
     let coordinates =
         comparison.scene.system.coordinates.iter().map(|c| format!(">largest in {} ({})", c.name, c.unit));
@@ -96,7 +115,8 @@ pub(crate) fn pairs<'a>(comparison: &Comparison, pairs: impl IntoIterator<Item =
             Verdict::Different => "**different**".to_string(),
             Verdict::Undecided { because } => format!("undecided: {because}"),
         };
-        let sizes = [short(pair.gap.largest), short(pair.gap.estimates[0] + pair.gap.estimates[1])];
+        let gap = if for_page { largest(&pair.gap) } else { short(pair.gap.largest) };
+        let sizes = [gap, short(pair.gap.estimates[0] + pair.gap.estimates[1])];
         let by_coordinate = pair.gap.largest_by_coordinate.iter().map(|d| short(*d));
         let cells = [names(comparison, pair), verdict].into_iter().chain(passes).chain(sizes);
         table.cells(cells.chain(by_coordinate));

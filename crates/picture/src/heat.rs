@@ -16,10 +16,7 @@ const WIDTH: f64 = 640.0;
 /// At most so many counts have a colour each instead of a scale.
 const MOST_CLASSES: usize = 8;
 
-/// What is written beside the colour of a cell without a number.
-const NOTHING: &str = "not decided";
-
-/// Low to high, each brighter than the one before: legible without colours, too.
+/// Low to high, each brighter than the one before: also legible without colours.
 const COLOURS: [(f64, f64, f64); 5] =
     [(68.0, 1.0, 84.0), (59.0, 82.0, 139.0), (33.0, 145.0, 140.0), (94.0, 201.0, 98.0), (253.0, 231.0, 37.0)];
 
@@ -35,6 +32,7 @@ const COLOURS: [(f64, f64, f64); 5] =
 ///     columns: 3,
 ///     value: Axis::linear("a b"),
 ///     cells: vec![Some(0.0), Some(0.0), Some(0.0), Some(0.0), Some(1.0), None],
+///     empty: "not decided".into(),
 ///     marked: vec![false, false, true, false, false, false],
 ///     mark: "chosen".into(),
 /// };
@@ -55,7 +53,9 @@ pub struct HeatMap {
     pub value: Axis,
     /// Row by row, the lowest first.
     pub cells: Vec<Option<f64>>,
-    /// Cells with a dot, likewise.
+    /// Meaning of a cell without a number, which is grey.
+    pub empty: String,
+    /// Cells with a dot, in the same order.
     pub marked: Vec<bool>,
     /// Meaning of a dot.
     pub mark: String,
@@ -134,7 +134,7 @@ impl HeatMap {
             .iter()
             .enumerate()
             .map(|(i, class)| (Some((i as f64 + 0.5) / classes.len() as f64), class.to_string()));
-        let entries = entries.chain(none.then(|| (None, NOTHING.to_owned())));
+        let entries = entries.chain(none.then(|| (None, self.empty.clone())));
         for (row, (shade, label)) in entries.enumerate() {
             let y = first + 24.0 * row as f64;
             match shade {
@@ -193,7 +193,7 @@ impl HeatMap {
         text(out, (x, top + SIDE + 38.0), "start", &label);
         if none {
             empty(out, (x + 70.0, top, BAR, BAR));
-            text(out, (x + 78.0 + BAR, top + 12.5), "start", NOTHING);
+            text(out, (x + 78.0 + BAR, top + 12.5), "start", &self.empty);
         }
     }
 }

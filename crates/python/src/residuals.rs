@@ -1,4 +1,4 @@
-//! What a motion misses of data, as a function of numbers that never raises.
+//! Residuals between a motion and data, as a function of numbers that never raises.
 
 use equations::Outputs;
 use mechanics::ConstantsRule;
@@ -15,7 +15,7 @@ use crate::shared::Shared;
 use crate::system::System;
 use crate::{arguments, errors};
 
-/// What a motion misses of data at k times, as a function of numbers p of its system: for `scipy.optimize`.
+/// Residuals between a motion and data at k times, as a function of numbers p of its system: for `scipy.optimize`.
 ///
 /// Residual i of a column is (value at time i - data)/sigma; columns follow one another, so that there are
 /// as many residuals as columns times k. They have no unit where `sigma` has that of its column.

@@ -22,7 +22,7 @@ def test_verdicts(comparison):
     assert pair.times.shape == pair.gap.shape == pair.limit.shape
     np.testing.assert_allclose(pair.gap.max(), pair.largest_gap)
     assert set(pair.largest_by_coordinate) == {"x", "y", "phi"} and max(pair.error_estimates) < 1e-8
-    assert "nonintegrable" in comparison.integrability
+    assert "nonholonomic" in comparison.integrability
     assert comparison.contradictions == []
 
 

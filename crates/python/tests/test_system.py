@@ -15,7 +15,7 @@ def test_properties(sledge, system):
     assert "sin(alpha)" in system.lagrangian and system.forces == {}
     assert system.multipliers == [0.0] and system.duration == 10.0
     assert system.removals[0] == "arc-length"
-    assert system.integrability.startswith("nonintegrable")
+    assert system.integrability.startswith("nonholonomic")
     start = system.start
     np.testing.assert_allclose(start.q, [0, 0, 0.3])
     np.testing.assert_allclose(start.v, [0.5 * np.cos(0.3), 0.5 * np.sin(0.3), 1.1], rtol=1e-14)

@@ -1,4 +1,4 @@
-//! # Equations of motion in quasi-velocities
+//! # Equations of motion of nonholonomic systems in quasi-velocities (Maggi, Boltzmann–Hamel)
 //!
 //! For constraints linear in the velocities, `A(q, t) v + b(q, t) = 0`, every admissible velocity is
 //!
@@ -18,7 +18,7 @@
 //! - [`REDUCED_VAKONOMIC`]: `Sᵀ (p − L_v) = 0`, `ṗ = L_q − (∂v/∂q)ᵀ (p − L_v)`.
 //! - [`cheapest`]: which of several ways to write the same motion takes the fewest operations.
 //!
-//! What it does not know: nonlinear constraints, the removed-constraint equations, how time advances.
+//! It does not treat nonlinear constraints, the removed-constraint equations, or time integration.
 
 mod backwards;
 mod chain;

@@ -1,7 +1,7 @@
 //! Reference trajectories with a known error.
 //!
-//! [`reference()`] computes a motion from [`equations::Equations`] in double-double arithmetic by two methods
-//! that step time differently, one of them at two tolerances, and says how far they are apart.
+//! [`reference()`] integrates [`equations::Equations`] in double-double arithmetic by two unrelated methods,
+//! one of them at two tolerances, and returns the largest difference.
 //!
 //! - *Extrapolation* (Gragg, Bulirsch & Stoer): values of `F(t, y)`, each with a linear solve for unknowns.
 //! - *Taylor series* in time: [`symbolic::SeriesTape`] gives coefficients of any order, and the unknowns'

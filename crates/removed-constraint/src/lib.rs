@@ -1,4 +1,6 @@
-//! # The removed-constraint formulation (Gao 2017)
+//! # The removed-constraint equations of nonholonomic systems (Gao 2017)
+//!
+//! Source: `Gao2017` of `docs/references.bib`. They are the vakonomic equations of an augmented system.
 //!
 //! Given are coordinates `q ∈ Rⁿ`, a Lagrangian `L(q, v, t)` and constraints `f(q, v, t) = 0 ∈ Rʰ`. New
 //! displacement parameters `u ∈ Rᵐ`, `m = n − h`, are introduced such that the constraints hold whatever

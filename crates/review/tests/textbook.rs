@@ -17,7 +17,7 @@ fn derivations_of_textbooks_are_judged() {
         let [scene, verdict, what] = head.splitn(3, ", ").collect::<Vec<_>>()[..] else { panic!("{head}") };
         let own = read_to_string(format!("{FOLDER}{scene}.toml"));
         let own = own.map(|text| Scene::parse(scene, &text).unwrap_or_else(|e| panic!("{e}")));
-        let own = own.unwrap_or_else(|_| catalogue::find(scene, &[]).expect("built in"));
+        let own = own.unwrap_or_else(|_| scene::catalogue::find(scene, &[]).expect("built in"));
         let (wheres, theirs): (Vec<&str>, Vec<&str>) = theirs.lines().partition(|line| line.starts_with("where "));
         let wheres = wheres.iter().map(|line| line["where ".len()..].to_owned()).collect();
         let found = review(&own, "theirs", &theirs.join("\n"), &Asked { wheres, ..Asked::default() });

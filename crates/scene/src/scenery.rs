@@ -1,4 +1,4 @@
-//! The bodies of a scene along its motions: what [`mechanics::View`] says is drawn, as a [`MovingPicture`].
+//! The bodies of a scene along its trajectories, drawn as [`mechanics::View`] describes: a [`MovingPicture`].
 //!
 //! A body is where its pose at `(t, q)` puts it; a motion is whatever gives `q` at `t`. The path is that of
 //! the first body that moves, at its first contact or else at its origin.

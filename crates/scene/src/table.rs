@@ -52,7 +52,7 @@ pub enum TableFault {
     TooLarge { limit: usize, of: &'static str },
     #[error("this is not text in UTF-8")]
     NoText,
-    #[error("cells are separated by {0}, and have to be by commas")]
+    #[error("cells are separated by {0}; they must be separated by commas")]
     Separator(&'static str),
     #[error("the quotation mark is not closed")]
     Unclosed,

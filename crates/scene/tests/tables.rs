@@ -35,8 +35,8 @@ fn what_is_no_table_has_its_place() {
     let names = (0..10_000).map(|i| i.to_string()).collect::<Vec<_>>().join(",") + "\n";
     let wide = names + &("1,".repeat(9_999) + "1\n").repeat(5_001);
     for (text, said) in [
-        ("t;x\n0;1\n", "m.csv:1:1: cells are separated by semicolons, and have to be by commas"),
-        ("\n\u{e4}\tx\n", "m.csv:2:1: cells are separated by tabs, and have to be by commas"),
+        ("t;x\n0;1\n", "m.csv:1:1: cells are separated by semicolons; they must be separated by commas"),
+        ("\n\u{e4}\tx\n", "m.csv:2:1: cells are separated by tabs; they must be separated by commas"),
         ("t,x, \"t\"\n", "m.csv:1:6: the column `t` is there already, at m.csv:1:1"),
         ("\u{e4},x\n\u{e4},\"1\n2,3\n", "m.csv:2:3: the quotation mark is not closed"),
         ("t,x\n1,2\"\n", "m.csv:2:4: a quotation mark within a cell"),

@@ -1,4 +1,4 @@
-//! Expression graphs: build, parse, differentiate, simplify, print, compile. Knows no mechanics.
+//! Expression graphs: build, parse, differentiate, simplify, print, compile. Independent of mechanics.
 //!
 //! A [`Graph`] holds expressions in which every value stands once: equal expressions are the same node
 //! ([`Expr`]), and so common subexpressions need no search. Constructors keep a canonical form: like

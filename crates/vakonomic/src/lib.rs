@@ -1,4 +1,7 @@
-//! # The vakonomic equations (variational nonholonomic, or constrained variational)
+//! # The vakonomic equations of nonholonomic systems (variational nonholonomic, or constrained variational)
+//!
+//! They belong to constrained variational problems, such as optimal control and sub-Riemannian geodesics:
+//! `ArnoldKozlovNeishtadt2006`, `Lewis2020` (keys of `docs/references.bib`).
 //!
 //! Given are coordinates `q ∈ Rⁿ`, a Lagrangian `L(q, v, t)` with `v = q̇` and constraints
 //! `f(q, v, t) = 0 ∈ Rʰ`. Write `A = ∂f/∂v` (h×n).

@@ -8,6 +8,7 @@ mod lint;
 mod numbers;
 mod pages;
 mod python;
+mod references;
 mod site;
 mod sources;
 mod tools;

@@ -3,15 +3,27 @@
 use anyhow::{Context, Result};
 
 /// Pages that are checked; `*` stands for the rest of a name.
-const PAGES: [&str; 7] = [
+const PAGES: [&str; 16] = [
     "README.md",
     "NOTATION.md",
     "ARCHITECTURE.md",
     "CONTRIBUTING.md",
     "docs/*.md",
+    "docs/releases/*.md",
     "docs/site/index.md",
+    "docs/tutorials/*.md",
     "crates/python/README.md",
+    "reports/*.md",
+    "reports/evidence/*.md",
+    "reports/integrals/*.md",
+    "reports/measured/*.md",
+    "reports/paper/*.md",
+    "reports/scenes/*.md",
+    "reports/sweeps/*.md",
 ];
+/// Pages that programs write: nobody types their numbers.
+const WRITTEN: &str = "reports/";
+
 pub(crate) fn is_page(name: &str) -> bool {
     PAGES.iter().any(|page| match page.split_once('*') {
         Some((begin, end)) => {
@@ -20,6 +32,10 @@ pub(crate) fn is_page(name: &str) -> bool {
         }
         None => name == *page,
     })
+}
+
+pub(crate) fn is_written(name: &str) -> bool {
+    name.starts_with(WRITTEN)
 }
 
 /// A page in its parts.

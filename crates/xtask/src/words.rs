@@ -2,10 +2,10 @@
 
 use anyhow::{Context, Result, bail};
 
-use crate::numbers;
 use crate::pages::{Page, is_page, prose};
 use crate::sources::names;
 use crate::tools::Outcome;
+use crate::{numbers, references};
 
 /// Most words of a sentence and of a page, code and formulas counted as one word each.
 const SENTENCE: usize = 35;
@@ -20,8 +20,8 @@ const HABITS: [(&str, &str); 6] = [
     (", and no ", "a sentence of its own"),
 ];
 
-/// No page has a sentence over [`SENTENCE`] words, a page over [`PAGE`], one of the [`HABITS`], or a number
-/// without a source; nor has a message, help or front page of a crate such a habit.
+/// No page has a sentence over [`SENTENCE`] words, a page over [`PAGE`], one of the [`HABITS`], a number
+/// without a source, or a citation without its entry; nor has a message, help or front page of a crate such a habit.
 pub(crate) fn check() -> Result<Outcome> {
     let (names, mut faults) = (names()?, Vec::new());
     let pages: Vec<Page> =
@@ -35,10 +35,11 @@ pub(crate) fn check() -> Result<Outcome> {
         faults.extend(in_source(name, &std::fs::read_to_string(name).context(name.clone())?));
     }
     let counted = numbers::check(&pages, &names, &mut faults)?;
+    let entries = references::check(&names, &mut faults)?;
     if !faults.is_empty() {
         bail!("{}", faults.join("; "));
     }
-    Ok(Outcome::Passed(format!(", {} pages, {counted} numbers with their source", pages.len())))
+    Ok(Outcome::Passed(format!(", {} pages, {counted} numbers with their source, {entries} references", pages.len())))
 }
 
 impl Page {

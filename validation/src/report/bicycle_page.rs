@@ -106,7 +106,7 @@ impl BicycleReport {
             format!("The bicycle is linearly stable from {low:.2} to {high:.2} m/s: eigenvalues over its speed");
         Ok(vec![
             File { path: "evidence/bicycle.md".into(), text: page },
-            File { path: "evidence/bicycle.svg".into(), text: sweep_picture(&title, &self.drawn)? },
+            File { path: "evidence/bicycle.svg".into(), text: sweep_picture(&title, "speed v (m/s)", &self.drawn)? },
         ])
     }
 }

@@ -176,7 +176,7 @@ fn vector(entries: Vec<String>) -> String {
 }
 
 /// Why later coefficients need not be looked at.
-const SETTLED: &str = "ranks mod p grow no more";
+const SETTLED: &str = "ranks mod p stop growing";
 
 fn of_rank(rank: usize, constants: usize) -> String {
     match constants - rank {
@@ -278,8 +278,8 @@ impl EquivalenceReport {
         let open = if open == 0 { String::new() } else { format!("; {open} open") };
         format!(
             "For {none} of {} classic systems and variants no initial multipliers $\\mu_0$ make the vakonomic motion Chetaev's, at almost \
-             every start; for {one} one $\\mu_0$ does, for {more} a set of dimension 1 or more, for {every} every $\\mu_0${open}. In addition \
-             {starts} starts on and next to the exceptional ones are decided.",
+             every start. For {one} systems one $\\mu_0$ does, for {more} a set of dimension 1 or more, for {every} every $\\mu_0${open}. \
+             In addition {starts} starts on and next to the exceptional ones are decided.",
             self.rows.len()
         )
     }

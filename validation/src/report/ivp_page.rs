@@ -16,20 +16,20 @@ use program::File;
 /// Where a picture cannot be drawn.
 pub fn ivp_files(measured: &[(Problem, Vec<Point>)]) -> Result<Vec<File>> {
     let mut page = format!("# Test problems of others: the Test Set for IVP Solvers\n\n{}\n", summary(measured));
-    page += "Written by `evidence ivp --out reports/measured`. The problems are those mechanical systems of the [test set](https://archimede.uniba.it/~testset/) \
-             (Lioen, de Swart 1998; Mazzia, Magherini 2008) that are a Lagrangian with constraints on positions. The slider crank (elastic rod) \
-             and the wheelset (creep forces by table) are not. A scene says $L$, $f$ and $Q$; equations, index reduction, projection and multipliers are the program's. \
-             The *referee* is `validation/ivp/referee.py`: equations as the test set prints them, extrapolation of order 12 in long double, twice. \
+    page += "Written by `evidence ivp --out reports/measured`. The problems are the mechanical systems of the [test set](https://archimede.uniba.it/~testset/) \
+             (Lioen, de Swart 1998; Mazzia, Magherini 2008) that have a Lagrangian and constraints on positions. The slider crank (elastic rod) \
+             and the wheelset (creep forces by table) do not. A scene gives $L$, $f$ and $Q$; deltaq supplies equations, index reduction, projection and multipliers. \
+             The *referee* `validation/ivp/referee.py` integrates the equations as the test set prints them, by extrapolation of order 12 in long double, twice. \
              Errors are the largest over all coordinates, or all multipliers, at the end, against the referee. \
              Times are the shortest of three on one machine, from the scene to the answer: derivation, compilation and both runs. \
              Figures of other programs are quoted from their own pages, which measured on other machines.\n\n";
-    page += "## What the printed values are off by\n\n";
+    page += "## Errors of the printed values\n\n";
     page += &printed(measured).to_string();
-    page += "\nThe referee's *gap* is how far its run with half as many steps is from it.\n";
+    page += "\nThe *gap* is the difference between the referee's run and its run with half as many steps.\n";
     let mut files = Vec::new();
     for (problem, points) in measured {
         let name = &problem.name;
-        let _ = write!(page, "\n## {name}\n\n{}\n\n![Error over time: {name}](ivp-{name}.svg)\n\n", problem.said);
+        let _ = write!(page, "\n## {name}\n\n{}\n\n![{}](ivp-{name}.svg)\n\n", problem.said, title(problem, points));
         page += &solves(points).to_string();
         let _ = write!(page, "\n**Elsewhere:** {}\n", problem.others);
         files.push(File { path: format!("ivp-{name}.svg").into(), text: picture(problem, points)? });
@@ -63,9 +63,12 @@ fn printed(measured: &[(Problem, Vec<Point>)]) -> Table {
     table
 }
 
+/// What stands for the method if none was asked for.
+const DEFAULT: &str = "auto (default)";
+
 /// The method that was asked for.
 fn asked(point: &Point) -> &'static str {
-    point.method.unwrap_or("as chosen")
+    point.method.unwrap_or(DEFAULT)
 }
 
 fn solves(points: &[Point]) -> Table {
@@ -92,11 +95,24 @@ fn picture(problem: &Problem, points: &[Point]) -> Result<String> {
         match curves.last_mut().filter(|curve| curve.label == asked(point)) {
             Some(curve) => curve.points.push(xy),
             None => {
-                let style = Style::Member(curves.len() as u8);
+                let style = if asked(point) == DEFAULT { Style::Ink } else { Style::Member(curves.len() as u8) };
                 curves.push(Curve { label: asked(point).into(), style, points: vec![xy] });
             }
         }
     }
-    let title = format!("{}: error of coordinates over time", problem.name);
-    Ok(Picture::new(title, Axis::log("time (s)"), Axis::log("error"), curves).to_svg()?)
+    let x = Axis::log("time from the scene to the answer (s)");
+    let y = Axis::log("largest error of a coordinate at the end");
+    Ok(Picture::new(title(problem, points), x, y, curves).to_svg()?)
+}
+
+/// What the picture says: the least error of the default, and its time.
+fn title(problem: &Problem, points: &[Point]) -> String {
+    let of_default = points.iter().filter(|point| point.method.is_none());
+    let reached = of_default.filter_map(|point| Some((point.errors.as_ref().ok()?.coordinates, point.seconds)));
+    match reached.min_by(|a, b| a.0.total_cmp(&b.0)) {
+        Some((error, time)) => {
+            format!("{}: the default reaches an error of {} in {} ms", problem.name, short(error), short(1e3 * time))
+        }
+        None => format!("{}: error against run time", problem.name),
+    }
 }

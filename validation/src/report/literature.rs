@@ -34,6 +34,8 @@ struct Data {
 #[derive(Deserialize)]
 struct Claim {
     source: String,
+    /// Its key in `docs/references.bib`, if its entry was confirmed.
+    key: Option<String>,
     /// What was read of it.
     read: String,
     about: String,
@@ -147,7 +149,7 @@ impl Case {
     fn question(&self) -> String {
         let link = self.asked.link();
         match &self.along {
-            None if self.put_in => format!("{link}: does $L$ with the constraint put into it give Chetaev's motion?"),
+            None if self.put_in => format!("{link}: does $L$ give Chetaev's motion after the constraint is substituted into it?"),
             None if self.almost_every_start => format!("{link}: almost every start"),
             None => format!("{link}: this start"),
             Some(Along { formulation: Formulation { name, .. }, quantity, during: [from, to], between }) => {
@@ -230,9 +232,10 @@ impl LiteratureReport {
         let words = ["confirmed", "qualified", "contradicted", "refuted"].map(|word| (word, count(word)));
         let found: Vec<String> = words.iter().filter(|(_, n)| *n > 0).map(|(word, n)| format!("{n} {word}")).collect();
         let (claims, questions, open) = (words.iter().map(|(_, n)| n).sum::<usize>(), count(ANSWERED), count("open"));
+        let all = self.claims.len();
         format!(
-            "{claims} claims whose abstract was read were computed on the systems here: {}. {questions} further questions from the \
-             literature are answered for the systems named, without a verdict on their sources. {open} statements were not computed.",
+            "Of {all} entries from the literature, {claims} are claims that were computed after their abstract was read: {}. For {questions} \
+             entries a question is answered for the systems named, without a verdict on the source. {open} entries were not computed.",
             found.join(", ")
         )
     }
@@ -251,7 +254,8 @@ impl LiteratureReport {
         for ((claim, found), i) in self.claims.iter().zip(&self.found).zip(1..) {
             let Claim { source, read, about, remark, condition, .. } = claim;
             let (says, word) = (claim.question.as_ref().unwrap_or(&claim.says), claim.word());
-            shown.row(&[&i, source, about, &format!("**{word}**")]);
+            let cited = claim.key.as_ref().map(|key| format!("[{source}](../../docs/references.bib#{key})"));
+            shown.row(&[&i, cited.as_ref().unwrap_or(source), about, &format!("**{word}**")]);
             let condition = condition.as_deref().unwrap_or_default();
             let read = read.trim_matches(['*', '(', ')']);
             all.row(&[&i, source, &read, about, says, &word, &condition, remark]);

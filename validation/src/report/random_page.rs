@@ -248,7 +248,7 @@ fn times(summary: &Summary) -> Result<String> {
     });
     let x = Axis { range: Some((0.0, DURATION)), ..Axis::linear("t (s)") };
     let y = Axis { range: Some((0.0, 1.0)), ..Axis::linear("part of the systems") };
-    let title = "Most pairs of formulations differ by 1e-3 within a second (nonintegrable random systems)";
+    let title = "Most pairs of formulations differ by 1e-3 within a second (nonholonomic random systems)";
     Ok(Picture::new(title, x, y, curves.collect()).to_svg()?)
 }
 
@@ -274,6 +274,6 @@ fn exponents(summary: &Summary) -> Result<String> {
         Panel::new(y, vec![Curve { label, style, points }])
     });
     let x = Axis { range: Some((LOWEST, LOWEST + WIDTH * BINS as f64)), ..Axis::linear("exponent of t") };
-    let title = "Nonintegrable random systems: how the gap begins";
+    let title = "Gaps begin as t² or t³ (nonholonomic random systems)";
     Ok(Picture::panels(title, x, panels.collect(), 2).to_svg()?)
 }

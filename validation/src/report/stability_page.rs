@@ -12,13 +12,13 @@ use pages::{DataPackage, Table, fill};
 use picture::{Axis, Curve, Picture, Style};
 use program::File;
 
-/// Cases that are drawn, the formulation that is, and what becomes hard.
-const DRAWN: [(&str, &str, &str); 5] = [
-    ("viscous", "Newton, with friction", "Friction of strength N"),
-    ("added-mass", "Newton, with added mass", "Added mass of strength N"),
-    ("cone-apex", "Chetaev", "Ball that passes the apex of its cone at distance d"),
-    ("dependent", "Chetaev", "Constraints that differ by d"),
-    ("sledge-k", "vakonomic", "Vakonomic sledge of radius of gyration k"),
+/// Cases that are drawn, the formulation that is, what becomes hard, and the axis.
+const DRAWN: [(&str, &str, &str, &str); 5] = [
+    ("viscous", "Newton, with friction", "Friction of strength N", "friction N over mass (1/s)"),
+    ("added-mass", "Newton, with added mass", "Added mass of strength N", "added mass N over mass"),
+    ("cone-apex", "Chetaev", "Ball that passes the apex of its cone at distance d", "distance d (m)"),
+    ("dependent", "Chetaev", "Constraints that differ by d", "difference d of two constraints, relative"),
+    ("sledge-k", "vakonomic", "Vakonomic sledge of radius of gyration k", "radius of gyration k (m)"),
 ];
 
 /// Every method on some cases.
@@ -222,7 +222,7 @@ impl StabilityReport {
 
     /// The cells of a case that is drawn, by method.
     fn drawn<'a>(&'a self, name: &str) -> Vec<(Answering, Vec<&'a Cell>)> {
-        let formulation = DRAWN.iter().find(|(case, ..)| *case == name).map_or("", |(_, formulation, _)| formulation);
+        let formulation = DRAWN.iter().find(|(case, ..)| *case == name).map_or("", |(_, formulation, ..)| formulation);
         let of = |by: Answering| {
             let cells = self.cells.iter().filter(|c| c.case == name && c.formulation == formulation && c.method == by);
             (by, cells.collect())
@@ -230,18 +230,18 @@ impl StabilityReport {
         Answering::methods().map(of).collect()
     }
 
-    /// What a picture shows: which methods answer everywhere.
+    /// What a picture shows: how often the default reaches the end, and which methods always do.
     fn title(&self, name: &str) -> String {
-        let what = DRAWN.iter().find(|(case, ..)| *case == name).map_or(name, |(_, _, what)| what);
+        let what = DRAWN.iter().find(|(case, ..)| *case == name).map_or(name, |(_, _, what, _)| what);
         let all = self.drawn(name);
-        let answers = |cells: &[&Cell]| cells.iter().all(|cell| !matches!(cell.verdict, Verdict::Refused { .. }));
-        let everywhere: Vec<String> =
-            all.iter().filter(|(_, cells)| answers(cells)).map(|(by, _)| by.name().to_owned()).collect();
-        match everywhere.len() {
-            count if count == all.len() => format!("{what}: every method reaches the end everywhere"),
-            0 => format!("{what}: every method stops somewhere, with a reason"),
-            1 => format!("{what}: {} reaches the end everywhere, the others stop", everywhere[0]),
-            _ => format!("{what}: {} reach the end everywhere, the others stop", enumerate(&everywhere)),
+        let ends = |cells: &[&Cell]| cells.iter().filter(|c| !matches!(c.verdict, Verdict::Refused { .. })).count();
+        let (_, of_default) = &all[0];
+        let own = format!("{what}: the default reaches the end at {} of {} values", ends(of_default), of_default.len());
+        let others = all[1..].iter().filter(|(_, cells)| ends(cells) == cells.len());
+        let others: Vec<String> = others.map(|(by, _)| by.name().to_owned()).collect();
+        match others.len() {
+            0 => format!("{own}, no method at all of them"),
+            _ => format!("{own}, {} at all", enumerate(&others)),
         }
     }
 
@@ -270,7 +270,8 @@ impl StabilityReport {
         if !stops.is_empty() {
             curves.push(Curve { label: "stops beyond, with a reason".into(), style: Style::Stops, points: stops });
         }
-        let (x, y) = (Axis::log(variable(name)), Axis::log("largest error over distance travelled"));
+        let axis = DRAWN.iter().find(|(case, ..)| *case == name).map_or(name, |(.., axis)| axis);
+        let (x, y) = (Axis::log(axis), Axis::log("largest error over distance travelled"));
         Ok(Picture::new(self.title(name), x, y, curves).to_svg()?)
     }
 }

@@ -146,7 +146,7 @@ fn verdicts(comparison: &Comparison) -> Vec<String> {
         let both = format!("{} and {}", label(comparison, p.first), label(comparison, p.second));
         match &p.gap.verdict {
             Verdict::Different if [p.first, p.second].iter().all(|i| main.contains(&Some(*i))) => {
-                sentences.push(format!("{both}: {}.", how_different(comparison, &p.gap)));
+                sentences.push(format!("{both} {}.", how_different(comparison, &p.gap)));
             }
             Verdict::Undecided { because } => undecided.push((because.clone(), both)),
             _ => {}
@@ -159,19 +159,19 @@ fn verdicts(comparison: &Comparison) -> Vec<String> {
 /// From when, by how much, in what.
 fn how_different(comparison: &Comparison, gap: &Gap) -> String {
     if gap.certain_from.is_none() {
-        return format!("different, which is proved; {}", unseen(gap));
+        return format!("differ, which is proved; {}", unseen(gap));
     }
     let largest = short(gap.largest);
     if let Some(t) = gap.passes[1] {
-        return format!("1e-3 apart after {} s, largest gap {largest}", short(gap.after(t)));
+        return format!("differ by 1e-3 after {} s and by up to {largest}", short(gap.after(t)));
     }
     if gap.shows() {
-        return format!("apart by less than 1e-3, largest gap {largest}");
+        return format!("differ by less than 1e-3, by up to {largest}");
     }
     let coordinates = comparison.scene.system.coordinates.iter().zip(&gap.largest_by_coordinate);
     let certain = coordinates.zip(&gap.certain_by_coordinate).filter(|(_, from)| from.is_some());
     let certain: Vec<String> = certain.map(|((c, by), _)| format!("{} by up to {}", c.name, short(*by))).collect();
-    format!("apart in {}, which the kinetic metric does not show", enumerate(&certain))
+    format!("differ in {}, which the kinetic metric does not show", enumerate(&certain))
 }
 
 /// The measured bound for two motions that are proved to differ, but differ by no more than their errors.
@@ -238,9 +238,8 @@ fn why(comparison: &Comparison) -> Vec<String> {
     sentences.extend(comparison.beyond.as_ref().map(|beyond| contacts(comparison, beyond.as_ref())));
     let substituted: Vec<String> = substituted(comparison).map(|i| label(comparison, i).to_owned()).collect();
     if !substituted.is_empty() {
-        let is = if substituted.len() == 1 { "is" } else { "are" };
         sentences.push(format!(
-            "{} {is} substitution of the constraint into L here: no memory variable has a costate, P = 0.",
+            "No memory variable has a costate (P = 0) in {}: this is substitution of the constraint into L.",
             enumerate(&substituted)
         ));
     }

@@ -20,7 +20,7 @@ pub struct FitArguments {
     /// Unknowns: parameters and start values. `NAME~VALUE` gives the first guess, `NAME~MEAN±DEVIATION` a
     /// prior, `NAME>=BOUND` a bound. Each film has start values of its own and
     /// shares parameters; `NAME@2` is the second film's own; `start` is all coordinates and given velocities;
-    /// `clock` by how much clocks of films are slow. Multipliers and costates at the start are unknown
+    /// `clock` is the relative error of the recordings' clock. Multipliers and costates at the start are unknown
     /// anyway.
     #[arg(long, value_name = "NAME,…", value_delimiter = ',', required = true, allow_hyphen_values = true)]
     pub free: Vec<Unknown>,

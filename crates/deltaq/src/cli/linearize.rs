@@ -29,7 +29,7 @@ pub struct LinearizeArguments {
     /// Equidistant values of a parameter, a start value or mu0_1, …, both ends included.
     #[arg(long, value_name = "NAME=FROM:TO:COUNT", value_parser = range)]
     pub sweep: Option<Range>,
-    /// Look for a steady motion near the start (Chetaev's), along displacements that the constraints admit,
+    /// Search for a steady motion near the start (Chetaev's), along displacements that the constraints admit,
     /// and print it; critical values are those of the motions found.
     #[arg(long)]
     pub find: bool,

@@ -79,7 +79,7 @@ pub enum StartError {
         limit: f64,
     },
     /// Start equations for velocities that are to be projected.
-    #[error("start equations would not hold any more where project = true moves velocities: leave out one of both")]
+    #[error("project = true moves velocities, and start equations would no longer hold: leave out one of the two")]
     ProjectedEquations,
     /// Constraints or start equations nonlinear in the velocities have several solutions.
     #[error("the constraints leave a choice of {}: {} or {}; choose by a [start.guess]", listed(.velocities), values(.first), values(.second))]

@@ -1574,7 +1574,7 @@ class Connection:
 
 @final
 class Residuals:
-    """What a motion misses of data at k times, as a function of numbers p of its system: for `scipy.optimize`.
+    """Residuals between a motion and data at k times, as a function of numbers p of its system: for `scipy.optimize`.
 
     Residual i of a column is (value at time i - data)/sigma; columns follow one another, so that there are
     as many residuals as columns times k. They have no unit where `sigma` has that of its column.

@@ -1,4 +1,4 @@
-//! The built-in scenes, and how a scene is found: for the command, the Python module, reports and tests.
+//! The built-in scenes, classic holonomic and nonholonomic systems, and how a scene is found by name.
 
 pub mod trailer;
 
