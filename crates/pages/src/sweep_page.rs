@@ -51,12 +51,7 @@ impl Point {
 ///
 /// # Errors
 /// Where the table is none, or a picture cannot be drawn.
-pub fn sweep_files(
-    scene: &Scene,
-    [first, second]: [&str; 2],
-    ranges: &[Swept],
-    table: &str,
-) -> Result<Vec<File>> {
+pub fn sweep_files(scene: &Scene, [first, second]: [&str; 2], ranges: &[Swept], table: &str) -> Result<Vec<File>> {
     let (count, name) = (ranges.len(), &scene.name);
     let title = &format!("{}: {first} and {second}", scene.title);
     let mark = &format!("constants make the {second} motion the {first} one");

@@ -1,11 +1,11 @@
 //! Systems from bodies against those whose formulas were written by hand.
 
-use scene::catalogue::find;
 use comparison::{Beyond, beyond_contacts};
 use mechanics::{ConstantsRule, State};
 use motion::{CHETAEV, REMOVED_CONSTRAINT, Settings, VAKONOMIC, solve_choice};
 use nalgebra::{DMatrix, DVector};
 use scene::Scene;
+use scene::catalogue::find;
 use symbolic::SplitMix;
 
 use super::support::{choice, gap, must, tight, values};
