@@ -1,10 +1,10 @@
 //! What contacts cannot exert: the reaction of a motion along velocities that no contact sees.
 
-use nalgebra::DMatrix;
+use mechanics::elimination::{eliminate, largest, open};
+use motion::band::SAME_ESTIMATE;
+use motion::{Motion, SolveError};
 use scene::Scene;
 use symbolic::{Evaluator, Expr};
-
-use motion::{Motion, SolveError};
 
 /// Instants that are looked at.
 const INSTANTS: usize = 9;
@@ -61,7 +61,7 @@ pub fn beyond_contacts(scene: &Scene, motion: &mut Motion) -> Result<Option<Beyo
         let reaction: Vec<f64> = (0..n).map(|i| rate[i] - now[n + i] - now[2 * n + i]).collect();
         let parts = [&rate[..], &now[n..3 * n]].concat();
         size = parts.iter().fold(size, |size, x| size.max(x.abs()));
-        for (i, w) in unseen(DMatrix::from_row_slice(columns.rows(), n, &now[3 * n..])) {
+        for (i, w) in unseen(now[3 * n..].chunks(n).map(<[f64]>::to_vec).collect(), n) {
             let force: f64 = reaction.iter().zip(&w).map(|(r, w)| r * w).sum();
             if force.is_finite() && largest.as_ref().is_none_or(|found| force.abs() > found.force.abs()) {
                 largest = Some(Beyond { coordinate: system.coordinates[i].name.clone(), force, t });
@@ -71,34 +71,20 @@ pub fn beyond_contacts(scene: &Scene, motion: &mut Motion) -> Result<Option<Beyo
     Ok(largest.filter(|found| found.force.abs() > NOTHING * size))
 }
 
-/// The kernel of `slips`, a vector for each coordinate that it leaves free, of rate 1 there.
-fn unseen(mut slips: DMatrix<f64>) -> Vec<(usize, Vec<f64>)> {
-    let (rows, n) = slips.shape();
-    let limit = 1e-9 * slips.amax();
-    let mut pivots: Vec<usize> = Vec::new();
-    for row in 0..rows {
-        let rest = slips.rows(row, rows - row);
-        let (below, column) = rest.iamax_full();
-        if rest[(below, column)].abs() <= limit {
-            break;
-        }
-        slips.swap_rows(row, row + below);
-        let scale = 1.0 / slips[(row, column)];
-        slips.row_mut(row).scale_mut(scale);
-        let pivot = slips.row(row).clone_owned();
-        for other in (0..rows).filter(|other| *other != row) {
-            let factor = slips[(other, column)];
-            let reduced = slips.row(other) - &pivot * factor;
-            slips.set_row(other, &reduced);
-        }
-        pivots.push(column);
-    }
-    let free = (0..n).filter(|i| !pivots.contains(i));
+/// The kernel of `slips`, a vector for each coordinate that it leaves free, of rate 1 there. Pivots are the
+/// largest entries, of equals the first: so the coordinates that bodies are placed by are those that follow.
+fn unseen(mut slips: Vec<Vec<f64>>, n: usize) -> Vec<(usize, Vec<f64>)> {
+    let size = slips.iter().flatten().fold(0.0, |size: f64, x| size.max(x.abs()));
+    // entries are known as well as the motion
+    let counts = |x: f64| x.abs() > SAME_ESTIMATE * size;
+    let pivots = eliminate(&mut slips, |rows, done| {
+        largest(rows, open(rows, done, n).rev().filter(|&(i, j)| counts(rows[i][j])))
+    });
     let vector = |i: usize| {
         let mut w = vec![0.0; n];
         w[i] = 1.0;
-        pivots.iter().enumerate().for_each(|(row, &pivot)| w[pivot] = -slips[(row, i)]);
+        pivots.iter().zip(&slips).for_each(|(&pivot, row)| w[pivot] = -row[i]);
         (i, w)
     };
-    free.map(vector).collect()
+    (0..n).filter(|i| !pivots.contains(i)).map(vector).collect()
 }

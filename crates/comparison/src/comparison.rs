@@ -135,22 +135,11 @@ impl Comparison {
     /// Decides whether the next motion is one of a family; `None` where nothing is left to be asked.
     pub fn decide_next(&mut self) -> Option<&Decided> {
         let asked = self.undecided()?;
-        let mut decided = decide(&self.scene, &self.runs, asked);
+        let decided = decide(&self.scene, &self.runs, asked);
         let none = |found: &Membership| matches!(found.answer(), Answer::NoneProved { .. });
         let is_asked = |p: &&mut Pair| [(p.first, p.second), (p.second, p.first)].contains(&asked);
         let proved = decided.outcome.as_ref().is_ok_and(none);
-        for pair in self.pairs.iter_mut().filter(is_asked) {
-            match &mut decided.outcome {
-                _ if proved => pair.gap.prove(),
-                // a mismatch that moves nothing, as near a kink, shows nothing
-                Ok(Membership { decision, .. })
-                    if pair.gap.verdict == Verdict::Same && decision.verdict == decision::Verdict::NotContained =>
-                {
-                    decision.verdict = decision::Verdict::Undecided;
-                }
-                _ => {}
-            }
-        }
+        self.pairs.iter_mut().filter(|pair| proved && is_asked(pair)).for_each(|pair| pair.gap.prove());
         self.decided.push(decided);
         self.decided.last()
     }

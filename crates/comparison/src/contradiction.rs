@@ -13,8 +13,8 @@ use scene::Scene;
 use crate::fits::Fit;
 use crate::runs::{Decided, Pair};
 use crate::{Answer, Comparison, Growth, LeadingTerm, Membership, Run, Verdict, membership};
-use motion::is_in_table;
-use motion::{Breach, CERTAINTY, CHETAEV, Motion, PRESCRIBED, VAKONOMIC, VAKONOMIC_COSTATE};
+use motion::band::{Answer as Asked, Known, ask};
+use motion::{CHETAEV, Motion, PRESCRIBED, TRUSTED, VAKONOMIC, VAKONOMIC_COSTATE, is_in_table};
 
 /// Two results that exclude each other.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -52,10 +52,10 @@ pub fn holds_beside_numbers(scene: &Scene) -> Result<(), Contradicted> {
 /// A sentence on a scene, and what is known of the same from its motion, another derivation or a search.
 #[derive(Clone, Copy, Debug)]
 pub enum Beside<'a> {
-    /// A quantity is constant; its change along a motion.
-    Constant(&'a str, Change),
+    /// A quantity is constant; its change along a motion ([`Known::change`]).
+    Constant(&'a str, Known),
     /// A quantity is proved not to be constant on almost every motion; its changes along several.
-    NotConstant(&'a str, &'a [Change]),
+    NotConstant(&'a str, &'a [Known]),
     /// There are at most so many of a kind; those that were found.
     AtMost(&'a str, usize, &'a [&'a str]),
     /// Frobenius' verdict; integrable combinations by ranks of brackets over a finite field.
@@ -64,33 +64,6 @@ pub enum Beside<'a> {
     Contained(&'a str, f64),
     /// Two methods of one question do not agree.
     Methods(&'a str),
-}
-
-/// The largest change of a quantity along a motion, and the least that is certain: in parts of the largest
-/// sum of its terms without signs.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Change {
-    /// The largest one.
-    pub largest: f64,
-    /// What errors of the motion and round-off explain, and ten times more.
-    pub certain: f64,
-}
-
-impl Change {
-    /// Whether the quantity has changed.
-    pub fn is_certain(self) -> bool {
-        self.largest > self.certain
-    }
-
-    /// Of a quantity that has these values in both runs of a motion, with terms of this size.
-    pub fn of(values: &[[f64; 2]], size: f64) -> Change {
-        /// Round-off of a quantity, in parts of its terms.
-        const ROUND_OFF: f64 = 1e-11;
-        let largest = |of: &dyn Fn(&[f64; 2]) -> f64| values.iter().map(|x| of(x).abs()).fold(0.0, f64::max);
-        let (change, error) = (largest(&|x| x[0] - values[0][0]), largest(&|x| x[0] - x[1]));
-        let part = |x: f64| if x == 0.0 { 0.0 } else { x / size };
-        Change { largest: part(change), certain: SEEN * CERTAINTY * (part(error) + ROUND_OFF) }
-    }
 }
 
 /// Holds sentences on a scene against what is known beside them.
@@ -109,13 +82,13 @@ fn contradicted(scene: &Scene, found: &[Contradiction]) -> Result<(), Contradict
 
 impl Beside<'_> {
     fn contradiction(self, scene: &Scene) -> Option<Contradiction> {
-        let largest = |changes: &[Change]| changes.iter().map(|change| change.largest).fold(0.0, f64::max);
+        let largest = |changes: &[Known]| changes.iter().map(Known::of_terms).fold(0.0, f64::max);
         let (is_wrong, one, other) = match self {
             // a motion may leave the branch of its start
             Beside::Constant(quantity, change) => (
                 change.is_certain() && !Domain::of(&scene.system).branch,
                 format!("{quantity} = const"),
-                format!("it changes by {:.0e} of its terms along the motion", change.largest),
+                format!("it changes by {:.0e} of its terms along the motion", change.of_terms()),
             ),
             Beside::NotConstant(quantity, changes) => (
                 !changes.is_empty() && !changes.iter().any(|change| change.is_certain()),
@@ -155,20 +128,9 @@ fn contradiction(one: impl Into<String>, other: impl Into<String>) -> Contradict
     Contradiction { one: one.into(), other: other.into() }
 }
 
-/// A proved mismatch is at least this many times the noise before it has to be seen.
-const SEEN: f64 = 10.0;
-
-/// A mismatch of this part of a motion's accelerations is seen in its gaps.
-const VISIBLE: f64 = 1e-3;
-
-/// Constants are known to ten digits, motions to fifteen: a gap this many times its limit is another one.
-const UNKNOWN: f64 = 1e5;
-
 /// The growth of a gap is compared with its prediction if it was measured within this part of the time in
-/// which the predicted term leads, and to this accuracy; exponents are whole numbers.
+/// which the predicted term leads.
 const LEADS: f64 = 0.3;
-const ACCURATE: f64 = 0.1;
-const ANOTHER: f64 = 0.5;
 
 impl Membership {
     /// The decision in floating point and the proof, where they exclude each other.
@@ -181,7 +143,7 @@ impl Membership {
                 "a formula gives such constants for all starts",
             )),
             (Finding::None(none), Floating::Contained) => {
-                let implied = self.implied.filter(|implied| *implied > SEEN * self.decision.noise)?;
+                let implied = self.implied.filter(|implied| self.decision.shows(*implied))?;
                 Some(contradiction(
                     format!(
                         "it is proved that no constants give the motion (order {}), with a mismatch of at least {}",
@@ -236,9 +198,8 @@ impl Comparison {
         let of = |own| self.runs[self.run(own)?].outcome.as_ref().ok().filter(|motion| motion.doubt.is_none());
         let motions = [of(VAKONOMIC)?, of(VAKONOMIC_COSTATE)?];
         let changes = |motion: &Motion, name: &str| motion.breaches.iter().any(|breach| breach.name == name);
-        let clear = |breach: &&Breach| breach.largest > SEEN * CERTAINTY * breach.estimate;
         let one_sided = |[one, other]: [&Motion; 2]| {
-            let found = one.breaches.iter().filter(clear).find(|breach| !changes(other, &breach.name));
+            let found = one.breaches.iter().find(|breach| breach.is_clear() && !changes(other, &breach.name));
             found.map(|breach| format!("{breach}"))
         };
         let found = one_sided(motions).or_else(|| one_sided([motions[1], motions[0]]))?;
@@ -265,7 +226,8 @@ impl Comparison {
             let one = format!("the constraint is {}", self.integrability);
             return Some(contradiction(one, format!("every μ₀ gives {family} the motion of {curve} from all starts")));
         }
-        let clear = membership.decision.least > VISIBLE * membership.decision.acceleration;
+        // gaps show what is no small part of a motion's accelerations
+        let clear = membership.decision.least > TRUSTED * membership.decision.acceleration;
         let same = |fit: &&Fit| {
             (fit.run, fit.target) == (decided.family, decided.curve)
                 && fit.fitted.as_ref().is_some_and(|fitted| fitted.gap.verdict == Verdict::Same)
@@ -278,7 +240,9 @@ impl Comparison {
         let fault = decided.witness.as_ref().filter(|_| some).and_then(|witness| match witness {
             Err(refused) => Some(format!("with those found there is no motion: {refused}")),
             Ok(fitted) => {
-                let apart = fitted.gap.points.iter().any(|point| point.gap > UNKNOWN * point.limit);
+                // constants are known to fewer digits than motions
+                let least = TRUSTED * fitted.gap.scale;
+                let apart = fitted.gap.points.iter().any(|point| point.gap > point.limit.max(least));
                 apart.then(|| format!("those found leave a gap of {:.1e}", fitted.gap.largest))
             }
         });
@@ -353,8 +317,10 @@ fn stands_out(predicted: &LeadingTerm, pair: &Pair, start: f64) -> bool {
 }
 
 fn is_another(growth: &Growth, predicted: &LeadingTerm) -> bool {
-    growth.uncertainty < ACCURATE
+    // exponents are whole numbers
+    let exponent = f64::from(predicted.exponent);
+    growth.exponent.round() != exponent
+        && ask(growth.exponent - exponent, Some(growth.uncertainty)) == Asked::Apart
         && predicted.from < LEADS * growth.from
         && growth.to < LEADS * predicted.reach
-        && (growth.exponent - f64::from(predicted.exponent)).abs() > ANOTHER
 }

@@ -2,7 +2,7 @@
 
 use integrate::find_root;
 
-use motion::band::{ALONE, Answer, Band, CERTAINTY, Known, NoInformation, SAME_ESTIMATE, ask};
+use motion::band::{Answer, Band, CERTAINTY, Known, NoInformation, SAME_ESTIMATE, ask, ask_alone};
 use motion::{Ending, Metric, Motion, SolveError, larger, subtract};
 
 /// Gaps whose first times are reported.
@@ -229,7 +229,7 @@ impl Difference {
     }
 
     fn is_certain_alone(&self) -> bool {
-        ask(self.by / ALONE, self.bound) == Answer::Apart
+        ask_alone(self.by, self.bound) == Answer::Apart
     }
 
     fn limit(&self) -> f64 {

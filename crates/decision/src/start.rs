@@ -4,6 +4,7 @@ use std::cell::OnceCell;
 use std::collections::HashMap;
 use std::sync::Arc;
 
+use mechanics::elimination::{eliminate, largest, open};
 use mechanics::{Completion, Domain, Integrability, Removal, State, System, integrability};
 use symbolic::{Evaluator, Expr, Graph, Scalar, Symbol, Tape};
 
@@ -365,21 +366,7 @@ fn slopes(system: &System, state: &State, constraints: &Arc<Tape>) -> Vec<f64> {
 /// As many velocities as constraints, the best to solve these for; none if they are dependent.
 fn independent_columns(slopes: &[f64], n: usize) -> Vec<usize> {
     let mut rows: Vec<Vec<f64>> = slopes.chunks_exact(n).map(<[f64]>::to_vec).collect();
-    let h = rows.len();
-    let mut columns = Vec::new();
-    for step in 0..h {
-        let places = (step..h).flat_map(|i| (0..n).map(move |j| (i, j)));
-        let best = places.max_by(|a, b| rows[a.0][a.1].abs().total_cmp(&rows[b.0][b.1].abs()));
-        let Some((row, column)) = best.filter(|&(i, j)| rows[i][j] != 0.0) else { return Vec::new() };
-        rows.swap(step, row);
-        let pivot = rows[step].clone();
-        for other in &mut rows[step + 1..] {
-            let factor = other[column] / pivot[column];
-            other.iter_mut().zip(&pivot).for_each(|(x, p)| *x -= factor * p);
-            other[column] = 0.0;
-        }
-        columns.push(column);
-    }
+    let mut columns = eliminate(&mut rows, |rows, done| largest(rows, open(rows, done, n)));
     columns.sort_unstable();
-    columns
+    if columns.len() < rows.len() { Vec::new() } else { columns }
 }

@@ -3,6 +3,7 @@
 use integrate::{
     Dense, DenseOutput, EvaluationError, Gauge, Method, Options, Problem, Start, Status, StopCause, integrate,
 };
+use mechanics::linear::PIVOT_LIMIT;
 use mechanics::{SingularValues, State};
 use nalgebra::{DMatrix, DVector};
 use symbolic::{Bounded, Evaluator, Scalar};
@@ -18,8 +19,6 @@ use crate::scales::{self, Scales};
 const WEIGHTS: [f64; 4] = [1.0, 1e2, 1e4, 1e6];
 /// The smallest part of its scale that a state is held to have for its size.
 const SMALLEST: f64 = 1e-3;
-/// Singular values under this part of the largest count as zero.
-const SINGULAR: f64 = 1e-13;
 
 /// Mismatch of accelerations at one instant, `O c + y₀`, with the scales it is measured by.
 pub(crate) struct Mismatch {
@@ -164,11 +163,11 @@ impl<'a> Transport<'a> {
         let slopes = DMatrix::from_row_slice(coordinates, parameters, &values[..coordinates * parameters]);
         let rest = DVector::from_column_slice(&values[coordinates * parameters..]);
         let slopes = SingularValues::of(&slopes);
-        let speeds = -slopes.solve(&rest, SINGULAR * slopes.values.max());
+        let speeds = -slopes.solve(&rest, PIVOT_LIMIT * slopes.values.max());
         self.inputs.extend(speeds.iter());
         let values = numbers.accelerations.evaluate(&self.inputs);
         let seconds =
-            -slopes.solve(&DVector::from_column_slice(&values[..coordinates]), SINGULAR * slopes.values.max());
+            -slopes.solve(&DVector::from_column_slice(&values[..coordinates]), PIVOT_LIMIT * slopes.values.max());
         rates[self.own..self.own + parameters].copy_from_slice(speeds.as_slice());
         rates[self.own + parameters..end].copy_from_slice(&values[coordinates..]);
         self.inputs.extend(seconds.iter());

@@ -2,10 +2,11 @@
 
 use std::iter::zip;
 
-use comparison::{Beside, Change, Contradicted, hold};
+use comparison::{Beside, Contradicted, hold};
 use decision::{DecisionError, ExactStart};
 use equations::Outputs;
 use mechanics::{Constancy, System, Watched, project_velocity};
+use motion::band::Known;
 use motion::{CHETAEV, Choice, Settings, SolveError, derive, solve_choice};
 use scene::Scene;
 use symbolic::{Expr, Graph, Symbol};
@@ -29,7 +30,7 @@ pub struct Integrals {
     /// In the ansatz.
     pub ansatz: Result<Ansatz, Open>,
     /// The change of each integral that is printed along the scene's own motion; or why there is no such one.
-    pub drifts: Result<Vec<Change>, String>,
+    pub drifts: Result<Vec<Known>, String>,
     /// Names of the scene's invariants, with whether they are constant on almost every motion.
     pub invariants: Result<Vec<(String, bool)>, Open>,
 }
@@ -82,7 +83,7 @@ impl Integrals {
     }
 
     /// Holds what is said against the scene's own motion, Frobenius' test, and what else is said.
-    fn hold(&self, choice: &Choice, invariants: &[Change]) -> Result<(), Contradicted> {
+    fn hold(&self, choice: &Choice, invariants: &[Known]) -> Result<(), Contradicted> {
         let system = &self.scene.system;
         let printed = self.ansatz.as_ref().map_or(&[][..], |found| &found.printed);
         let own = || self.invariants.iter().flatten();
@@ -124,13 +125,13 @@ impl Integrals {
 
     /// Changes along several motions of invariants that are proved not to be constant, where the scene's own
     /// motion shows none.
-    fn changes_of_others(&self, choice: &Choice, invariants: &[Change]) -> Vec<(&str, Vec<Change>)> {
+    fn changes_of_others(&self, choice: &Choice, invariants: &[Known]) -> Vec<(&str, Vec<Known>)> {
         let said = zip(self.invariants.iter().flatten(), invariants).enumerate();
         let said: Vec<_> = said.filter(|(_, ((_, held), change))| !*held && !change.is_certain()).collect();
         if said.is_empty() {
             return Vec::new();
         }
-        let others: Vec<Vec<Change>> = (1..=OTHERS)
+        let others: Vec<Vec<Known>> = (1..=OTHERS)
             .filter_map(|number| changes(&other(&self.scene, number)?, choice, &[]).ok())
             .map(|(_, invariants)| invariants)
             .collect();
@@ -182,7 +183,7 @@ fn again(g: &Graph, text: &str) -> Result<Expr, String> {
 }
 
 /// Changes along the motion of `choice` of what is printed, and of the scene's invariants.
-fn changes(scene: &Scene, choice: &Choice, printed: &[Printed]) -> Result<(Vec<Change>, Vec<Change>), String> {
+fn changes(scene: &Scene, choice: &Choice, printed: &[Printed]) -> Result<(Vec<Known>, Vec<Known>), String> {
     let system = &scene.system;
     let own: Vec<&Watched> = system.watched.iter().filter(|watched| watched.is_constant()).collect();
     if printed.is_empty() && own.is_empty() {
@@ -219,7 +220,7 @@ fn changes(scene: &Scene, choice: &Choice, printed: &[Printed]) -> Result<(Vec<C
             sizes[i] = sizes[i].max(kept[1]);
         }
     }
-    let mut changes: Vec<Change> = zip(&runs, sizes).map(|(run, size)| Change::of(run, size)).collect();
+    let mut changes: Vec<Known> = zip(&runs, sizes).map(|(run, size)| Known::change(run, size)).collect();
     let own = changes.split_off(count);
     Ok((changes, own))
 }

@@ -8,9 +8,6 @@ use serde_json::{Value, json};
 
 use crate::{Cyclic, Density, Found, Integrals, Measure, Multiplier, Open, Printed, Reduction, Reversed};
 
-/// A smaller drift is round-off, and has no digits.
-const ROUND_OFF: f64 = 1e-14;
-
 /// What integrals of degree `below + 1` are called.
 pub(crate) fn degree(below: usize) -> &'static str {
     ["linear", "quadratic", "cubic"].get(below).unwrap_or(&"higher")
@@ -63,9 +60,9 @@ impl Integrals {
                     let (part, drift) = match &self.drifts {
                         Ok(drifts) if drifts[i].is_certain() => (
                             " on the branch of this start",
-                            format!("drift {:.0e}: the motion leaves it", drifts[i].largest),
+                            format!("drift {:.0e}: the motion leaves it", drifts[i].of_terms()),
                         ),
-                        Ok(drifts) => ("", format!("drift below {:.0e}", at_most(drifts[i].largest.max(ROUND_OFF)))),
+                        Ok(drifts) => ("", format!("drift below {:.0e}", at_most(drifts[i].with_digits()))),
                         Err(why) => ("", format!("no motion to try it on: {why}")),
                     };
                     lines.push((kind(integral), format!("{} = const{part} ({drift})", integral.text)));
@@ -277,7 +274,7 @@ impl Integrals {
                         "kind": kind(integral), "degree": integral.degree, "expression": integral.text,
                     });
                     match &self.drifts {
-                        Ok(drifts) => value["drift"] = json!(drifts[i].largest),
+                        Ok(drifts) => value["drift"] = json!(drifts[i].of_terms()),
                         Err(why) => value["no_motion"] = json!(why),
                     }
                     value

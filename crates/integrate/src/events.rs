@@ -1,7 +1,7 @@
 //! Locates zeros of event functions: changes of sign, and zeros that are touched.
 
 use crate::dense::{Basis, evaluate_segment};
-use crate::root::find_root_between;
+use crate::root::{find_root_between, least};
 use crate::system::{Failure, System};
 
 /// Number of equal parts in which each step is sampled.
@@ -159,31 +159,12 @@ impl EventWatch {
         Ok(None)
     }
 
-    /// Where a function is least in size within this range, and its size, by golden sections.
+    /// Where a function is least in size within this range, and its size.
     fn least(&self, system: &System, segment: &Segment, index: usize, range: [f64; 2]) -> Result<(f64, f64), Failure> {
-        /// Two points are so far from the ends.
-        const SHARE: f64 = 0.381_966_011_250_105;
-        /// The range becomes shorter by eight digits.
-        const SECTIONS: usize = 38;
         let mut values = vec![0.0; self.current.len()];
         let mut state = self.state.clone();
-        let mut size =
-            |theta: f64| segment.events(system, theta, &mut state, &mut values).map(|()| values[index].abs());
-        let [mut a, mut d] = range;
-        let (mut b, mut c) = (a + SHARE * (d - a), d - SHARE * (d - a));
-        let (mut at_b, mut at_c) = (size(b)?, size(c)?);
-        for _ in 0..SECTIONS {
-            if at_b <= at_c {
-                (d, c, at_c) = (c, b, at_b);
-                b = a + SHARE * (d - a);
-                at_b = size(b)?;
-            } else {
-                (a, b, at_b) = (b, c, at_c);
-                c = d - SHARE * (d - a);
-                at_c = size(c)?;
-            }
-        }
-        Ok(if at_b <= at_c { (b, at_b) } else { (c, at_c) })
+        let size = |theta: f64| segment.events(system, theta, &mut state, &mut values).map(|()| values[index].abs());
+        least(size, range)
     }
 
     /// The step has been taken.

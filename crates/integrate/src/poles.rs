@@ -9,8 +9,9 @@
 use crate::dense::segment_with_slope;
 use crate::events::Segment;
 use crate::options::{Method, Options};
+use crate::root::GOLDEN;
 use crate::system::{Failure, System};
-use crate::taylor_step::{DEFECT, GOLDEN, LEAST_RELATIVE};
+use crate::taylor_step::{DEFECT, LEAST_RELATIVE};
 
 /// Round-off of rates, at most, over what one rounding makes of their terms.
 const ROUNDINGS: f64 = 16.0;

@@ -19,15 +19,18 @@
 
 use std::collections::VecDeque;
 
+use nalgebra::DMatrix;
+
 use crate::events::{PARTS, Segment};
 use crate::options::{Method, Options};
 use crate::poles::may_vanish;
+use crate::root::least as least_of;
 use crate::system::{Failure, System};
+use crate::taylor_step::LEAST_RELATIVE;
 
-/// A minimum where `p` turns counts as zero up to this many roots of the tolerance, within these limits.
+/// A minimum where `p` turns counts as zero up to this many roots of the tolerance, within this limit.
 /// Errors of other methods are so many times the tolerance, of solutions as smooth.
 const ROOTS: f64 = 10.0;
-const LEAST: f64 = 1e-6;
 const MOST: f64 = 1e-2;
 const OTHERS: f64 = 4.0;
 /// Up to here where `p` does not turn, which is where its cosine is over this.
@@ -45,9 +48,6 @@ const STEPS: f64 = 4.0;
 /// factor and this cosine.
 const REMEMBERED: usize = 64;
 const FALLS: f64 = 0.6;
-/// The bracket of a minimum becomes shorter by eight digits.
-const SECTIONS: usize = 40;
-const GOLDEN: f64 = 0.618_033_988_749_894_9;
 
 /// Makes the rows of `b` (row-major, `h` rows) orthonormal; returns |det L| = |p|.
 pub fn orthonormal(b: &mut [f64], h: usize) -> f64 {
@@ -102,38 +102,7 @@ fn apart(p: &[f64], q: &[f64]) -> f64 {
 /// `det(P Qᵀ)` of two matrices of `h` rows each.
 fn cosine(p: &[f64], q: &[f64], h: usize) -> f64 {
     let n = p.len() / h;
-    let mut m = vec![0.0; h * h];
-    for (row, a) in m.chunks_exact_mut(h).zip(p.chunks_exact(n)) {
-        for (x, b) in row.iter_mut().zip(q.chunks_exact(n)) {
-            *x = dot(a, b);
-        }
-    }
-    let mut determinant = 1.0;
-    for k in 0..h {
-        let mut best = k;
-        for i in k + 1..h {
-            if m[i * h + k].abs() > m[best * h + k].abs() {
-                best = i;
-            }
-        }
-        let (upper, lower) = m.split_at_mut((k + 1) * h);
-        let row = &mut upper[k * h..];
-        if best != k {
-            row.swap_with_slice(&mut lower[(best - k - 1) * h..(best - k) * h]);
-            determinant = -determinant;
-        }
-        determinant *= row[k];
-        if row[k] == 0.0 {
-            return 0.0;
-        }
-        for other in lower.chunks_exact_mut(h) {
-            let factor = other[k] / row[k];
-            for j in k + 1..h {
-                other[j] -= factor * row[j];
-            }
-        }
-    }
-    determinant
+    DMatrix::from_fn(h, h, |i, j| dot(&p[i * n..(i + 1) * n], &q[j * n..(j + 1) * n])).determinant()
 }
 
 /// Whether `p` may vanish in a step at whose begin, in whose middle and at whose end it has these sizes and
@@ -146,7 +115,7 @@ pub fn may_lose(sizes: [f64; 3], rows: [&[f64]; 3], h: usize) -> bool {
 /// Whether the least |p|, at `depth` of what it was, is a loss of rank, where the cosine between before and
 /// after is `turn` and the tolerance is `relative`.
 fn is_lost(depth: f64, turn: f64, relative: f64) -> bool {
-    depth < if turn > SAME { TOUCHES } else { (ROOTS * relative.sqrt()).clamp(LEAST, MOST) }
+    depth < if turn > SAME { TOUCHES } else { (ROOTS * relative.max(LEAST_RELATIVE).sqrt()).min(MOST) }
 }
 
 /// `p` at an instant.
@@ -319,19 +288,10 @@ impl RankWatch {
             may_lose(three.map(|p| p.size), three.map(|p| &p.basis[..]), self.h)
         };
         let mut least: Option<(f64, Minors)> = None;
-        for [mut low, mut high] in (0..PARTS - 1).filter(may_vanish).map(|part| [place(part), place(part + 2)]) {
-            for _ in 0..SECTIONS {
-                let inner = [high - GOLDEN * (high - low), low + GOLDEN * (high - low)];
-                let [left, right] = [at(inner[0])?, at(inner[1])?];
-                let (theta, nearer) = if left.size <= right.size { (inner[0], left) } else { (inner[1], right) };
-                if theta == inner[0] {
-                    high = inner[1]
-                } else {
-                    low = inner[0]
-                }
-                if least.as_ref().is_none_or(|(_, least)| nearer.size < least.size) {
-                    least = Some((theta, nearer));
-                }
+        for range in (0..PARTS - 1).filter(may_vanish).map(|part| [place(part), place(part + 2)]) {
+            let (theta, size) = least_of(|theta| at(theta).map(|found| found.size), range)?;
+            if least.as_ref().is_none_or(|(_, least)| size < least.size) {
+                least = Some((theta, at(theta)?));
             }
         }
         Ok(least)

@@ -1,4 +1,30 @@
-//! Roots of scalar functions.
+//! Roots and minima of scalar functions.
+
+/// The golden section.
+pub(crate) const GOLDEN: f64 = 0.618_033_988_749_894_9;
+/// The bracket of a minimum becomes shorter by eight digits.
+const SECTIONS: usize = 38;
+
+/// Where a function is least between `a` and `d`, and its value there, by golden sections.
+///
+/// # Errors
+/// The first one of `f`.
+pub(crate) fn least<E>(mut f: impl FnMut(f64) -> Result<f64, E>, [mut a, mut d]: [f64; 2]) -> Result<(f64, f64), E> {
+    let (mut b, mut c) = (d - GOLDEN * (d - a), a + GOLDEN * (d - a));
+    let (mut at_b, mut at_c) = (f(b)?, f(c)?);
+    for _ in 0..SECTIONS {
+        if at_b <= at_c {
+            (d, c, at_c) = (c, b, at_b);
+            b = d - GOLDEN * (d - a);
+            at_b = f(b)?;
+        } else {
+            (a, b, at_b) = (b, c, at_c);
+            c = a + GOLDEN * (d - a);
+            at_c = f(c)?;
+        }
+    }
+    Ok(if at_b <= at_c { (b, at_b) } else { (c, at_c) })
+}
 
 /// Root of a scalar function between `a` and `b`: `f(x) = 0`, for events and for "when does the gap pass ε".
 ///

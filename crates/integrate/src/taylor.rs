@@ -31,12 +31,11 @@ use std::array::from_fn;
 use crate::dense::Basis;
 use crate::options::Options;
 use crate::problem::Start;
+use crate::root::GOLDEN;
 use crate::status::StopCause;
 use crate::stepper::{Attempt, Stepper, next_step};
 use crate::system::{Failure, System};
-use crate::taylor_step::{
-    DEFECT, Ends, GOLDEN, LEAST_RELATIVE, MANY, UNLIMITED, first_powers, longest_step, once, order,
-};
+use crate::taylor_step::{DEFECT, Ends, LEAST_RELATIVE, MANY, UNLIMITED, first_powers, longest_step, once, order};
 
 /// Where coefficients overflow, the unit of time is shortened by this factor, this often.
 const SHORTER_UNIT: f64 = 1e-8;

@@ -17,8 +17,7 @@ const SLACK: f64 = 1e3;
 pub(crate) const DEFECT: f64 = 100.0;
 pub(crate) const LEAST_RELATIVE: f64 = 1e-14;
 /// A step that is this many times shorter than its terms allow is checked at many places inside, as these do
-/// not tell how much happens in it: at multiples of this part of it, modulo 1.
-pub(crate) const GOLDEN: f64 = 0.618_033_988_749_894_9;
+/// not tell how much happens in it: at multiples of the golden section of it, modulo 1.
 pub(crate) const MANY: usize = 16;
 pub(crate) const UNLIMITED: f64 = 100.0;
 

@@ -1,4 +1,5 @@
-//! Elimination of sparse linear expressions, for removals, quasi-velocities, sums of squares and plans.
+//! Elimination: of dense rows of numbers, by a policy for pivots ([`eliminate`]), and of sparse linear
+//! expressions, for removals, quasi-velocities, sums of squares and plans.
 //!
 //! With a pivot `a_pc` and its row and column taken out ([`SparseMatrix::take`]), rows with `c` become
 //!
@@ -6,20 +7,113 @@
 //! a_ij ← a_ij − a_ic a_pj / a_pc .
 //! ```
 //!
-//! The caller writes quotient and difference: at once, factored, by way of names, or as terms that are added
+//! In expressions, the caller writes quotient and difference: at once, factored, by way of names, or as terms that are added
 //! up later. It also orders the pivots, except for the choice by size ([`choose_pivot`]).
 
 use std::collections::{BTreeMap, BTreeSet, HashMap};
+use std::ops::{Add, Mul, Neg, Sub};
 
-use symbolic::{Expr, Graph, Symbol};
+use symbolic::{Bounded, Expr, Graph, Scalar, Symbol};
 
 use crate::RemovalError;
 
-/// A pivot may be this much smaller than the largest one if it makes shorter expressions.
-const PIVOT_CHOICE: f64 = 0.2;
+/// A pivot may be this much smaller than the largest one if it is better otherwise.
+pub(crate) const PIVOT_CHOICE: f64 = 0.2;
 
 /// Pivots under this size, rows scaled to 1, are zero: the equations are dependent.
 const PIVOT_LIMIT: f64 = 1e-10;
+
+/// Numbers of a matrix.
+pub trait Entry:
+    Copy + std::fmt::Debug + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Neg<Output = Self>
+{
+    /// 0.
+    const ZERO: Self;
+    /// `None` for 0.
+    fn inverse(self) -> Option<Self>;
+    /// What a pivot is chosen by; 0 for 0.
+    fn weight(self) -> f64;
+    /// Subtracts each factor times its row, rows as long as `into`.
+    fn subtract_multiples(into: &mut [Self], factors: &[Self], rows: &[Self]) {
+        let multiples = factors.iter().zip(rows.chunks_exact(into.len()));
+        for (&factor, row) in multiples.filter(|(factor, _)| factor.weight() != 0.0) {
+            into.iter_mut().zip(row).for_each(|(x, &y)| *x = *x - factor * y);
+        }
+    }
+}
+
+impl Entry for f64 {
+    const ZERO: Self = 0.0;
+
+    fn inverse(self) -> Option<Self> {
+        (self != 0.0).then(|| 1.0 / self)
+    }
+
+    fn weight(self) -> f64 {
+        self.abs()
+    }
+}
+
+/// The weight of round-off among pivots.
+const ROUNDED_WEIGHT: f64 = 1e-60;
+
+impl Entry for Bounded {
+    const ZERO: Self = Bounded { value: 0.0, magnitude: 0.0 };
+
+    fn inverse(self) -> Option<Self> {
+        (self.value != 0.0).then(|| Bounded::from_f64(1.0) / self)
+    }
+
+    fn weight(self) -> f64 {
+        // what may be round-off is a pivot only where nothing else is
+        if self.may_be_zero() { self.value.abs() * ROUNDED_WEIGHT } else { self.value.abs() }
+    }
+}
+
+/// Gauss–Jordan elimination of dense `rows`. `pick` is the policy: from the rows and the columns of pivots so
+/// far, whose rows come first, the place of the next pivot; `None` ends it. In the end each of these rows has 1
+/// in its column, which is returned, and all other rows have 0 there.
+///
+/// ```
+/// use mechanics::elimination::{eliminate, largest, open};
+/// let mut rows = vec![vec![1.0, 2.0, 5.0], vec![2.0, 4.0, 10.0], vec![0.0, 1.0, 2.0]];
+/// let pivots = eliminate(&mut rows, |rows, done| largest(rows, open(rows, done, 2).filter(|&(i, j)| rows[i][j] != 0.0)));
+/// assert_eq!((pivots, rows), (vec![1, 0], vec![vec![0.0, 1.0, 2.0], vec![1.0, 0.0, 1.0], vec![0.0, 0.0, 0.0]]));
+/// ```
+pub fn eliminate<E: Entry>(
+    rows: &mut [Vec<E>],
+    mut pick: impl FnMut(&[Vec<E>], &[usize]) -> Option<(usize, usize)>,
+) -> Vec<usize> {
+    let mut pivots: Vec<usize> = Vec::new();
+    while let Some((row, column)) = pick(rows, &pivots) {
+        let Some(over) = rows[row][column].inverse() else { break };
+        let done = pivots.len();
+        rows.swap(done, row);
+        let pivot: Vec<E> = rows[done].iter().map(|&x| x * over).collect();
+        for (_, row) in rows.iter_mut().enumerate().filter(|(i, _)| *i != done) {
+            let factor = row[column];
+            if factor.weight() != 0.0 {
+                row.iter_mut().zip(&pivot).for_each(|(x, &p)| *x = *x - factor * p);
+                row[column] = E::ZERO;
+            }
+        }
+        rows[done] = pivot;
+        pivots.push(column);
+    }
+    pivots
+}
+
+/// The places for further pivots in the first columns, row by row.
+pub fn open<E>(rows: &[Vec<E>], done: &[usize], columns: usize) -> impl DoubleEndedIterator<Item = (usize, usize)> {
+    let places = move |i: usize| (0..columns).map(move |j| (i, j));
+    (done.len()..rows.len()).flat_map(places).filter(move |(_, j)| !done.contains(j))
+}
+
+/// The place of the largest entry, of equals the last.
+pub fn largest<E: Entry>(rows: &[Vec<E>], places: impl Iterator<Item = (usize, usize)>) -> Option<(usize, usize)> {
+    let weight = |(i, j): (usize, usize)| rows[i][j].weight();
+    places.max_by(|&a, &b| weight(a).total_cmp(&weight(b)))
+}
 
 /// A sparse matrix by rows that knows which rows contain a column. Entries are what stands for coefficients.
 #[derive(Clone, Debug)]

@@ -5,6 +5,7 @@ use std::collections::{BTreeSet, HashMap};
 
 use symbolic::{Bounded, Evaluator, Expr, Graph, Matrix, Scalar, SplitMix, Symbol};
 
+use crate::elimination::{eliminate, largest, open};
 use crate::{Parameter, State, System};
 
 /// How far from the centre points are drawn, in sizes.
@@ -142,20 +143,8 @@ fn certain_rank(mut rows: Vec<Vec<Bounded>>) -> usize {
             rows.iter_mut().for_each(|row| row[j] = scaled(row[j], by));
         }
     }
-    let mut rank = 0;
-    loop {
-        let places = (rank..rows.len()).flat_map(|i| (0..columns).map(move |j| (i, j)));
-        let certain = places.filter(|&(i, j)| !rows[i][j].may_be_zero() && rows[i][j].is_finite());
-        let size = |(i, j): (usize, usize)| rows[i][j].value.abs();
-        let Some((pivot, column)) = certain.max_by(|&a, &b| size(a).total_cmp(&size(b))) else { return rank };
-        rows.swap(rank, pivot);
-        let (above, below) = rows.split_at_mut(rank + 1);
-        let row = &above[rank];
-        for other in below {
-            let factor = other[column] / row[column];
-            other.iter_mut().zip(row).for_each(|(x, &y)| *x = *x - factor * y);
-            other[column] = Bounded::from_f64(0.0);
-        }
-        rank += 1;
-    }
+    let pick = |rows: &[Vec<Bounded>], done: &[usize]| {
+        largest(rows, open(rows, done, columns).filter(|&(i, j)| !rows[i][j].may_be_zero() && rows[i][j].is_finite()))
+    };
+    eliminate(&mut rows, pick).len()
 }

@@ -5,6 +5,7 @@ use std::collections::HashMap;
 use nalgebra::{DMatrix, DVector};
 use symbolic::{Evaluator, Expr, SplitMix};
 
+use crate::elimination::{PIVOT_CHOICE, eliminate, largest, open};
 use crate::{SingularValues, System};
 
 /// Singular values under this part of the largest are zero at the start, and behind a way from it.
@@ -16,8 +17,6 @@ const WAYS: u64 = 6;
 const CHANGE: f64 = 0.05;
 const FIRST: f64 = 1e-6;
 const DOUBLED: usize = 60;
-/// A row whose part beyond those taken is this much of the largest one is taken before later ones.
-const NEARLY: f64 = 0.7;
 
 impl System {
     /// Indices of constraints that all others follow from, in their order, where some do: of `A v + b = 0`,
@@ -90,20 +89,21 @@ fn rank(svd: &SingularValues, limit: f64) -> usize {
 
 /// Indices of `rank` rows that are well apart, the first ones in this order where several would do.
 fn independent_rows(matrix: &DMatrix<f64>, rank: usize, order: &[usize]) -> Vec<usize> {
-    let mut rest = matrix.clone();
-    let mut taken: Vec<usize> = Vec::new();
-    for _ in 0..rank {
-        let length = |i: usize| if taken.contains(&i) { 0.0 } else { rest.row(i).norm() };
-        let largest = (0..rest.nrows()).map(length).fold(0.0, f64::max);
-        let Some(&next) = order.iter().find(|&&i| length(i) >= NEARLY * largest) else { break };
-        let direction = rest.row(next).normalize();
-        for i in 0..rest.nrows() {
-            let along = rest.row(i).dot(&direction);
-            let row = rest.row(i) - &direction * along;
-            rest.set_row(i, &row);
+    let row = |&i: &usize| matrix.row(i).iter().copied().collect();
+    let mut rows: Vec<Vec<f64>> = order.iter().map(row).collect();
+    let mut places: Vec<usize> = (0..rows.len()).collect();
+    let pivots = eliminate(&mut rows, |rows, done| {
+        if done.len() == rank {
+            return None;
         }
-        taken.push(next);
-    }
+        let open = || open(rows, done, matrix.ncols());
+        let size = |(i, j): (usize, usize)| rows[i][j].abs();
+        let most = size(largest(rows, open())?);
+        let first = open().filter(|&at| size(at) >= PIVOT_CHOICE * most).map(|(i, _)| i).min_by_key(|&i| places[i])?;
+        places.swap(done.len(), first);
+        largest(rows, open().filter(|(i, _)| *i == first))
+    });
+    let mut taken: Vec<usize> = places.iter().take(pivots.len()).map(|&place| order[place]).collect();
     taken.sort_unstable();
     taken
 }

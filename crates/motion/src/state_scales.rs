@@ -3,11 +3,10 @@
 use equations::{Compiled, Outputs};
 
 use crate::Metric;
+use crate::band::limits::ROUND_OFF;
 use crate::band::ulp_perturbation::signs;
 use crate::metric::subtract;
 
-/// A state below this fraction of the size from the energy is round-off.
-const NO_SIZE: f64 = 1e-14;
 /// Sizes are limited to 1, or to this fraction of the size from the energy if that is larger: runs may be
 /// long. This fraction of the speed that a constant acceleration gives within the run counts as speed.
 const LARGE: f64 = 1e-5;
@@ -52,8 +51,9 @@ fn whole_sizes(compiled: &mut Compiled, metric: &mut Metric, t: f64, y: &[f64], 
     let noise = Noise::of(compiled, t, y, &rates, &here);
     rates.iter_mut().zip(&noise.rates).filter(|(rate, noise)| rate.abs() <= **noise).for_each(|(rate, _)| *rate = 0.0);
     let mut probe = Probe { compiled, metric, t, y, rates, here, noise };
+    // less than round-off of the size from the energy is none
     let size =
-        |(reach, of_energy): (f64, f64)| (if reach > NO_SIZE * of_energy { reach } else { of_energy }, of_energy);
+        |(reach, of_energy): (f64, f64)| (if reach > ROUND_OFF * of_energy { reach } else { of_energy }, of_energy);
     let of_energy = probe.of_energy(length);
     (0..y.len()).map(|i| probe.reach(i, length)).zip(of_energy).map(size).collect()
 }

@@ -137,7 +137,7 @@ impl Base {
             slopes.iter().copied().chain([outputs[i]]).chain(columns.iter().map(|column| column[i])).collect()
         };
         let mut rows: Vec<Vec<C>> = (0..self.rows).map(row).collect();
-        let done = eliminate(&mut rows, 0, self.others).len();
+        let done = eliminate(&mut rows, self.others).len();
         let of = |k: usize| rows[done..].iter().map(|row| row[self.others + k]).collect();
         Ok(Residuals { residual: of(0), columns: (1..=columns.len()).map(of).collect() })
     }
@@ -161,7 +161,7 @@ impl Base {
         let columns: Vec<Vec<C>> = (0..n).map(|k| at(Some(k))).collect::<Option<_>>()?;
         let row = |i: usize| columns.iter().map(|c| c[i] - rest[i]).chain([rest[i]]).collect::<Vec<C>>();
         let mut rows: Vec<Vec<C>> = (0..rest.len()).map(row).collect();
-        let pivots = eliminate(&mut rows, 0, n);
+        let pivots = eliminate(&mut rows, n);
         if pivots.len() < n || rows[n..].iter().any(|row| !row[n].vanishes()) {
             return None;
         }

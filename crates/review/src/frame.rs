@@ -179,7 +179,7 @@ impl<'r> Frame<'r> {
         let n = self.reading.coordinates.len();
         let outputs = values(&mut self.evaluator(&self.velocities).ok()?, inputs).ok()?;
         let mut rows = self.velocities.rows(&outputs);
-        let pivots = eliminate(&mut rows, 0, n);
+        let pivots = eliminate(&mut rows, n);
         Some((0..n).filter(|j| !pivots.contains(j)).collect())
     }
 
@@ -226,7 +226,7 @@ impl<'r> Frame<'r> {
                 return Ok(());
             }
             let mut rows = linear.rows(&outputs);
-            let pivots = eliminate(&mut rows, 0, linear.unknowns);
+            let pivots = eliminate(&mut rows, linear.unknowns);
             for (row, &column) in rows.iter().zip(&pivots) {
                 let x = &mut inputs[places.start + column];
                 *x = constants(&[(x.coefficient(0) - row[linear.unknowns]).fresh()])[0];
@@ -242,9 +242,9 @@ impl<'r> Frame<'r> {
         let mut rows = self.motion.rows(&outputs);
         let (all, n) = (self.motion.unknowns, self.reading.coordinates.len());
         // what is no acceleration is eliminated first
-        let others = eliminate(&mut rows, 0, all - n).len();
+        let others = eliminate(&mut rows, all - n).len();
         let mut rows: Vec<Vec<C>> = rows[others..].iter().map(|row| row[all - n..].to_vec()).collect();
-        let mut pivots = eliminate(&mut rows, 0, n);
+        let mut pivots = eliminate(&mut rows, n);
         if rows[pivots.len()..].iter().any(|row| !row[n].vanishes()) {
             return Err(Trouble::Contradiction);
         }
@@ -255,7 +255,7 @@ impl<'r> Frame<'r> {
             for row in self.supplied.rows(&outputs) {
                 let known = rows.len();
                 rows.push(row);
-                pivots = eliminate(&mut rows, 0, n);
+                pivots = eliminate(&mut rows, n);
                 rows.truncate(pivots.len().max(known));
             }
         }
@@ -277,7 +277,7 @@ impl<'r> Frame<'r> {
         let first = inputs.len() - linear.unknowns;
         let outputs = values(&mut self.evaluator(linear)?, inputs)?;
         let mut rows = linear.rows(&outputs);
-        let pivots = eliminate(&mut rows, 0, linear.unknowns);
+        let pivots = eliminate(&mut rows, linear.unknowns);
         for (row, &column) in rows.iter().zip(&pivots) {
             let others = (0..linear.unknowns).filter(|j| !pivots.contains(j));
             let rest = others.fold(row[linear.unknowns], |sum, j| sum + row[j] * inputs[first + j].coefficient(0));

@@ -1,6 +1,7 @@
 //! Numbers of a field of residues, or floats with bands, by which equations are compared.
 
 use decision::exact::{Coefficient, Exact, Flaw, Jet, Modular};
+use mechanics::elimination::{self, largest, open};
 use symbolic::{Bounded, Evaluator, Scalar, SplitMix};
 
 /// A number at a point, with its exact value where sines of it are asked for.
@@ -99,29 +100,10 @@ pub(crate) fn constants<C: Number>(x: &[C]) -> Vec<At<C>> {
     x.iter().map(|&x| Jet::constant(x, None)).collect()
 }
 
-/// Gauss–Jordan elimination of `rows` by pivots in the columns `from..to`, the largest first: the rows with
-/// pivots come first, in the order of the columns that are returned.
-pub(crate) fn eliminate<C: Number>(rows: &mut [Vec<C>], from: usize, to: usize) -> Vec<usize> {
-    let mut pivots: Vec<usize> = Vec::new();
-    loop {
-        let done = pivots.len();
-        let open = (done..rows.len()).flat_map(|i| (from..to).map(move |j| (i, j)));
-        let open = open.filter(|&(i, j)| !pivots.contains(&j) && !rows[i][j].vanishes());
-        let weight = |&(i, j): &(usize, usize)| rows[i][j].weight();
-        let best = open.max_by(|a, b| weight(a).total_cmp(&weight(b)).then(b.cmp(a)));
-        let Some((row, column)) = best else { return pivots };
-        rows.swap(done, row);
-        let Some(over) = rows[done][column].inverse() else { return pivots };
-        let pivot: Vec<C> = rows[done].iter().map(|&x| x * over).collect();
-        for (_, row) in rows.iter_mut().enumerate().filter(|(i, _)| *i != done) {
-            let factor = row[column];
-            if factor.weight() == 0.0 {
-                continue;
-            }
-            row.iter_mut().zip(&pivot).for_each(|(x, &p)| *x = *x - factor * p);
-            row[column] = C::ZERO;
-        }
-        rows[done] = pivot;
-        pivots.push(column);
-    }
+/// [`elimination::eliminate`] by pivots in the first `columns`, the largest first: the rows with pivots come
+/// first, in the order of the columns that are returned.
+pub(crate) fn eliminate<C: Number>(rows: &mut [Vec<C>], columns: usize) -> Vec<usize> {
+    elimination::eliminate(rows, |rows, done| {
+        largest(rows, open(rows, done, columns).rev().filter(|&(i, j)| !rows[i][j].vanishes()))
+    })
 }

@@ -18,6 +18,7 @@ pub use field::{FIELDS, Field, agreed, in_any_field, in_field};
 pub use jet::{Jet, ORDERS};
 pub use linear::{Echelon, inverse, nullspace};
 pub(crate) use linear::{solve, subtract_product};
+pub use mechanics::elimination::Entry;
 pub(crate) use modular::TRIED;
 pub use rational::{Exact, PARTS};
 
@@ -54,30 +55,6 @@ pub enum Flaw {
     Zero,
 }
 
-/// Entries of a linear system.
-pub trait Entry:
-    Copy
-    + std::fmt::Debug
-    + std::ops::Add<Output = Self>
-    + std::ops::Sub<Output = Self>
-    + std::ops::Mul<Output = Self>
-    + std::ops::Neg<Output = Self>
-{
-    /// 0.
-    const ZERO: Self;
-    /// `None` for 0.
-    fn inverse(self) -> Option<Self>;
-    /// What a pivot is chosen by; 0 for 0.
-    fn weight(self) -> f64;
-    /// Subtracts each factor times its row, rows as long as `into`.
-    fn subtract_multiples(into: &mut [Self], factors: &[Self], rows: &[Self]) {
-        let multiples = factors.iter().zip(rows.chunks_exact(into.len()));
-        for (&factor, row) in multiples.filter(|(factor, _)| factor.weight() != 0.0) {
-            into.iter_mut().zip(row).for_each(|(x, &y)| *x = *x - factor * y);
-        }
-    }
-}
-
 /// Coefficients of a power series.
 pub trait Coefficient: Entry {
     /// Whether functions of constants need these exactly.
@@ -104,18 +81,6 @@ pub trait Coefficient: Entry {
     fn power(self, exact: Option<Exact>, exponent: Self) -> Result<Self, Flaw>;
 }
 
-impl Entry for f64 {
-    const ZERO: Self = 0.0;
-
-    fn inverse(self) -> Option<Self> {
-        (self != 0.0).then(|| 1.0 / self)
-    }
-
-    fn weight(self) -> f64 {
-        self.abs()
-    }
-}
-
 impl Entry for Modular {
     const ZERO: Self = Modular::ZERO;
 
@@ -129,22 +94,6 @@ impl Entry for Modular {
 
     fn subtract_multiples(into: &mut [Self], factors: &[Self], rows: &[Self]) {
         Modular::subtract_multiples(into, factors, rows);
-    }
-}
-
-/// The weight of round-off among pivots.
-const ROUNDED_WEIGHT: f64 = 1e-60;
-
-impl Entry for Bounded {
-    const ZERO: Self = Bounded { value: 0.0, magnitude: 0.0 };
-
-    fn inverse(self) -> Option<Self> {
-        (self.value != 0.0).then(|| Bounded::from_f64(1.0) / self)
-    }
-
-    fn weight(self) -> f64 {
-        // what may be round-off is a pivot only where nothing else is
-        if self.may_be_zero() { self.value.abs() * ROUNDED_WEIGHT } else { self.value.abs() }
     }
 }
 

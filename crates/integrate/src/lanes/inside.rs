@@ -3,7 +3,8 @@
 use std::array::from_fn;
 
 use super::{LANES, Lane, LaneProblem, Lanes};
-use crate::taylor_step::{DEFECT, GOLDEN, LEAST_RELATIVE, MANY, UNLIMITED};
+use crate::root::GOLDEN;
+use crate::taylor_step::{DEFECT, LEAST_RELATIVE, MANY, UNLIMITED};
 
 impl<P: LaneProblem> Lanes<'_, P> {
     /// As for a single motion: at many places where terms do not limit the step, which depend on the motion's

@@ -10,7 +10,7 @@ use symbolic::{Bounded, CompileError, Evaluator, Scalar, Symbol};
 use super::estimate_failure::Doubt;
 use super::limits::{ROUND_OFF, UNITS};
 use super::ulp_perturbation::terms_of_invariants;
-use super::{Answer, Errors, TwoRuns, ask};
+use super::{Answer, Errors, TwoRuns, ask, ask_alone};
 use crate::metric::subtract;
 
 /// A motion changes what the user expects to be constant: a finding about the formulation.
@@ -26,6 +26,13 @@ pub struct Breach {
     pub estimate: f64,
     /// See [`Breach::change`].
     pub largest: f64,
+}
+
+impl Breach {
+    /// Whether it is certain at its largest, as a single quantity.
+    pub fn is_clear(&self) -> bool {
+        ask_alone(self.largest, Some(self.estimate)) == Answer::Apart
+    }
 }
 
 impl Display for Breach {

@@ -2,7 +2,8 @@
 
 use std::fmt::{self, Display, Formatter};
 
-use super::limits::{CERTAINTY, ROUND_OFF};
+use super::limits::{ALONE, CERTAINTY, ROUND_OFF};
+use crate::metric::larger;
 
 /// A number of a motion and how wrong it may be.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -42,6 +43,29 @@ impl Display for NoInformation {
 }
 
 impl Known {
+    /// The largest change since the first instant of a quantity that has these values in both runs of a
+    /// motion, the kept one first; `terms` is the largest sum of its terms without signs.
+    pub fn change(values: &[[f64; 2]], terms: f64) -> Known {
+        let most = |of: &dyn Fn(&[f64; 2]) -> f64| values.iter().map(of).fold(0.0, |most, x| larger(most, x.abs()));
+        let (value, error) = (most(&|x| x[0] - values[0][0]), most(&|x| x[0] - x[1]));
+        Known { value, error, size: value, reach: terms }
+    }
+
+    /// Whether it is certainly not zero, as a single quantity.
+    pub fn is_certain(&self) -> bool {
+        ask_alone(self.value, Some(self.bound())) == Answer::Apart
+    }
+
+    /// The value as a part of what its round-off is a part of; 0 for 0.
+    pub fn of_terms(&self) -> f64 {
+        if self.value == 0.0 { 0.0 } else { self.value.abs() / self.reach }
+    }
+
+    /// The same, or that round-off where it is more: a smaller part has no digits.
+    pub fn with_digits(&self) -> f64 {
+        larger(self.of_terms(), ROUND_OFF)
+    }
+
     /// The error, with the round-off that both runs may share.
     pub fn bound(&self) -> f64 {
         self.error + ROUND_OFF * self.reach
@@ -80,4 +104,10 @@ pub fn ask(difference: f64, bounds: Option<f64>) -> Answer {
         d if d > CERTAINTY * bounds => Answer::Apart,
         _ => Answer::Within,
     }
+}
+
+/// [`ask()`] of a single quantity, whose error is estimated less well: the difference counts from `ALONE` times
+/// as much on.
+pub fn ask_alone(difference: f64, bounds: Option<f64>) -> Answer {
+    ask(difference / ALONE, bounds)
 }

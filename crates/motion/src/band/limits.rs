@@ -1,12 +1,11 @@
 //! The limits of trust, each with its reason: the only place where they stand.
 
-/// A difference has to be this many times the sum of both errors to count: differences of two runs
-/// underestimate an error by a factor of 9 at most, on 2,352 runs with known errors.
-pub const CERTAINTY: f64 = 10.0;
+/// How many times the sum of both errors a difference has to be to count.
+pub use decision::CERTAINTY;
 
 /// The difference of a single coordinate has to be this many times as large again, because the errors of
 /// single coordinates are estimated less well than the length of all.
-pub const ALONE: f64 = 10.0;
+pub(crate) const ALONE: f64 = 10.0;
 
 /// Relative error above which neither a motion nor a coordinate nor a multiplier is trusted: three digits are
 /// the least that a reader of a table expects.

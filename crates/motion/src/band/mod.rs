@@ -53,8 +53,8 @@ use equations::Outputs;
 pub use estimate::{ErrorEstimate, error_estimate, error_estimates};
 pub use estimate_failure::Doubt;
 pub use invariant_monitor::Breach;
-pub use known::{Answer, Known, NoInformation, ask};
-pub use limits::{ALONE, CERTAINTY, SAME_ESTIMATE, TRUSTED};
+pub use known::{Answer, Known, NoInformation, ask, ask_alone};
+pub use limits::{CERTAINTY, SAME_ESTIMATE, TRUSTED};
 pub(crate) use runs::TwoRuns;
 
 use self::limits::{ROUND_OFF, ROUNDED};
