@@ -6,6 +6,7 @@ mod explore;
 mod identity;
 mod lint;
 mod numbers;
+mod packed;
 mod pages;
 mod python;
 mod site;
@@ -23,7 +24,7 @@ use tools::Outcome;
 /// A chore that is not a check: its name, what it does, and what it does with further words.
 type Chore = (&'static str, &'static str, fn(&[&str]) -> Result<Outcome>);
 
-const CHORES: [Chore; 7] = [
+const CHORES: [Chore; 8] = [
     (
         "address",
         "sets the address of the project (URL, or none), and writes it and the authors to every file that says them",
@@ -33,6 +34,11 @@ const CHORES: [Chore; 7] = [
         "wheel",
         "builds wheel (for glibc 2.28 and newer) and source distribution of the Python module, tests the wheel",
         |_| python::wheel(),
+    ),
+    (
+        "packed",
+        "installs program, library and Python module from what is given away, in an empty folder: seconds, sizes",
+        |_| packed::used(),
     ),
     (
         "site",
