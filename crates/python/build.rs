@@ -1,4 +1,5 @@
-//! The stubs are the one place of docstrings: each goes to a file of its own, which `doc!` of `src/lib.rs` includes.
+//! The stubs are the one place of docstrings: each goes to a file of its own, which `doc!` of `src/lib.rs`
+//! includes.
 
 use std::path::Path;
 use std::{env, fs, io};

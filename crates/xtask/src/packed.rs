@@ -1,5 +1,5 @@
-//! What is given away, as somebody gets it who has no repository: the program and the library from packed crates, the
-//! Python module from its source distribution and from the wheel that this becomes.
+//! What is given away, as somebody gets it who has no repository: the program and the library from packed
+//! crates, the Python module from its source distribution and from the wheel that this becomes.
 
 use std::fmt::Write;
 use std::fs;
@@ -17,8 +17,8 @@ const SAID: &str = "Chetaev: x(2) = 1.405317";
 /// What is asked of the Python module.
 const ASKED: &str = "import deltaq; print(deltaq.built_in('sledge').compare().verdict('chetaev', 'vakonomic'))";
 
-/// Packs everything and uses it in an empty folder: an index that has just these crates stands in for the one of the
-/// world. Third parties come from where cargo and pip get them.
+/// Packs everything and uses it in an empty folder: an index that has just these crates stands in for the one
+/// of the world. Third parties come from where cargo and pip get them.
 pub(crate) fn used() -> Result<Outcome> {
     python::empty(target()?.join("package"))?;
     dependencies::package()?;
@@ -82,8 +82,8 @@ pub(crate) fn used() -> Result<Outcome> {
     Ok(Outcome::Passed(told))
 }
 
-/// Unpacks what was packed, each package in a folder of its name, and tells cargo that the index has these: how many,
-/// and their size in bytes.
+/// Unpacks what was packed, each package in a folder of its name, and tells cargo that the index has these:
+/// how many, and their size in bytes.
 fn unpacked(folder: &Path) -> Result<(usize, u64)> {
     let (mut count, mut size, mut index) = (0, 0, String::from("[patch.crates-io]\n"));
     let ending = format!("-{}.crate", env!("CARGO_PKG_VERSION"));
