@@ -2,14 +2,13 @@
 
 import ast
 import re
+from copy import copy
 from pathlib import Path
 
 
 def signature(node, name):
     """A function as one writes its call."""
-    arguments = ast.unparse(node.args)
-    for first in ("self", "cls"):
-        arguments = arguments.removeprefix(first).removeprefix(", ")
+    arguments = re.sub(r"^(self|cls)(: \w+)?(, |$)", "", ast.unparse(node.args))
     returned = f" -> {ast.unparse(node.returns)}" if node.returns and node.name != "__new__" else ""
     return f"{name}({arguments}){returned}"
 
@@ -68,6 +67,15 @@ def members(node):
     return page
 
 
+def called(member, shared):
+    """A member of a class; where it is a function of another file by name, that function under its name here."""
+    if not isinstance(member, ast.Assign):
+        return member
+    function = copy(shared[ast.unparse(member.value)])
+    function.name = member.targets[0].id
+    return function
+
+
 def class_page(node):
     made = next((m for m in node.body if isinstance(m, ast.FunctionDef) and m.name == "__new__"), None)
     head = signature(made, node.name) if made else node.name
@@ -79,6 +87,10 @@ def pages(package):
     """Pages of the package in this folder by their names: what it is; a class each; all functions; all errors."""
     trees = {path: ast.parse(path.read_text("utf-8")) for path in sorted(Path(package).glob("*.py*"))}
     front = trees[Path(package) / "__init__.py"]
+    shared = {f"{path.stem}.{n.name}": n for path, tree in trees.items() for n in tree.body if isinstance(n, ast.FunctionDef)}
+    for owner in trees[Path(package) / "_native.pyi"].body:
+        if isinstance(owner, ast.ClassDef):
+            owner.body = [called(member, shared) for member in owner.body]
     places = {n.name: n for tree in trees.values() for n in tree.body if isinstance(n, ast.FunctionDef | ast.ClassDef)}
     listed = next(n.value for n in front.body if isinstance(n, ast.Assign) and n.targets[0].id == "__all__")
     nodes = [places[name] for name in sorted(ast.literal_eval(listed)) if name in places]

@@ -92,7 +92,7 @@ fn the_page_of_a_sweep_counts_its_rows_and_draws_its_columns() {
         "4.0,,,,,,,,,\"no motion\"",
         "5.0,different,1.5,8.0,5e-9,none proved,3,,2.0,",
     ];
-    let sledge = catalogue::find("sledge", &[]).expect("a scene");
+    let sledge = scene::catalogue::find("sledge", &[]).expect("a scene");
     let scene = scene::Scene { name: "s".into(), title: "A sweep".into(), ..sledge };
     let files = |rows: &[&str]| {
         let ranges = [("k".to_string(), 0.0, 5.0, rows.len())];

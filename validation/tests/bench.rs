@@ -1,4 +1,4 @@
-//! `deltaq bench`: what is measured is right, and what fails is listed.
+//! `evidence bench`: what is measured is right, and what fails is listed.
 
 use bench::{Effort, KeptReferences, ensemble_throughput, measure, prepare, references};
 use bench::{bench_files, bench_json};
@@ -12,7 +12,7 @@ fn effort(max_steps: usize) -> Effort {
 
 #[test]
 fn every_formulation_is_measured_by_every_method() {
-    let bench = measure(prepare("sledge", &[], &KeptReferences::default()).unwrap(), &effort(20_000), |_| ()).unwrap();
+    let bench = measure(prepare("sledge", &KeptReferences::default()).unwrap(), &effort(20_000), |_| ()).unwrap();
     assert!(bench.entries.len() >= 6);
     for form in motion::FORMS {
         assert!(bench.entries.iter().any(|e| e.formulation == form.name), "{} is not measured", form.name);
@@ -32,7 +32,7 @@ fn every_formulation_is_measured_by_every_method() {
 
 #[test]
 fn failures_are_listed_with_their_cause() {
-    let bench = measure(prepare("sledge", &[], &KeptReferences::default()).unwrap(), &effort(20), |_| ()).unwrap();
+    let bench = measure(prepare("sledge", &KeptReferences::default()).unwrap(), &effort(20), |_| ()).unwrap();
     let files = bench_files(&[bench], &[]).unwrap();
     let failures = &files.iter().find(|f| f.path.ends_with("failures.csv")).unwrap().text;
     assert!(failures.contains("more than 20 steps"), "{failures}");
@@ -53,7 +53,7 @@ fn ensembles_are_measured_and_reported_with_what_they_agree_to() {
     let text = |name: &str| files.iter().find(|f| f.path.ends_with(name)).expect(name).text.clone();
     let table = text("ensembles.csv");
     assert_eq!(table.lines().filter(|line| line.contains(",37,")).count(), 3, "{table}");
-    assert!(text("error-vs-time.md").contains("`deltaq bench --ensemble 1e-10`"));
+    assert!(text("error-vs-time.md").contains("`evidence bench --ensemble 1e-10`"));
     assert!(bench_files(&[], &[]).unwrap().iter().all(|f| !f.text.contains("Many motions")));
 }
 
@@ -63,7 +63,7 @@ fn ensembles_are_measured_and_reported_with_what_they_agree_to() {
 fn kept_references_are_those_of_the_equations_and_a_tenth_is_found_again() {
     let names: Vec<&str> = scene::catalogue::SCENES.iter().map(|(name, _)| *name).collect();
     if std::env::var("REFERENCES").is_ok_and(|asked| asked == "write") {
-        let found = KeptReferences::behind(&references(&names, &[], &KeptReferences::default(), true).unwrap());
+        let found = KeptReferences::behind(&references(&names, &KeptReferences::default(), true).unwrap());
         let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("..").join(REFERENCES);
         std::fs::write(path, found.text()).unwrap();
         return;
@@ -71,7 +71,7 @@ fn kept_references_are_those_of_the_equations_and_a_tenth_is_found_again() {
     let kept = kept_references().unwrap();
     let tenth = |i: usize| i % 10 == 7;
     let others = kept.only(|i| !tenth(i));
-    let found = KeptReferences::behind(&references(&names, &[], &others, true).unwrap());
+    let found = KeptReferences::behind(&references(&names, &others, true).unwrap());
     let formulas = |of: &KeptReferences| -> Vec<(String, u64)> {
         of.motions().iter().map(|motion| (motion.name.clone(), motion.digests[0])).collect()
     };

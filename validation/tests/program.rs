@@ -23,9 +23,10 @@ const IVP: &str = concat!(env!("CARGO_TARGET_TMPDIR"), "/ivp");
 const FILMS: &str = concat!(env!("CARGO_TARGET_TMPDIR"), "/films");
 
 /// One call of every command, and of none, but of `reports`, which is the whole main job.
-const ANSWERS: [&[&str]; 9] = [
+const ANSWERS: [&[&str]; 10] = [
     &["--scenes", "bowl", "--quiet", "--out", REPORTS],
     &["random", "--count", "1", "--quiet"],
+    &["bench", "bowl", "--seconds", "0.0001", "--quiet"],
     &["benchmark", "--systems", "particle", "--starts", "1", "--quiet", "--out", TABLES],
     &["films", "--scenes", "appell-hamel", "--quiet", "--out", FILMS],
     &["ivp", "--quiet", "--out", IVP],

@@ -17,7 +17,6 @@ use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use clap_complete::Shell;
 
-use bench::MEMBERS;
 use comparison::Fits;
 pub use connect::ConnectArguments;
 pub use design::DesignArguments;
@@ -102,8 +101,6 @@ pub enum Command {
     Fit(FitArguments),
     /// Plan the recording that separates two formulations best, or determines a number best.
     Design(DesignArguments),
-    /// Measure error against run time, by every method at every tolerance.
-    Bench(BenchArguments),
     /// Print completions for a shell.
     Completions {
         /// The shell.
@@ -241,26 +238,6 @@ pub struct ProveArguments {
     /// Output format of the answer; a certificate is JSON.
     #[arg(long, value_enum, default_value_t = TextOrJson::Text)]
     pub format: TextOrJson,
-}
-
-/// `deltaq bench`.
-#[derive(Args, Debug)]
-pub struct BenchArguments {
-    /// Built-in names or paths of scene files; every built-in scene if left out.
-    pub scenes: Vec<String>,
-    /// Seconds over which the runs of one setting are repeated; the least time counts.
-    #[arg(long, default_value_t = 0.05)]
-    pub seconds: f64,
-    #[command(flatten)]
-    pub set: Overrides,
-    /// Measure throughput of ensembles of sledges instead, at this tolerance: alone, in lanes, on all cores.
-    #[arg(long, value_name = "TOLERANCE", num_args = 0..=1, default_missing_value = "1e-10", conflicts_with_all = ["scenes", "overrides", "out"])]
-    pub ensemble: Option<f64>,
-    /// Members of each of these ensembles.
-    #[arg(long, default_value_t = MEMBERS as u16, requires = "ensemble", value_parser = clap::value_parser!(u16).range(1..))]
-    pub members: u16,
-    #[command(flatten)]
-    pub output: Output,
 }
 
 /// Output formats.

@@ -6,7 +6,6 @@
 //! (`judge`, `fit`), or if nothing can be told (`review`). 4 if results contradict each other, 5 if a
 //! computation breaks off: both are faults of the program.
 
-mod bench_command;
 mod cli;
 mod columns;
 mod compare_command;
@@ -54,7 +53,6 @@ fn run(cli: Cli) -> Result<Answer> {
         Command::Linearize(arguments) => linearize_command::run(&arguments)?,
         Command::Compare(arguments) => compare_command::run(&arguments, quiet)?,
         Command::Explore(arguments) => explore_command::run(&arguments)?,
-        Command::Bench(arguments) => bench_command::run(&arguments, quiet)?,
         Command::Completions { shell } => {
             let mut text = Vec::new();
             clap_complete::generate(shell, &mut Cli::command(), "deltaq", &mut text);

@@ -8,7 +8,7 @@ use crate::support::{all_may_be_left, answer, command, commands, elsewhere, none
 const BAD: &str = concat!(env!("CARGO_TARGET_TMPDIR"), "/bad.toml");
 
 /// One call of every command.
-const ANSWERS: [&[&str]; 21] = [
+const ANSWERS: [&[&str]; 20] = [
     &["new"],
     &["check", "sledge"],
     &["solve", "sledge", "-f", "chetaev", "--times", "0,1"],
@@ -32,7 +32,6 @@ const ANSWERS: [&[&str]; 21] = [
         "--starts=1",
     ],
     &["design", "heisenberg", "--tell=vakonomic,chetaev", "--film=9Hz,1mm,1s", "--free=x',y'", "--starts=1"],
-    &["bench", "bowl", "--set", "duration=0.01", "--seconds", "0.0001", "--quiet"],
     &["completions", "bash"],
     &["man"],
     &["help", "solve"],
@@ -176,7 +175,6 @@ fn there_is_one_rule_for_every_out() {
         &["compare", "bowl", "--set", "duration=0.1", "--out"][..],
         &["compare", "sledge", "--sweep", "g=1:2:2", "--out"],
         &["linearize", "bicycle", "--sweep", "v=4:6:3", "--out"],
-        &["bench", "bowl", "--out"],
         &["integrals", "suslov", "--certificates"],
         &["fit", "sledge", "film.csv", "--free=x", "--pictures"],
     ] {

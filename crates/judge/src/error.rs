@@ -6,6 +6,7 @@ use symbolic::CompileError;
 /// A judgement that there is not.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[expect(missing_docs, reason = "the messages say what fields are")]
+#[non_exhaustive]
 pub enum JudgeError {
     /// The table cannot be read.
     #[error(transparent)]

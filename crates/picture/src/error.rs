@@ -3,6 +3,7 @@
 /// Why a picture cannot be drawn.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[expect(missing_docs, reason = "the messages say what fields are")]
+#[non_exhaustive]
 pub enum PictureError {
     /// No panel, or no point that is left to set the range of an axis that has none of its own.
     #[error(

@@ -10,6 +10,8 @@ import tomllib
 from pathlib import Path
 
 REQUIRES = ["maturin==1.16.0"]
+# maturin would warn that it is not the backend: it is asked by this one
+os.environ["MATURIN_NO_MISSING_BUILD_BACKEND_WARNING"] = "1"
 
 
 def wanted() -> str:

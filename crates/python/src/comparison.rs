@@ -158,7 +158,7 @@ kept!(Comparison: system integrability runs pairs fits decided contradictions);
 
 #[pymethods]
 impl Comparison {
-    #[doc = include_str!("../docs/Comparison.pair.txt")]
+    #[doc = doc!("Comparison.pair")]
     #[pyo3(signature = (a, b))]
     fn pair(&self, py: Python<'_>, a: &str, b: &str) -> PyResult<Py<Pair>> {
         let (one, two) = (self.label(a)?, self.label(b)?);
@@ -167,7 +167,7 @@ impl Comparison {
         found.ok_or_else(|| PyKeyError::new_err(format!("{one} and {two} were not compared")))
     }
 
-    #[doc = include_str!("../docs/Comparison.verdict.txt")]
+    #[doc = doc!("Comparison.verdict")]
     #[pyo3(signature = (a, b))]
     fn verdict(&self, py: Python<'_>, a: &str, b: &str) -> PyResult<String> {
         Ok(self.pair(py, a, b)?.get().verdict.clone())

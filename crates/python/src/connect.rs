@@ -104,7 +104,7 @@ impl Connection {
 
 #[pymethods]
 impl System {
-    #[doc = include_str!("../docs/System.connect.txt")]
+    #[doc = doc!("System.connect")]
     #[expect(clippy::too_many_arguments, reason = "named in Python, and most of them left out")]
     #[pyo3(signature = (
         to, at=None, formulation="vakonomic", *, removal=None, mu0=None, constants=None, starts=60, tolerance=1e-11,

@@ -206,10 +206,7 @@ impl Columns {
     }
 }
 
-/// Motions of m members of one system: different starts or parameters, one formulation.
-///
-/// `times` are those asked for; all arrays belong to members and times. What a member did not reach is NaN:
-/// `reached` counts the times that it did, `status` and `cause` say why.
+#[doc = doc!("Ensemble")]
 #[pyclass(frozen, get_all, module = "deltaq")]
 pub(crate) struct Ensemble {
     /// The system that moves.

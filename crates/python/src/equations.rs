@@ -21,10 +21,7 @@ use crate::shared::Shared;
 use crate::system::System;
 use crate::{arguments, background, errors};
 
-/// The equations of motion y' = F(t, y) of a system under one formulation.
-///
-/// `states` names the states y, `constants` what (q0, v0) leaves open. All callables take one state, t a
-/// number and y of shape (m,), or k of them at once, y of shape (k, m) with t a number or of shape (k,).
+#[doc = doc!("Equations")]
 #[pyclass(frozen, module = "deltaq")]
 pub(crate) struct Equations {
     ready: Shared<Prepared>,
@@ -190,87 +187,37 @@ impl Equations {
         })
     }
 
-    /// The equations as a file of C99: rates and outputs without allocation, the start, the parameters.
-    ///
-    /// Returns
-    /// -------
-    /// str
-    ///     The file.
-    ///
-    /// Raises
-    /// ------
-    /// SolveError
-    ///     If unknowns of the instant are not found by linear equations.
+    #[doc = doc!("Equations.to_c")]
     #[pyo3(signature = ())]
     fn to_c(&self, py: Python<'_>) -> PyResult<String> {
         self.code(py, Language::C)
     }
 
-    /// The equations as a module of Python: rates and outputs in NumPy, for one state or many at once.
-    ///
-    /// Returns
-    /// -------
-    /// str
-    ///     The module.
-    ///
-    /// Raises
-    /// ------
-    /// SolveError
-    ///     If unknowns of the instant are not found by linear equations.
+    #[doc = doc!("Equations.to_numpy")]
     #[pyo3(signature = ())]
     fn to_numpy(&self, py: Python<'_>) -> PyResult<String> {
         self.code(py, Language::Numpy)
     }
 
-    /// The module of `to_numpy` for JAX: jit, grad and vmap go through rates and outputs.
-    ///
-    /// Returns
-    /// -------
-    /// str
-    ///     The module.
-    ///
-    /// Raises
-    /// ------
-    /// SolveError
-    ///     If unknowns of the instant are not found by linear equations.
+    #[doc = doc!("Equations.to_jax")]
     #[pyo3(signature = ())]
     fn to_jax(&self, py: Python<'_>) -> PyResult<String> {
         self.code(py, Language::Jax)
     }
 
-    /// The equations as a module of Python: rates and outputs for one state, compiled by Numba.
-    ///
-    /// Returns
-    /// -------
-    /// str
-    ///     The module.
-    ///
-    /// Raises
-    /// ------
-    /// SolveError
-    ///     If unknowns of the instant are not found by linear equations.
+    #[doc = doc!("Equations.to_numba")]
     #[pyo3(signature = ())]
     fn to_numba(&self, py: Python<'_>) -> PyResult<String> {
         self.code(py, Language::Numba)
     }
 
-    /// The equations as a module of Python: RATES, OUTPUTS, MATRIX, RIGHT as matrices of SymPy.
-    ///
-    /// Returns
-    /// -------
-    /// str
-    ///     The module.
-    ///
-    /// Raises
-    /// ------
-    /// SolveError
-    ///     If unknowns of the instant are not found by linear equations.
+    #[doc = doc!("Equations.to_sympy")]
     #[pyo3(signature = ())]
     fn to_sympy(&self, py: Python<'_>) -> PyResult<String> {
         self.code(py, Language::Sympy)
     }
 
-    #[doc = include_str!("../docs/Equations.initial_state.txt")]
+    #[doc = doc!("Equations.initial_state")]
     #[pyo3(signature = (constants=None))]
     fn initial_state<'py>(&self, py: Python<'py>, constants: Option<Bound<'_, PyAny>>) -> Array<'py> {
         let rule = arguments::constants(constants.as_ref(), None)?;
@@ -288,7 +235,7 @@ impl Equations {
         array(py, start, None, &[width])
     }
 
-    #[doc = include_str!("../docs/Equations.rates.txt")]
+    #[doc = doc!("Equations.rates")]
     #[pyo3(signature = (t, y, parameters=None))]
     fn rates<'py>(&self, py: Python<'py>, t: Floats<'_>, y: Floats<'_>, parameters: Option<Numbers>) -> Array<'py> {
         let (width, at) = (self.states.len(), self.at(&t, &y)?);
@@ -296,7 +243,7 @@ impl Equations {
         array(py, rows, at.count, &[width])
     }
 
-    #[doc = include_str!("../docs/Equations.jacobian.txt")]
+    #[doc = doc!("Equations.jacobian")]
     #[pyo3(signature = (t, y, parameters=None))]
     fn jacobian<'py>(&self, py: Python<'py>, t: Floats<'_>, y: Floats<'_>, parameters: Option<Numbers>) -> Array<'py> {
         let (width, at) = (self.states.len(), self.at(&t, &y)?);
@@ -304,7 +251,7 @@ impl Equations {
         array(py, rows, at.count, &[width, width])
     }
 
-    #[doc = include_str!("../docs/Equations.outputs.txt")]
+    #[doc = doc!("Equations.outputs")]
     #[pyo3(signature = (t, y))]
     fn outputs(&self, py: Python<'_>, t: Floats<'_>, y: Floats<'_>) -> PyResult<Outputs> {
         let at = self.at(&t, &y)?;
@@ -321,7 +268,7 @@ impl Equations {
         Outputs::new(py, &rows, self.dimension, &names, at.count)
     }
 
-    #[doc = include_str!("../docs/Equations.acceleration.txt")]
+    #[doc = doc!("Equations.acceleration")]
     #[pyo3(signature = (t, q, v, mu=None))]
     fn acceleration<'py>(
         &self,

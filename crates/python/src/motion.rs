@@ -105,11 +105,7 @@ impl Asked<'_> {
     }
 }
 
-/// One motion: the trajectory of a system under one formulation, with its error estimate.
-///
-/// `times` are those asked for; all arrays belong to them. What the motion did not reach is NaN: `reached`
-/// counts the times that it did, `status` and `cause` say why. `at(t)` gives any other time; a motion that
-/// was pickled or copied is integrated anew for it, once.
+#[doc = doc!("Motion")]
 #[pyclass(frozen, module = "deltaq")]
 pub(crate) struct Motion {
     /// None of one that was pickled, until it is read off.
@@ -316,7 +312,7 @@ impl Motion {
 
 #[pymethods]
 impl Motion {
-    #[doc = include_str!("../docs/Motion.at.txt")]
+    #[doc = doc!("Motion.at")]
     #[pyo3(signature = (t))]
     fn at(&self, py: Python<'_>, t: Floats<'_>) -> PyResult<Outputs> {
         let (t, start, end) = (times("t", &t)?, self.start, self.end);

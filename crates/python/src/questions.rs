@@ -25,7 +25,7 @@ use crate::{arguments, background, errors};
 
 #[pymethods]
 impl System {
-    #[doc = include_str!("../docs/System.equations.txt")]
+    #[doc = doc!("System.equations")]
     #[pyo3(signature = (formulation="chetaev", removal=None, *, mu0=None, constants=None))]
     fn equations(
         slf: &Bound<'_, Self>,
@@ -38,7 +38,7 @@ impl System {
         Equations::derived(slf, (arguments::formulation(formulation)?, removal), given)
     }
 
-    #[doc = include_str!("../docs/System.linearize.txt")]
+    #[doc = doc!("System.linearize")]
     #[expect(clippy::too_many_arguments, reason = "named in Python, and most of them left out")]
     #[pyo3(signature = (formulation="chetaev", *, free=None, at=None, find=false, removal=None, mu0=None, constants=None))]
     fn linearize(
@@ -60,7 +60,7 @@ impl System {
         Linearization::about(py, scene, choice, free.unwrap_or_default(), (at, find))
     }
 
-    #[doc = include_str!("../docs/System.linearize_over.txt")]
+    #[doc = doc!("System.linearize_over")]
     #[expect(clippy::too_many_arguments, reason = "named in Python, and most of them left out")]
     #[pyo3(signature = (over, formulation="chetaev", *, free=None, find=false, removal=None, mu0=None, constants=None))]
     fn linearize_over(
@@ -85,7 +85,7 @@ impl System {
         LinearizationSweep::over(slf, scene, choice, (&name, values), (free.unwrap_or_default(), find))
     }
 
-    #[doc = include_str!("../docs/System.solve.txt")]
+    #[doc = doc!("System.solve")]
     #[expect(clippy::too_many_arguments, reason = "named in Python, and most of them left out")]
     #[pyo3(signature = (
         formulation="chetaev", times=None, *, parameters=None, start=None, removal=None, mu0=None, constants=None,
@@ -136,7 +136,7 @@ impl System {
         Motion::new(slf, sampled, &asked)
     }
 
-    #[doc = include_str!("../docs/System.ensemble.txt")]
+    #[doc = doc!("System.ensemble")]
     #[expect(clippy::too_many_arguments, reason = "named in Python, and most of them left out")]
     #[pyo3(signature = (
         formulation="chetaev", times=None, *, vary, removal=None, mu0=None, constants=None, tolerance=1e-11, project=true,
@@ -175,7 +175,7 @@ impl System {
         Ensemble::new(slf, integrated.map_err(errors::solve)?)
     }
 
-    #[doc = include_str!("../docs/System.compare.txt")]
+    #[doc = doc!("System.compare")]
     #[expect(clippy::too_many_arguments, reason = "named in Python, and most of them left out")]
     #[pyo3(signature = (
         formulations=None, *, extent="answer", decision=true, fits="undecided", tolerance=1e-11, max_steps=1_000_000,

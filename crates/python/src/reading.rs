@@ -10,7 +10,7 @@ use crate::arguments::{Numbers, unknown};
 use crate::errors;
 use crate::system::{Overrides, System};
 
-#[doc = include_str!("../docs/load.txt")]
+#[doc = doc!("load")]
 #[pyfunction]
 #[pyo3(signature = (path, overrides=None))]
 pub(crate) fn load(py: Python<'_>, path: PathBuf, overrides: Option<Numbers>) -> PyResult<System> {
@@ -21,7 +21,7 @@ pub(crate) fn load(py: Python<'_>, path: PathBuf, overrides: Option<Numbers>) ->
     System::read(py, ("", Some(&path)), text, overrides)
 }
 
-#[doc = include_str!("../docs/parse.txt")]
+#[doc = doc!("parse")]
 #[pyfunction]
 #[pyo3(signature = (text, overrides=None, *, name="scene"))]
 pub(crate) fn parse(py: Python<'_>, text: &str, overrides: Option<Numbers>, name: &str) -> PyResult<System> {
@@ -29,7 +29,7 @@ pub(crate) fn parse(py: Python<'_>, text: &str, overrides: Option<Numbers>, name
     System::read(py, (name, None), text.into(), overrides)
 }
 
-#[doc = include_str!("../docs/built_in.txt")]
+#[doc = doc!("built_in")]
 #[pyfunction]
 #[pyo3(signature = (name, overrides=None))]
 pub(crate) fn built_in(py: Python<'_>, name: &str, overrides: Option<Numbers>) -> PyResult<System> {

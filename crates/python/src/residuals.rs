@@ -15,13 +15,7 @@ use crate::shared::Shared;
 use crate::system::System;
 use crate::{arguments, errors};
 
-/// Residuals between a motion and data at k times, as a function of numbers p of its system: for `scipy.optimize`.
-///
-/// Residual i of a column is (value at time i - data)/sigma; columns follow one another, so that there are
-/// as many residuals as columns times k. They have no unit where `sigma` has that of its column.
-///
-/// A call never raises for numbers: at times that the motion does not reach residuals are `penalty`, with
-/// derivatives zero, and `ended` says why. Numbers that are not a start give that at all times.
+#[doc = doc!("Residuals")]
 #[pyclass(frozen, module = "deltaq")]
 pub(crate) struct Residuals {
     model: Shared<Model>,
@@ -159,7 +153,7 @@ impl Residuals {
         array(py, values, None, &[count])
     }
 
-    #[doc = include_str!("../docs/Residuals.jac.txt")]
+    #[doc = doc!("Residuals.jac")]
     #[pyo3(signature = (p))]
     fn jac<'py>(&self, py: Python<'py>, p: Floats<'py>) -> Array<'py> {
         let reading = self.read(py, &p, |model, p| model.derivatives(p))?;

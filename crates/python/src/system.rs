@@ -20,7 +20,7 @@ use crate::shared::Shared;
 use crate::state::State;
 use crate::{background, errors};
 
-#[doc = include_str!("../docs/System.txt")]
+#[doc = doc!("System")]
 #[pyclass(frozen, module = "deltaq")]
 pub(crate) struct System {
     scene: Shared<Scene>,
@@ -297,9 +297,7 @@ impl System {
         self.scene.with(|scene| scene.system.breakpoints.clone())
     }
 
-    /// Names of removals for the removed-constraint formulation: those written by hand, then automatic ones.
-    ///
-    /// RemovalError where there is none.
+    #[doc = doc!("System.removals")]
     #[getter]
     fn removals(&self, py: Python<'_>) -> PyResult<Vec<String>> {
         let scene = self.scene()?;
@@ -315,7 +313,7 @@ impl System {
         Ok(found.map_err(errors::solve)?.to_string())
     }
 
-    #[doc = include_str!("../docs/System.replace.txt")]
+    #[doc = doc!("System.replace")]
     #[pyo3(signature = (overrides=None, /, **numbers))]
     fn replace(
         &self,
@@ -352,18 +350,13 @@ impl System {
         Ok((slf.py().import("deltaq")?.getattr("_read_again")?, arguments))
     }
 
-    /// The system as the text of a scene file, with every start value as a number.
-    ///
-    /// Returns
-    /// -------
-    /// str
-    ///     The text; `parse` of it gives an equal system.
+    #[doc = doc!("System.to_toml")]
     #[pyo3(signature = ())]
     fn to_toml(&self) -> PyResult<String> {
         self.scene.with(|scene| scene.to_toml())
     }
 
-    #[doc = include_str!("../docs/System.constraint.txt")]
+    #[doc = doc!("System.constraint")]
     #[pyo3(signature = (t, q, v))]
     fn constraint<'py>(&self, py: Python<'py>, t: Floats<'_>, q: Floats<'_>, v: Floats<'_>) -> Array<'py> {
         let points = Points::read([t, q, v], self.dimension()?)?;
@@ -374,7 +367,7 @@ impl System {
         array(py, apart(py, || points.values(program))?, points.count, &[width])
     }
 
-    #[doc = include_str!("../docs/System.mass.txt")]
+    #[doc = doc!("System.mass")]
     #[pyo3(signature = (t, q, v))]
     fn mass<'py>(&self, py: Python<'py>, t: Floats<'_>, q: Floats<'_>, v: Floats<'_>) -> Array<'py> {
         let n = self.dimension()?;

@@ -78,7 +78,7 @@ fn started_from<T>(
 
 #[pymethods]
 impl Equations {
-    #[doc = include_str!("../docs/Equations.integrate.txt")]
+    #[doc = doc!("Equations.integrate")]
     #[expect(clippy::too_many_arguments, reason = "named in Python, and most of them left out")]
     #[pyo3(signature = (times, *, y0=None, t0=None, parameters=None, constants=None, mu0=None, method="auto", tolerance=1e-11, project=true, max_steps=1_000_000, max_step=None, time_limit=None))]
     fn integrate(

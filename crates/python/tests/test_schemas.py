@@ -17,7 +17,7 @@ ROOT = Path(__file__).resolve().parents[3]
 PROGRAM = Path(sys.prefix).parent / "release" / "deltaq"
 EVIDENCE = PROGRAM.with_name("evidence")
 # what the evidence answers, and not the tool
-OF_EVIDENCE = {"random", "random-system", "stability", "scaling", "job"}
+OF_EVIDENCE = {"random", "random-system", "stability", "scaling", "job", "bench", "bench-ensemble"}
 SCHEMAS = {path.stem: json.loads(path.read_text("utf-8")) for path in (ROOT / "docs" / "schemas").glob("*.json")}
 REGISTRY = Registry().with_contents((schema["$id"], schema) for schema in SCHEMAS.values())
 # by kind: calls with their exit codes; FOLDER is an empty one

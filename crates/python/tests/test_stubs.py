@@ -3,6 +3,7 @@
 import ast
 import inspect
 import re
+from operator import attrgetter
 from pathlib import Path
 
 import pytest
@@ -71,7 +72,11 @@ def test_classes(name):
     body = {node.name: node for node in CLASSES[name].body if isinstance(node, ast.FunctionDef)}
     # what only can be read; an exception has its attributes as an instance
     values = {node.target.id for node in CLASSES[name].body if isinstance(node, ast.AnnAssign) and "Final" in ast.unparse(node)}
-    assert public(body) | values == public(vars(cls))
+    # what is written in Python stands there with its signature, and here by name
+    shared = {node.targets[0].id: ast.unparse(node.value) for node in CLASSES[name].body if isinstance(node, ast.Assign)}
+    for member, function in shared.items():
+        assert getattr(cls, member) is attrgetter(function)(deltaq), f"{name}.{member}"
+    assert public(body) | values | public(shared) == public(vars(cls))
     for member in public(body) | values:
         assert inspect.getdoc(getattr(cls, member)), f"{name}.{member} is not described"
         assert inspect.isdatadescriptor(getattr(cls, member)) == (member in values)

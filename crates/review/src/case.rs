@@ -42,7 +42,7 @@ impl<C: Number> Stack<C> {
         let slopes: Vec<C> = self.slopes.residual.iter().enumerate().map(|(i, &x)| add(i, x)).collect();
         let rows = slopes.len() / self.unknowns.max(1);
         let mut slopes: Vec<Vec<C>> = slopes.chunks(rows.max(1)).map(<[C]>::to_vec).collect();
-        eliminate(&mut slopes, 0, rows).len() == self.unknowns
+        eliminate(&mut slopes, rows).len() == self.unknowns
     }
 }
 

@@ -6,6 +6,7 @@ mod explore;
 mod identity;
 mod lint;
 mod numbers;
+mod packed;
 mod pages;
 mod python;
 mod references;
@@ -24,7 +25,7 @@ use tools::Outcome;
 /// A chore that is not a check: its name, what it does, and what it does with further words.
 type Chore = (&'static str, &'static str, fn(&[&str]) -> Result<Outcome>);
 
-const CHORES: [Chore; 7] = [
+const CHORES: [Chore; 9] = [
     (
         "address",
         "sets the address of the project (URL, or none), and writes it and the authors to every file that says them",
@@ -36,11 +37,17 @@ const CHORES: [Chore; 7] = [
         |_| python::wheel(),
     ),
     (
+        "packed",
+        "installs program, library and Python module from what is given away, in an empty folder: seconds, sizes",
+        |_| packed::used(),
+    ),
+    (
         "site",
         "builds the site of documents, reports and references into target/site, follows its links, looks at it",
         |_| site::build(),
     ),
     ("explore", "builds the page to explore scenes, writes reports/explore.html", |_| explore::write()),
+    ("firefox", "tries the page to explore scenes in Firefox, where it is installed", |_| explore::firefox()),
     (
         "growth",
         "moves sliders of a fresh page for five minutes, or in ROUNDS, then times frames; fails if it grows or slows",

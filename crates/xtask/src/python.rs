@@ -99,6 +99,16 @@ pub(crate) fn wheel() -> Result<Outcome> {
     Ok(Outcome::Passed(format!(", {}, in {:.0} s", made.join(", "), clock.elapsed().as_secs_f64())))
 }
 
+/// The source distribution, in this folder.
+pub(crate) fn source_distribution(folder: &Path) -> Result<PathBuf> {
+    let mut maturin = outside(environment()?);
+    maturin.args(["-m", "maturin", "sdist", "--quiet", "--out"]).arg(folder).current_dir(CRATE);
+    succeed(maturin.env("MATURIN_NO_MISSING_BUILD_BACKEND_WARNING", "1"))?;
+    let files = std::fs::read_dir(folder)?.filter_map(|file| file.ok().map(|file| file.path()));
+    let mut packed = files.filter(|path| path.extension().is_some_and(|ending| ending == "gz"));
+    packed.next().context("maturin made no source distribution")
+}
+
 /// Prints what auditwheel finds in a wheel: it has to be symbols of [`GLIBC`] or of an older one.
 fn audited(python: &Path, wheel: &Path) -> Result<()> {
     let output = outside(python).args(["-m", "auditwheel", "show"]).arg(wheel).output().context("auditwheel")?;
@@ -118,7 +128,7 @@ fn glibc(text: &str) -> Option<u32> {
 }
 
 /// The folder, with nothing in it.
-fn empty(folder: PathBuf) -> Result<PathBuf> {
+pub(crate) fn empty(folder: PathBuf) -> Result<PathBuf> {
     if folder.exists() {
         std::fs::remove_dir_all(&folder).with_context(|| folder.display().to_string())?;
     }
@@ -226,7 +236,7 @@ fn interpreter_of(environment: &Path) -> PathBuf {
 }
 
 /// Name and version of the first Python that is new enough.
-fn interpreter() -> Result<(&'static str, (u32, u32))> {
+pub(crate) fn interpreter() -> Result<(&'static str, (u32, u32))> {
     let mut found = Vec::new();
     for name in NAMES {
         let ask = outside(name).args(["-c", "import sys; print(*sys.version_info[:2])"]).output();

@@ -11,8 +11,17 @@ use crate::{explore, python};
 const SCRIPTS: &str = "docs/site";
 
 /// Packages whose reference is not for users.
-const EVIDENCE: [&str; 7] =
-    ["deltaq-random", "deltaq-referees", "deltaq-validation", "engine", "python", "tests", "xtask"];
+const EVIDENCE: [&str; 9] = [
+    "deltaq-bench",
+    "deltaq-random",
+    "deltaq-reference",
+    "deltaq-referees",
+    "deltaq-validation",
+    "engine",
+    "python",
+    "tests",
+    "xtask",
+];
 
 /// Measured pages that are older than their code, a line each: they do not belong to the site.
 fn older_pages() -> Result<String> {

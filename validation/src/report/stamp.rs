@@ -30,7 +30,7 @@ pub const PAGES: [(&str, &[&str]); 11] = [
     (
         "measured/error-vs-time.md",
         &[
-            "crates/bench/src",
+            "validation/bench/src",
             "crates/symbolic/src",
             "crates/equations/src",
             "crates/integrate/src",

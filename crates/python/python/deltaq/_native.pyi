@@ -5,10 +5,7 @@ from typing import Any, Final, Literal, TypeAlias, final, overload
 import numpy as np
 import numpy.typing as npt
 
-from ._code import Functions
-from ._films import FilmFit
-from ._proof import Proof
-from ._results import Design, Integrals
+from . import _animate, _code, _columns, _films, _notebook, _plots, _proof, _tables
 
 _Array: TypeAlias = npt.NDArray[np.float64]
 _Floats: TypeAlias = npt.ArrayLike
@@ -503,194 +500,10 @@ class System:
         SolveError
             If a start is not a steady motion.
         """
-    def prove(self, almost_every_start: bool = False) -> Proof:
-        """Proves that no multipliers mu0 make the vakonomic motion Chetaev's.
-
-        Parameters
-        ----------
-        almost_every_start : bool
-            For almost every start instead of the system's own.
-
-        Returns
-        -------
-        Proof
-            The certificate, or why there is none.
-
-        Raises
-        ------
-        SolveError
-            If a motion has no start.
-
-        Examples
-        --------
-        >>> sledge.prove().certificate["order"] >= 1
-        True
-        """
-    def integrals(self, formulation: str = "chetaev", degree: int = 2, names: Iterable[str] = ()) -> Integrals:
-        """Which invariant measure and first integrals there are: printed, counted, or proved not to exist.
-
-        Parameters
-        ----------
-        formulation : str
-            Its own equations are used in the ansatz; measures and numbers of integrals are answered for "chetaev" alone.
-        degree : int
-            The highest degree in the velocities, from 1 to 3.
-        names : iterable of str
-            Coordinates that the functions of the ansatz contain; by default those in L and in the constraints.
-
-        Returns
-        -------
-        Integrals
-            The answer of `deltaq integrals --format json`: as attributes, and as a mapping. Numbers count as they were written.
-
-        Raises
-        ------
-        ValueError
-            If `degree` is not from 1 to 3.
-        UnknownNameError
-            If a name is unknown.
-
-        Examples
-        --------
-        >>> sledge.integrals(degree=1).polynomials[0].answer
-        'local'
-        """
-    def fit(
-        self,
-        film: Any,
-        *more: Any,
-        free: Iterable[str],
-        sigma: float | str | Mapping[str, float | str] | None = None,
-        law: Iterable[str] = (),
-        known: Mapping[str, float] | None = None,
-        formulations: Iterable[str] = ("chetaev", "vakonomic"),
-        starts: int = 16,
-        robust: bool = False,
-        tolerance: float = 1e-9,
-        max_steps: int = 2_000,
-    ) -> FilmFit:
-        """Fits what is not known of the system to films of its motions, in each formulation: `deltaq fit`.
-
-        Parameters
-        ----------
-        film : path or table
-            A CSV file; or a mapping, a DataFrame, a Dataset of xarray, a table of Arrow or a Motion, with the time "t", as a
-            column or as the index, and columns that are expressions by their names; NaN for a gap. Multipliers and invariants of
-            a motion are not fitted.
-        *more : path or table
-            Further films.
-        free : iterable of str
-            Unknowns: "g", "x~0.1", "Omega~0.7±0.01", "x@2".
-        sigma : float, str or mapping of str to these, optional
-            Standard deviation of all columns, or by column: 1e-3, "1mm", "free".
-        law : iterable of str
-            Parameters of the first-order law to fit as well: "eps", "slip".
-        known : mapping of str to float, optional
-            Numbers of one film: "psi'@2".
-        formulations : iterable of str
-            Those to fit.
-        starts : int
-            Starts of the search.
-        robust : bool
-            Whether outliers count less.
-        tolerance : float
-            Tolerance of the looser run; the one that is kept has a hundredth of it.
-        max_steps : int
-            Limit on the steps of a run.
-
-        Returns
-        -------
-        FilmFit
-            A fit per formulation, with a verdict.
-
-        Raises
-        ------
-        ValueError
-            If a table cannot be read; it names the place.
-        UnknownNameError
-            If a name is unknown.
-
-        Examples
-        --------
-        >>> import numpy as np
-        >>> times = np.linspace(0.05, 2, 40)
-        >>> motion = sledge.solve("chetaev", times)
-        >>> noise = 1e-3 * np.random.default_rng(2).normal(size=(2, 40))
-        >>> film = {"t": times, "x": motion["x"] + noise[0], "y": motion["y"] + noise[1]}
-        >>> found = sledge.fit(film, free=["g", "phi'"], sigma=1e-3)
-        >>> found["chetaev"].verdict, found["vakonomic"].verdict
-        ('supported', 'excluded')
-        """
-    def design(
-        self,
-        tell: Sequence[str] | None = None,
-        *,
-        film: str,
-        estimate: str | None = None,
-        over: Mapping[str, tuple[float, float]] | None = None,
-        free: Iterable[str] = (),
-        films: int = 1,
-        columns: Iterable[str] = (),
-        sigma: float | str | Mapping[str, float | str] | None = None,
-        law: Iterable[str] = (),
-        starts: int = 8,
-        points: int = 32,
-        tolerance: float = 1e-9,
-        max_steps: int = 2_000,
-        threads: int = 0,
-    ) -> Design:
-        """The film that would tell two formulations apart best, or show a number best: `deltaq design`.
-
-        Parameters
-        ----------
-        tell : sequence of two str, optional
-            The formulation that is right, and the other one.
-        film : str
-            Rate, error and length: "60Hz,0.5mm,10s".
-        estimate : str, optional
-            The number to show, instead of `tell`.
-        over : mapping of str to (float, float), optional
-            What can be chosen, with its bounds.
-        free : iterable of str
-            Unknowns, as in `fit`.
-        films : int
-            How many films of this kind.
-        columns : iterable of str
-            What a film shows; by default the coordinates.
-        sigma : float, str or mapping of str to these, optional
-            Standard deviation of all columns, or by column: 1e-3, "1mm", "free".
-        law : iterable of str
-            Parameters of the first-order law to fit as well: "eps", "slip".
-        starts : int
-            Starts of each fit.
-        points : int
-            Choices that are tried first.
-        tolerance : float
-            Tolerance of the looser run; the one that is kept has a hundredth of it.
-        max_steps : int
-            Limit on the steps of a run.
-        threads : int
-            0 for one per processor.
-
-        Returns
-        -------
-        Design
-            The answer of `deltaq design --format json`: as attributes, and as a mapping.
-
-        Raises
-        ------
-        ValueError
-            If neither or both of `tell` and `estimate` are given.
-        UnknownNameError
-            If a name is unknown.
-
-        Examples
-        --------
-        >>> heisenberg = deltaq.built_in("heisenberg")
-        >>> found = heisenberg.design(("vakonomic", "chetaev"), film="20Hz,1mm,1s", over={"mu0_1": (0.1, 1)}, free=["x'", "y'"], points=4)
-        >>> found.best.at, found.best.value > 15
-        ((1.0,), True)
-        """
+    prove = _proof.prove
+    integrals = _proof.integrals
+    fit = _films.fit
+    design = _films.design
     def _fit(
         self,
         tables: list[tuple[str, str]],
@@ -781,73 +594,7 @@ class System:
         (True, 0.443803456)
         """
 
-    def residuals(
-        self,
-        names: Sequence[str],
-        times: Any = None,
-        data: Any = None,
-        formulation: str = "chetaev",
-        *,
-        sigma: Mapping[str, float] | None = None,
-        removal: str | None = None,
-        mu0: _Floats | None = None,
-        constants: _Constants | None = None,
-        method: str = "auto",
-        tolerance: float = 1e-11,
-        max_steps: int = 100_000,
-        penalty: float = 1e6,
-    ) -> Residuals:
-        """Residuals between a motion and data, as a function of numbers of the system that never raises: for
-        `scipy.optimize.least_squares`.
-
-        Parameters
-        ----------
-        names : sequence of str
-            What varies: parameters, start values ("x", "x'"), multipliers ("mu0_1", ...) or costates ("P0_w").
-        times : array_like of shape (k,), or table, optional
-            Times of the data, ascending; without `data` the table, which has them.
-        data : mapping of str to array_like of shape (k,), or table, optional
-            Values by the name of a coordinate, a velocity ("x'") or a multiplier. A DataFrame, a Dataset of xarray, a table of
-            Arrow or a Motion may have the time as column or index "t"; invariants and observables of a motion are left out.
-        formulation : str
-            One of `FORMULATIONS`.
-        sigma : mapping of str to float, optional
-            Columns to their units, 1 by default.
-        removal : str, optional
-            A name in `System.removals`, "coordinates" or "quasi-velocities"; by default the first.
-        mu0 : array_like of shape (h,), optional
-            Start multipliers of the vakonomic formulations; by default those of the system.
-        constants : "zero", {"horizon": T} or array_like, optional
-            Free constants: zero, natural at time T, or their values; zero by default
-            instead of natural.
-        method : str
-            One of `METHODS`, or "auto".
-        tolerance : float
-            Tolerance of the run.
-        max_steps : int
-            Limit on the steps of a run.
-        penalty : float
-            Residuals at times that a motion does not reach.
-
-        Returns
-        -------
-        Residuals
-            A function of the numbers, with exact derivatives.
-
-        Raises
-        ------
-        ValueError
-            If a column has another length than the times, or a value that is not finite.
-        UnknownNameError
-            If a name is unknown.
-
-        Examples
-        --------
-        >>> times = [0.5, 1.0]
-        >>> miss = sledge.residuals(["phi'"], times, {"phi": [0.6, 1.2]}, sigma={"phi": 0.1})
-        >>> miss([1.0]).round(9), miss.jac([1.0]).round(9).tolist()
-        (array([-1., -2.]), [[5.0], [10.0]])
-        """
+    residuals = _columns.residuals
 
     def _residuals(
         self,
@@ -1378,61 +1125,8 @@ class Equations:
         >>> abs(rest.states[-1] - whole.states[-1]).max() < 1e-10
         np.True_
         """
-    def functions(self, module: Literal["numpy", "jax", "numba"] = "numpy") -> Functions:
-        """The equations as functions of Python, which other libraries can trace or compile.
-
-        Parameters
-        ----------
-        module : {"numpy", "jax", "numba"}
-            Whose arrays the functions take; JAX and Numba have to be installed.
-
-        Returns
-        -------
-        Functions
-            `rates(t, y, parameters)`, `outputs(t, y, parameters)`, and what these start from.
-
-        Raises
-        ------
-        ImportError
-            If the module is not installed.
-        SolveError
-            If unknowns of the instant are not found by linear equations.
-
-        Examples
-        --------
-        >>> equations = sledge.equations("chetaev")
-        >>> made = equations.functions()
-        >>> made.rates(0.0, made.start, made.parameters | {"g": 1.6})[:3]
-        array([0., 0., 1.])
-        """
-    def to_scipy(
-        self, parameters: Mapping[str, float] | None = None
-    ) -> tuple[Callable[[float, _Floats], _Array], Callable[[float, _Floats], _Array]]:
-        """The pair (fun, jac) that `scipy.integrate.solve_ivp` takes: rates and their exact Jacobian.
-
-        Parameters
-        ----------
-        parameters : mapping of str to float, optional
-            Parameters with other values, by name.
-
-        Returns
-        -------
-        fun : callable
-            fun(t, y), the rates, shape (m,).
-        jac : callable
-            jac(t, y), their derivatives by the state, shape (m, m).
-
-        Raises
-        ------
-        UnknownNameError
-            At the first call, if a parameter is unknown.
-
-        Examples
-        --------
-        >>> fun, jac = sledge.equations("chetaev").to_scipy({"g": 1.6})
-        >>> jac(0.0, sledge.equations("chetaev").initial_state()).shape
-        (6, 6)
-        """
+    functions = _code.functions
+    to_scipy = _code.to_scipy
     def _repr_latex_(self) -> str: ...
 
 @final
@@ -1747,77 +1441,12 @@ class Motion:
         ValueError
             If a time is outside of the motion.
         """
-    def to_arrow(self) -> Any:
-        """The motion as a table, one row per time: t, coordinates, velocities (x'), multipliers, invariants, observables.
-
-        Returns
-        -------
-        pyarrow.Table
-            What the motion did not reach is null; units are in the metadata of the columns.
-
-        Raises
-        ------
-        ImportError
-            If pyarrow is not installed.
-        """
-    def to_pandas(self) -> Any:
-        """The motion as a DataFrame with the columns of `to_arrow`; t is the index.
-
-        Returns
-        -------
-        pandas.DataFrame
-            One row per time.
-
-        Raises
-        ------
-        ImportError
-            If pandas is not installed.
-        """
-    def to_xarray(self) -> Any:
-        """The motion as a Dataset over t with the columns of `to_arrow`.
-
-        Returns
-        -------
-        xarray.Dataset
-            Units are attributes.
-
-        Raises
-        ------
-        ImportError
-            If xarray is not installed.
-        """
-    def plot(self, ax: Any = None) -> Any:
-        """Coordinates over time, one above the other, by matplotlib.
-
-        Parameters
-        ----------
-        ax : matplotlib Axes or array of these, optional
-            n axes to draw into.
-
-        Returns
-        -------
-        matplotlib.figure.Figure
-            The picture.
-
-        Raises
-        ------
-        ImportError
-            If matplotlib is not installed.
-        """
-    def animate(self) -> Any:
-        """The bodies of the system's view along the motion, as a picture that plays by itself.
-
-        Returns
-        -------
-        Animation
-            An SVG, which notebooks show.
-
-        Raises
-        ------
-        ValueError
-            If the system has no view.
-        """
-    def _repr_html_(self) -> str: ...
+    to_arrow = _tables.motion_to_arrow
+    to_pandas = _tables.motion_to_pandas
+    to_xarray = _tables.motion_to_xarray
+    plot = _plots.motion
+    animate = _animate.motion
+    _repr_html_ = _notebook.motion
 
 @final
 class Ensemble:
@@ -1862,83 +1491,12 @@ class Ensemble:
     """Of each member why it was integrated alone and not in company, else None: slower, and no worse."""
     seconds: Final[float]
     """Wall-clock seconds of the integration of all members."""
-    def to_arrow(self, first: int = 0) -> Any:
-        """The members as a table, one row per member and time: member, what varies ("set x"), t, coordinates, velocities (x'),
-        multipliers, invariants, error_estimate, status, cause.
-
-        Parameters
-        ----------
-        first : int
-            Number of the first member.
-
-        Returns
-        -------
-        pyarrow.Table
-            What a member did not reach is null; units are in the metadata of the columns.
-
-        Raises
-        ------
-        ImportError
-            If pyarrow is not installed.
-        """
-    def to_pandas(self) -> Any:
-        """The members as a DataFrame with the columns of `to_arrow`.
-
-        Returns
-        -------
-        pandas.DataFrame
-            One row per member and time.
-
-        Raises
-        ------
-        ImportError
-            If pandas is not installed.
-        """
-    def to_xarray(self) -> Any:
-        """The members as a Dataset over member, from 0, and t; what varies ("set x"), status and error_estimate over member.
-
-        Returns
-        -------
-        xarray.Dataset
-            Units are attributes.
-
-        Raises
-        ------
-        ImportError
-            If xarray is not installed.
-        """
-    def plot(self, ax: Any = None) -> Any:
-        """Coordinates of the members over time, one above the other; if they were read off at one time, over what varies first.
-
-        Parameters
-        ----------
-        ax : matplotlib Axes or array of these, optional
-            n axes to draw into.
-
-        Returns
-        -------
-        matplotlib.figure.Figure
-            The picture.
-
-        Raises
-        ------
-        ImportError
-            If matplotlib is not installed.
-        """
-    def animate(self) -> Any:
-        """The bodies of the system's view along eight of the members, straight between the ensemble's times.
-
-        Returns
-        -------
-        Animation
-            An SVG, which notebooks show.
-
-        Raises
-        ------
-        ValueError
-            If the system has no view.
-        """
-    def _repr_html_(self) -> str: ...
+    to_arrow = _tables.ensemble_to_arrow
+    to_pandas = _tables.ensemble_to_pandas
+    to_xarray = _tables.ensemble_to_xarray
+    plot = _plots.ensemble
+    animate = _animate.ensemble
+    _repr_html_ = _notebook.ensemble
     def __len__(self) -> int: ...
     def __contains__(self, name: object) -> bool: ...
     def __getitem__(self, name: str) -> _Array: ...
@@ -2120,48 +1678,7 @@ class Comparison:
         KeyError
             If the two were not compared.
         """
-    def to_pandas(self) -> Any:
-        """The pairs as a DataFrame: verdict, times to the thresholds, largest gap, growth, why not.
-
-        Returns
-        -------
-        pandas.DataFrame
-            One row per pair.
-
-        Raises
-        ------
-        ImportError
-            If pandas is not installed.
-        """
-    def plot(self, ax: Any = None) -> Any:
-        """Coordinates of all motions over time, then the gaps of the pairs with their limits.
-
-        Parameters
-        ----------
-        ax : matplotlib Axes or array of these, optional
-            n + 1 axes to draw into.
-
-        Returns
-        -------
-        matplotlib.figure.Figure
-            The picture.
-
-        Raises
-        ------
-        ImportError
-            If matplotlib is not installed.
-        """
-    def animate(self) -> Any:
-        """The bodies of the system's view along the first motion of each formulation, in one picture that plays by itself.
-
-        Returns
-        -------
-        Animation
-            An SVG, which notebooks show.
-
-        Raises
-        ------
-        ValueError
-            If the system has no view.
-        """
-    def _repr_html_(self) -> str: ...
+    to_pandas = _tables.comparison_to_pandas
+    plot = _plots.comparison
+    animate = _animate.comparison
+    _repr_html_ = _notebook.comparison

@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
+use bench::MEMBERS;
 use program::{Common, Output, TextOrJson, by_name};
 use random::Kind;
 use validation::benchmark::STARTS;
@@ -79,6 +80,8 @@ pub enum Command {
     Scaling(ScalingArguments),
     /// Put every method to stiff and extreme cases: is what comes back right, and if not, does it say so?
     Stability(StabilityArguments),
+    /// Measure error against run time, by every method at every tolerance.
+    Bench(BenchArguments),
     /// Write the reference motions that other programs are held against.
     Benchmark(BenchmarkArguments),
     /// Write the page on the shortest films that decide.
@@ -146,6 +149,24 @@ pub struct ScalingArguments {
     /// Repeats of everything that is timed; the shortest time counts.
     #[arg(long, default_value_t = 5, value_parser = clap::value_parser!(u16).range(1..=1000))]
     pub repeats: u16,
+    #[command(flatten)]
+    pub output: Output,
+}
+
+/// `evidence bench`.
+#[derive(Args, Debug)]
+pub struct BenchArguments {
+    /// Built-in names or paths of scene files; every built-in scene if left out.
+    pub scenes: Vec<String>,
+    /// Seconds over which the runs of one setting are repeated; the least time counts.
+    #[arg(long, default_value_t = 0.05)]
+    pub seconds: f64,
+    /// Measure throughput of ensembles of sledges instead, at this tolerance: alone, in lanes, on all cores.
+    #[arg(long, value_name = "TOLERANCE", num_args = 0..=1, default_missing_value = "1e-10", conflicts_with_all = ["scenes", "out"])]
+    pub ensemble: Option<f64>,
+    /// Members of each of these ensembles.
+    #[arg(long, default_value_t = MEMBERS as u16, requires = "ensemble", value_parser = clap::value_parser!(u16).range(1..))]
+    pub members: u16,
     #[command(flatten)]
     pub output: Output,
 }

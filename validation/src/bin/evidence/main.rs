@@ -1,6 +1,7 @@
 //! The evidence: the main job, which derives, integrates and compares every scene and writes the reports;
 //! random systems; stiff cases; cost over size. Exit codes are those of [`program`].
 
+mod bench_command;
 mod benchmark_command;
 mod cli;
 mod films_command;
@@ -33,6 +34,7 @@ fn run(cli: Cli) -> Result<Answer> {
     let quiet = cli.common.quiet;
     match cli.command {
         None => main_job::run(&cli.job, quiet).map(Answer::from),
+        Some(Command::Bench(arguments)) => bench_command::run(&arguments, quiet).map(Answer::from),
         Some(Command::Benchmark(arguments)) => benchmark_command::run(&arguments, quiet).map(Answer::from),
         Some(Command::Films(arguments)) => films_command::run(&arguments, quiet).map(Answer::from),
         Some(Command::Integrals(arguments)) => integrals_command::run(&arguments, quiet).map(Answer::from),

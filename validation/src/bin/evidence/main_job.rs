@@ -75,7 +75,7 @@ impl Results {
             let referee = asked(&Section::Casadi).then(|| scope.spawn(|| casadi_job::section(names)));
             let scenes = || parallel::in_turn(SCENES_FIRST, || compare_all(names, quiet));
             let scenes = asked(&Section::Scenes).then(|| scope.spawn(scenes));
-            let prepared = || parallel::in_turn(REFERENCES_THEN, || references(names, &[], &kept_references()?, quiet));
+            let prepared = || parallel::in_turn(REFERENCES_THEN, || references(names, &kept_references()?, quiet));
             let prepared = (timed.is_some() && asked(&Section::ErrorVsTime)).then(|| scope.spawn(prepared));
             let jobs = JOBS.iter().filter(|(section, ..)| asked(section));
             let jobs: Vec<_> =

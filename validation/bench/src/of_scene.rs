@@ -20,7 +20,7 @@ use motion::{
     forms, setting,
 };
 use program::parallel;
-use scene::{Number, Scene};
+use scene::Scene;
 
 /// Times at which errors are taken, equidistant, the last at the end.
 pub const SAMPLES: usize = 20;
@@ -158,7 +158,6 @@ impl Measurements {
 /// A scene with a reference for each of its motions.
 pub struct Prepared {
     name: String,
-    overrides: Vec<(String, Number)>,
     truths: Vec<(String, Result<Truth, String>)>,
 }
 
@@ -183,8 +182,8 @@ fn motion(choice: &Choice) -> String {
 ///
 /// # Errors
 /// Where the scene cannot be read.
-pub fn prepare(name: &str, overrides: &[(String, Number)], kept: &KeptReferences) -> Result<Prepared> {
-    let scene = scene::catalogue::find(name, overrides)?;
+pub fn prepare(name: &str, kept: &KeptReferences) -> Result<Prepared> {
+    let scene = scene::catalogue::find(name, &[])?;
     let truth = |choice: &Choice| -> Result<Truth> {
         let equations = derive_at(&scene.system, &scene.start, choice)?;
         let ready = motion::prepare(setting(&scene), equations, &choice.constants, &Settings::default())?;
@@ -197,7 +196,7 @@ pub fn prepare(name: &str, overrides: &[(String, Number)], kept: &KeptReferences
             truths.push((motion, truth(&choice).map_err(|error| format!("{error:#}"))));
         }
     }
-    Ok(Prepared { name: name.into(), overrides: overrides.to_vec(), truths })
+    Ok(Prepared { name: name.into(), truths })
 }
 
 /// Measures every formulation and further form, by every method; nothing else should run meanwhile.
@@ -206,7 +205,7 @@ pub fn prepare(name: &str, overrides: &[(String, Number)], kept: &KeptReferences
 /// Where the scene cannot be read. A formulation that cannot be measured is an [`Entry`] that says why.
 pub fn measure(prepared: Prepared, effort: &Effort, tell: impl Fn(&str)) -> Result<Bench> {
     let clock = Instant::now();
-    let scene = scene::catalogue::find(&prepared.name, &prepared.overrides)?;
+    let scene = scene::catalogue::find(&prepared.name, &[])?;
     let parse = clock.elapsed().as_secs_f64();
     let mut truths = prepared.truths;
     let entries = entries(&scene).into_iter().map(|choice| {
@@ -250,13 +249,8 @@ fn measurements(scene: &Scene, choice: &Choice, truth: &mut Truth, effort: &Effo
 }
 
 /// References of these scenes, over all processors; those that are `kept` are not computed again.
-pub fn references(
-    names: &[&str],
-    overrides: &[(String, Number)],
-    kept: &KeptReferences,
-    quiet: bool,
-) -> Result<Vec<Prepared>> {
-    parallel::try_map(names, quiet, |_| "references".into(), |name| prepare(name, overrides, kept))
+pub fn references(names: &[&str], kept: &KeptReferences, quiet: bool) -> Result<Vec<Prepared>> {
+    parallel::try_map(names, quiet, |_| "references".into(), |name| prepare(name, kept))
 }
 
 /// Measurements, one after the other.

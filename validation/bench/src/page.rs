@@ -64,7 +64,7 @@ pub fn bench_files(benches: &[Bench], ensembles: &[Throughput]) -> Result<Vec<Fi
     data.table("failures", "Settings that failed, with the cause", &failed(benches));
     let [times, ratios] = ensemble_tables(ensembles);
     let many = format!(
-        "Many motions at once: microseconds per member (`deltaq bench --ensemble 1e-10` measures {MEMBERS} members)"
+        "Many motions at once: microseconds per member (`evidence bench --ensemble 1e-10` measures {MEMBERS} members)"
     );
     data.table("ensembles", &many, &times);
     data.table("ensemble-ratios", "Many motions at once: ratios", &ratios);

@@ -1,8 +1,9 @@
-//! `deltaq bench`: error against run time.
+//! `evidence bench`: error against run time.
 
 use anyhow::{Result, bail};
+use diffsol_methods::EVERY;
 
-use crate::cli::{BenchArguments, METHODS};
+use crate::cli::BenchArguments;
 use bench::{
     Effort, KeptReferences, bench_all, bench_files, bench_json, bench_table, ensemble_json, ensemble_text,
     ensemble_throughput, references,
@@ -24,11 +25,10 @@ pub(crate) fn run(arguments: &BenchArguments, quiet: bool) -> Result<String> {
         let (text, json) = (|| ensemble_text(&measured), || ensemble_json(&measured));
         return arguments.output.answer("bench-ensemble", || Ok(Vec::new()), text, json);
     }
-    let effort = Effort { methods: METHODS.to_vec(), seconds: arguments.seconds, ..Effort::default() };
+    let effort = Effort { methods: EVERY.to_vec(), seconds: arguments.seconds, ..Effort::default() };
     let all = || scene::catalogue::SCENES.iter().map(|(name, _)| *name).collect();
     let given: Vec<&str> = arguments.scenes.iter().map(String::as_str).collect();
     let names: Vec<&str> = if given.is_empty() { all() } else { given };
-    let benches =
-        bench_all(references(&names, &arguments.set.overrides, &KeptReferences::default(), quiet)?, &effort, quiet)?;
+    let benches = bench_all(references(&names, &KeptReferences::default(), quiet)?, &effort, quiet)?;
     arguments.output.answer("bench", || bench_files(&benches, &[]), || bench_table(&benches), || bench_json(&benches))
 }
