@@ -73,7 +73,9 @@ fn the_smallest_questions_are_answered() {
     .to_vec();
     asked.push(format!("fit heisenberg {films} --free x,y,x',y' --sigma 1mm --formulations chetaev"));
     for line in asked {
-        let words = line.split(' ').map(|word| if word.contains(".csv") || word == "rest.toml" { path(word) } else { word.into() });
+        let words = line
+            .split(' ')
+            .map(|word| if word.contains(".csv") || word == "rest.toml" { path(word) } else { word.into() });
         let found = Command::new(env!("CARGO_BIN_EXE_deltaq")).args(words).output().expect("it runs");
         let (text, said) = [&found.stdout, &found.stderr].map(|all| String::from_utf8_lossy(all).into_owned()).into();
         assert!(matches!(found.status.code(), Some(0 | 3)), "{line}: {:?} {said}", found.status);

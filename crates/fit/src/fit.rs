@@ -255,9 +255,7 @@ fn off_stationary(problem: &Problem, best: Minimum) -> Minimum {
             let mut theta = best.unknowns.clone();
             theta[i] += side * step;
             let found = least(problem, &theta, &scale, Stage::Whole);
-            if let Some(found) =
-                found.ok().filter(|found| found.value < least_known.value - SAME_CHI_SQUARED)
-            {
+            if let Some(found) = found.ok().filter(|found| found.value < least_known.value - SAME_CHI_SQUARED) {
                 least_known = Minimum { reached: best.reached, first: best.first, ..found };
             }
         }

@@ -123,8 +123,7 @@ fn refined(
     let mut found: Vec<Minimum> = Vec::new();
     for begun in rough {
         // beside one that fits
-        let enough =
-            found.iter().any(|m| is_noise(problem, m.value) && m.value + HOPELESS < begun.value);
+        let enough = found.iter().any(|m| is_noise(problem, m.value) && m.value + HOPELESS < begun.value);
         if stage == Stage::Rough && begun.value.is_finite() && enough {
             found.push(begun);
             continue;

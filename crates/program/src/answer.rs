@@ -91,7 +91,11 @@ pub fn sorted(mut object: Value) -> Value {
 }
 
 fn printed(kind: &str, object: &Value) -> String {
-    let version = if matches!(kind, "solve" | "linearize" | "certificate" | "compare" | "connect" | "fit" | "design") { 2 } else { 1 };
+    let version = if matches!(kind, "solve" | "linearize" | "certificate" | "compare" | "connect" | "fit" | "design") {
+        2
+    } else {
+        1
+    };
     // JSON leaves some of what [`plain`] takes out
     let is_raw = |c: char| c.is_control() && c != '\n';
     let mut text = format!("{object:#}\n");
