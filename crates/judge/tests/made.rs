@@ -145,8 +145,10 @@ fn a_number_that_is_off_is_named_and_gives_no_number_of_a_law() {
         ("sleigh", "I"),
         ("sleigh", "J"),
         ("sleigh", "m"),
-        ("skate", "g"),
         ("velocity-pendulum", "g"),
+        ("nonholonomic-oscillator", "k"),
+        ("unicycle-in-potential", "k"),
+        ("turning-knife-edge", "Omega"),
     ] {
         let Ok(plain) = catalogue::find(name, &[]) else { continue };
         let g = &plain.system.graph;

@@ -17,10 +17,10 @@ pub struct Direction {
 }
 
 impl Direction {
-    /// That of the number of this name at `x`, times `scale`, where `at` says what the start and the constants
-    /// are with other values of it: by way of formulas, of velocities that constraints supply, of a projection
-    /// and of momenta, a map that costs microseconds and is right to the last digits. Its derivative is a
-    /// difference ([`crate::differences`]).
+    /// That of the number of this name at `x`, times `scale`; `at` says what the start and the constants are
+    /// with other values of it. This goes by way of formulas, velocities that constraints supply, a
+    /// projection and momenta: a map that costs microseconds and is right to the last digits. Its derivative
+    /// is a difference ([`crate::differences`]).
     pub(crate) fn by(
         name: &str,
         x: f64,
