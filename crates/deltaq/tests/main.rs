@@ -27,6 +27,7 @@ mod read_back;
 mod review_command;
 mod shell;
 mod singularities;
+mod smallest;
 mod support;
 mod sweep;
 mod tutorials;

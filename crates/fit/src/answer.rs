@@ -19,10 +19,7 @@ use crate::{Film, Fit, FitError, Problem, Question, Row, Unknown, Verdict, fit, 
 /// Most numbers of all films: with them a fit takes minutes.
 const MOST_NUMBERS: usize = 300_000;
 
-/// Times as many starts of a search for constants, where no formulation fits.
-const MORE_STARTS: usize = 4;
-
-/// Further groups of starts for a formulation that would be excluded and is not poor.
+/// Further groups of starts for a formulation that would be excluded and is not poor, or where none fits.
 const GROUPS: usize = 3;
 
 /// Rounds in which standard deviations are estimated, and the part of themselves to which they are.
@@ -117,26 +114,22 @@ fn fit_given(
     fits.extend(laws.into_iter().map(|choice| (choice.clone(), law(&choice, fit_of))));
     fits.retain(|(choice, _)| is_wanted(choice.formulation));
     fits.sort_by_key(|(choice, _)| labels.iter().position(|label| *label == choice.label));
-    // before nothing fits, more starts, and those of laws not from Chetaev's numbers
+    // before nothing fits, laws not from Chetaev's numbers
     let fits_well = |(_, fit): &(Choice, Fitted)| fit.as_ref().is_ok_and(|(_, fit)| fit.faults().next().is_none());
     if !fits.iter().any(fits_well) {
-        let more = Question { starts: MORE_STARTS * question.starts, ..question.clone() };
-        let again = fits.iter().map(|(choice, _)| choice).filter(|choice| has_constants(choice)).cloned().collect();
-        let again = fit_choices(&scene, again, films, &more, 0, near);
-        for ((_, fit), (_, again)) in fits.iter_mut().filter(|(choice, _)| has_constants(choice)).zip(again) {
-            keep_less(fit, again);
-        }
         for (choice, fit) in fits.iter_mut().filter(|(choice, _)| is_law(choice.formulation)) {
             keep_less(fit, law(choice, None));
         }
     }
-    // before one is excluded whose residuals are not far off, other starts
+    // before nothing fits, or one is excluded whose residuals are not far off, other starts
     for group in 1..=GROUPS {
-        let Some(least) = least(&fits) else { break };
+        let (least, some) = (least(&fits), fits.iter().any(fits_well));
         let is_doubtful = |(choice, fit): &(Choice, Fitted)| {
-            let is_near =
-                |fit: &Fit| is_excluded(fit, &least) && fit.chi_squared < POOR * (fit.freedom as f64).max(1.0);
-            has_constants(choice) && fit.as_ref().is_ok_and(|(_, fit)| is_near(fit))
+            let is_near = |fit: &Fit| {
+                let is_poor = fit.chi_squared >= POOR * (fit.freedom as f64).max(1.0);
+                least.as_ref().is_some_and(|least| is_excluded(fit, least)) && !is_poor
+            };
+            has_constants(choice) && (!some || fit.as_ref().is_ok_and(|(_, fit)| is_near(fit)))
         };
         let places: Vec<usize> = (0..fits.len()).filter(|&i| is_doubtful(&fits[i])).collect();
         let again = places.iter().map(|&i| fits[i].0.clone()).collect();

@@ -1,24 +1,20 @@
-//! Fits of the first-order law with slip, `f = −λ/N`, whose bound 1/N = 0 its motions do not reach.
+//! The bound of the slip, `f = −λ/N`, which its motions do not reach.
 //!
 //! Motions with slip have the time constant `m/N`: the smaller 1/N, the more steps they take. At `1/N = 0`
-//! constraints hold exactly, and the equations are different. So there are two fits: one with exact
-//! constraints, the limit of motions with slip, and one with 1/N above the least value that can be
-//! integrated.
+//! constraints hold exactly, and the equations are different. So the fit at the bound has a problem of its
+//! own, and the profile of 1/N begins there.
+
+use motion::shooting::Minimum;
 
 use crate::distribution::normal_tails;
 use crate::fit::{RISE, RISE_AT_BOUND};
-use crate::profile::NORMAL;
-use crate::search::{Stage, least};
-use crate::{Estimate, Fit, FitError, Problem};
+use crate::profile::{NORMAL, Profile};
+use crate::{Estimate, Fit, FitError, Problem, Unknown};
 
 /// Maximum number of halvings of the initial 1/N down to the least one, and factor by which motions may take
 /// more steps than there.
 const HALVINGS: i32 = 8;
 const STEPS: usize = 16;
-/// Relative accuracy of an end of the interval.
-const CLOSE: f64 = 0.02;
-/// Maximum number of doublings in the search for it.
-const OUTWARDS: usize = 20;
 
 /// `problem` with a bound for its unknown `i`, 1/N: the least with which motions can be followed.
 pub(crate) fn followed(problem: &Problem, i: usize) -> Problem {
@@ -39,75 +35,57 @@ pub(crate) fn joined(
     (problem, i): (Problem, usize),
     creeping: Result<Fit, FitError>,
 ) -> Result<(Problem, Fit), FitError> {
-    let (own, kept) = match kept {
-        Ok(kept) => kept,
-        Err(_) => {
-            let mut fit = creeping?;
-            let slip = &mut fit.estimates[i].interval[0];
-            *slip = if *slip <= problem.unknowns()[i].bound.unwrap_or(0.0) { 0.0 } else { *slip };
-            return Ok((problem, fit));
-        }
-    };
     let least = problem.unknowns()[i].bound.unwrap_or(0.0);
-    if let Ok(mut fit) = creeping {
-        let rise = kept.chi_squared - fit.chi_squared;
-        let slip = &mut fit.estimates[i];
-        if rise > 0.0 && slip.value > least {
-            // between 0 and the least that is followed, the end is at 0
-            if rise <= RISE_AT_BOUND || slip.interval[0] <= least {
-                (slip.interval[0], slip.profiled) = (0.0, true);
-            }
-            slip.at_bound = Some(0.5 * normal_tails(rise.sqrt()));
-            return Ok((problem, fit));
+    let at_bound = kept.as_ref().ok().map(|(_, kept)| kept.chi_squared);
+    let creeping = creeping.map(|mut fit| {
+        let (slip, rise) = (&mut fit.estimates[i], at_bound.map(|kept| kept - fit.chi_squared));
+        // between 0 and the least that is followed, the end is at 0
+        if slip.interval[0] <= least || rise.is_some_and(|rise| rise <= RISE_AT_BOUND) {
+            (slip.interval[0], slip.profiled) = (0.0, true);
+        }
+        slip.at_bound = rise.map_or(slip.at_bound, |rise| Some(0.5 * normal_tails(rise.max(0.0).sqrt())));
+        fit
+    });
+    match (kept, creeping) {
+        (Err(_), creeping) => creeping.map(|fit| (problem, fit)),
+        (Ok((_, kept)), Ok(fit)) if kept.chi_squared > fit.chi_squared && fit.estimates[i].value > least => {
+            Ok((problem, fit))
+        }
+        (Ok((own, mut kept)), _) => {
+            kept.estimates.push(at_its_bound(&problem, i, &kept));
+            Ok((own, kept))
         }
     }
-    let high = end(&problem, i, &kept);
-    let slip = Estimate {
+}
+
+/// The unknown `i` of `problem` where the least χ² is that of constraints that are kept: its interval ends
+/// where χ² has risen by 3.84 above that; at the least 1/N that is followed where it has there.
+fn at_its_bound(problem: &Problem, i: usize, kept: &Fit) -> Estimate {
+    let of = |unknown: &Unknown| kept.estimates.iter().find(|e| e.name == unknown.label());
+    let all = || problem.unknowns().iter().zip(problem.start());
+    let mut theta: Vec<f64> = all().map(|(unknown, own)| of(unknown).map_or(*own, |e| e.value)).collect();
+    let error = |e: &Estimate| Some(e.error).filter(|error| error.is_finite() && *error > 0.0);
+    let mut errors: Vec<f64> = all().map(|(unknown, _)| of(unknown).and_then(error).unwrap_or(1.0)).collect();
+    let least = problem.unknowns()[i].bound.unwrap_or(0.0);
+    theta[i] = least;
+    let derivatives = problem.clone().weighed(&theta, true);
+    theta[i] = 0.0;
+    let best = Minimum { value: kept.chi_squared, ..Minimum::start(0, theta) };
+    let high = derivatives.map_or(f64::INFINITY, |(_, jacobian)| {
+        errors[i] = jacobian.column(i).norm().recip().max(least / NORMAL);
+        let mut profile = Profile::new(problem, &jacobian, &best, &errors, i);
+        match profile.rise(least) {
+            rise if rise.is_infinite() => rise,
+            rise if rise >= RISE => least,
+            _ => profile.end(1.0, RISE, 0.0),
+        }
+    });
+    Estimate {
         name: problem.unknowns()[i].label(),
         value: 0.0,
         error: high / NORMAL,
         interval: [0.0, high],
         profiled: true,
         at_bound: Some(1.0),
-    };
-    let estimates = kept.estimates.iter().cloned().chain([slip]).collect();
-    Ok((own, Fit { estimates, ..kept }))
-}
-
-/// Where χ² has risen by 3.84 above that of constraints that are kept; the least 1/N that is followed where
-/// it is less, infinite where it is not found.
-fn end(problem: &Problem, i: usize, kept: &Fit) -> f64 {
-    let mut others: Vec<f64> = problem.start().to_vec();
-    for (place, unknown) in problem.unknowns().iter().enumerate() {
-        if let Some(known) = kept.estimates.iter().find(|e| e.name == unknown.label()) {
-            others[place] = known.value;
-        }
     }
-    others.remove(i);
-    let known = |j: usize| kept.estimates.get(j).map(|e| e.error).filter(|error| error.is_finite() && *error > 0.0);
-    let scale: Vec<f64> = (0..others.len()).map(|j| known(j).unwrap_or(1.0)).collect();
-    let mut rises = |slip: f64| {
-        let found = least(&problem.without(i, slip), &others, &scale, Stage::Profile).ok()?;
-        others = found.unknowns;
-        Some(found.value - kept.chi_squared > RISE)
-    };
-    let (mut low, mut high) = (0.0, problem.unknowns()[i].bound.unwrap_or(0.0));
-    for _ in 0..OUTWARDS {
-        match rises(high) {
-            Some(true) => break,
-            Some(false) => (low, high) = (high, 2.0 * high),
-            None => return f64::INFINITY,
-        }
-    }
-    if low == 0.0 {
-        return high;
-    }
-    while high - low > CLOSE * high {
-        let middle = 0.5 * (low + high);
-        match rises(middle) {
-            Some(false) => low = middle,
-            _ => high = middle,
-        }
-    }
-    high
 }

@@ -220,3 +220,20 @@ fn a_stationary_unknown_is_shown() {
     let other = estimate(0.3);
     assert!((other.value.abs() - 0.3).abs() < 4.0 * other.error && other.error < 0.01, "{other:?}");
 }
+
+/// Up to 6 µrad beside the pole of `y' = x' tan φ`, derivatives of the start are those of the formula.
+#[test]
+fn a_start_near_a_heading_of_ninety_degrees_has_derivatives() {
+    let scene = built_in("sledge");
+    let choice = motion::choices(&scene).into_iter().find(|c| *c.formulation == *motion::CHETAEV).unwrap();
+    let settings = motion::Settings::default();
+    let mut model = motion::Model::new(&scene, &choice, &["phi", "x'"], &[0.0, 0.1], &settings).unwrap();
+    for phi in [0.3, 1.55, 1.57, 1.5707, 1.57079, -1.5707] {
+        let found = model.derivatives(&[phi, 1e-4]);
+        assert_eq!(found.ended, None, "{phi}");
+        for (i, known) in [1e-4 / phi.cos().powi(2), phi.tan()].into_iter().enumerate() {
+            let by = found.derivatives[0][i].velocities[1];
+            assert!((by / known - 1.0).abs() < 1e-9, "{phi}, {i}: {by} for {known}");
+        }
+    }
+}

@@ -5,8 +5,6 @@ use scene::{Scene, SceneErrorKind, Start, Starts};
 use symbolic::Symbol;
 
 use crate::costates::Costates;
-use crate::differences::{derivative, size};
-use crate::direction::Direction;
 use crate::{Choice, Settings, SolveError, Varying};
 
 /// [`Varying`] by the names that [`Scene::starts`] knows, and `P0_w` for the costate of the memory variable
@@ -77,38 +75,6 @@ impl ByName {
     pub fn set(&mut self, row: &[f64], rule: Option<&ConstantsRule>) -> Result<(), SolveError> {
         let found = self.beginning(row).map_err(|fault| SolveError::Member { reason: fault.to_string() })?;
         self.varying.set(&found.state, &found.parameters, rule.unwrap_or(&found.constants), false)
-    }
-
-    /// How the start and the free constants move with each number of a row, constants as in [`ByName::set`]: a
-    /// map by way of formulas, of velocities that constraints supply, of a projection and of momenta, which
-    /// costs microseconds and is right to the last digits. Its derivatives are differences
-    /// ([`crate::differences`]).
-    ///
-    /// # Errors
-    /// [`SolveError::Member`] for a number with which the start does not move smoothly.
-    ///
-    /// # Panics
-    /// If there are not as many numbers as names.
-    pub(crate) fn directions(
-        &mut self,
-        row: &[f64],
-        rule: Option<&ConstantsRule>,
-    ) -> Result<Vec<Direction>, SolveError> {
-        let mut along = Vec::new();
-        for i in 0..row.len() {
-            let (name, scale, mut moved) = (self.names[i].clone(), size(row[i]), row.to_vec());
-            let both = derivative(&name, row[i], &mut |x| {
-                moved[i] = x;
-                self.set(&moved, rule)?;
-                let prepared = self.varying.prepared();
-                Ok([&prepared.start[..], &prepared.constants].concat())
-            })?;
-            let both: Vec<f64> = both.into_iter().map(|x| x * scale).collect();
-            let (start, constants) = both.split_at(self.varying.prepared().start.len());
-            along.push(Direction { start: start.to_vec(), constants: constants.to_vec(), scale });
-        }
-        self.set(row, rule)?;
-        Ok(along)
     }
 
     /// The names.

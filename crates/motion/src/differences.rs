@@ -20,7 +20,7 @@
 use crate::SolveError;
 
 /// Weights of the differences of order 8 and of order 6.
-pub(crate) const ORDER_8: [f64; 4] = [4.0 / 5.0, -1.0 / 5.0, 4.0 / 105.0, -1.0 / 280.0];
+const ORDER_8: [f64; 4] = [4.0 / 5.0, -1.0 / 5.0, 4.0 / 105.0, -1.0 / 280.0];
 const ORDER_6: [f64; 4] = [3.0 / 4.0, -3.0 / 20.0, 1.0 / 60.0, 0.0];
 /// Weights of a kink.
 const KINK: [f64; 4] = [14.0 / 5.0, -7.0 / 5.0, 2.0 / 5.0, -1.0 / 20.0];

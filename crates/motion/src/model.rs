@@ -6,6 +6,8 @@ use mechanics::ConstantsRule;
 use scene::Scene;
 
 use crate::carried::{Carried, Which};
+use crate::differences::size;
+use crate::direction::Direction;
 use crate::wanted::wanted;
 use crate::{ByName, Choice, Settings, SolveError};
 
@@ -156,7 +158,7 @@ impl Model {
 
     fn read_with_derivatives(&mut self, row: &[f64], found: &mut Reading) -> Result<(), String> {
         self.set(row)?;
-        let along = self.by_name.directions(row, None).map_err(|error| error.to_string())?;
+        let along = self.directions(row).map_err(|error| error.to_string())?;
         let (end, options) = self.end();
         let prepared = self.by_name.varying_mut().prepared_mut();
         let carried = Carried::run(prepared, &along, end, &options, Which::Kept);
@@ -182,6 +184,22 @@ impl Model {
         let end = self.times[self.times.len() - 1];
         let wanted = Some(wanted([self.start, end], &self.times));
         (end, integrate::Options { wanted, ..self.settings.options(self.settings.tolerance) })
+    }
+
+    /// How the start and the constants move with each number.
+    fn directions(&mut self, row: &[f64]) -> Result<Vec<Direction>, SolveError> {
+        let by_name = &mut self.by_name;
+        let along = (0..row.len()).map(|i| {
+            let (name, mut moved) = (by_name.names()[i].clone(), row.to_vec());
+            Direction::by(&name, row[i], size(row[i]), &mut |x| {
+                moved[i] = x;
+                by_name.set(&moved, None)?;
+                Ok(by_name.varying().prepared().start_and_constants())
+            })
+        });
+        let along = along.collect::<Result<_, _>>()?;
+        by_name.set(row, None)?;
+        Ok(along)
     }
 }
 

@@ -146,6 +146,11 @@ impl Prepared {
         self.metric.set_parameters(parameters);
     }
 
+    /// The start and the free constants.
+    pub(crate) fn start_and_constants(&self) -> [Vec<f64>; 2] {
+        [self.start.clone(), self.constants.clone()]
+    }
+
     /// The start, as the constants have it.
     fn start_anew(&mut self) {
         self.values.set_constants(&self.constants);

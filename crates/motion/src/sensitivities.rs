@@ -1,6 +1,6 @@
 //! Derivatives of a motion by numbers of its scene: parameters, start, free constants.
 //!
-//! `x ↦ (y(t₀), c) ↦ y(t) ↦ outputs`. The first map is [`ByName::directions`]; derivatives of the
+//! `x ↦ (y(t₀), c) ↦ y(t) ↦ outputs`. The first map is [`crate::sensitivity_start`]; derivatives of the
 //! second are carried with the motion, eight at a time ([`equations::Tangents`]). They are under the error
 //! control of the time loop, and as each motion is integrated twice, so are they: what the two runs differ
 //! by is their error estimate.

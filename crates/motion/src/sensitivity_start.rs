@@ -9,8 +9,9 @@ use crate::differences::size;
 use crate::direction::Direction;
 use crate::{ByName, Choice, SolveError};
 
-/// Those of the numbers that `by_name` has, at their values in the scene, other free constants fixed: the
-/// motion of `choice` is set. Then those of all free constants, where these are natural at a horizon.
+/// Those of the numbers that `by_name` has, at their values in the scene: each alone, so that formulas of
+/// others follow it, and other free constants fixed. The motion of `choice` is set. Then those of all free
+/// constants, where these are natural at a horizon.
 ///
 /// # Errors
 /// [`SolveError`] without a start; [`SolveError::Member`] for a constant that is natural, or a number with
@@ -20,36 +21,43 @@ pub(crate) fn directions(
     scene: &Scene,
     choice: &Choice,
 ) -> Result<[Vec<Direction>; 2], SolveError> {
-    let varied = by_name.parameters();
+    let (varied, names) = (by_name.parameters(), by_name.names().to_vec());
     let varying = by_name.varying_mut();
     let all = &varying.prepared().constants;
     let parameters = all[all.len() - varied.len()..].to_vec();
     varying.set(&scene.start, &parameters, &choice.constants, false)?;
     let own = varying.constants().to_vec();
-    let known = constant_names(&varying.prepared().equations);
-    let constant = |name: &String| known[..own.len()].iter().position(|own| own == name);
-    let is_natural = matches!(choice.constants, ConstantsRule::Natural { .. });
-    if let Some(name) = by_name.names().iter().find(|name| is_natural && constant(name).is_some()) {
-        let reason = format!("{name} is natural at a horizon: nothing can be derived by it");
-        return Err(SolveError::Member { reason });
-    }
-    let prepared = by_name.varying().prepared();
-    let value = |name: &String| {
-        let symbol = prepared.equations.graph.find_symbol(name);
-        let parameter = varied.iter().position(|s| Some(*s) == symbol).map(|i| parameters[i]);
-        let start = || prepared.values.value(symbol?);
-        constant(name).map(|i| own[i]).or(parameter).or_else(start).unwrap_or(0.0)
-    };
-    let row: Vec<f64> = by_name.names().iter().map(value).collect();
     let given = ConstantsRule::Given(own.clone());
-    let mut along = by_name.directions(&row, Some(&given))?;
-    by_name.varying_mut().set(&scene.start, &parameters, &given, false)?;
-    let prepared = by_name.varying().prepared();
-    for (direction, name) in along.iter_mut().zip(by_name.names()) {
-        if let Some(i) = constant(name) {
-            *direction = prepared.along_constant(i, direction.scale);
+    let known = constant_names(&varying.prepared().equations);
+    let is_natural = matches!(choice.constants, ConstantsRule::Natural { .. });
+    let mut along = Vec::new();
+    for name in &names {
+        let prepared = varying.prepared();
+        if let Some(i) = known[..own.len()].iter().position(|own| own == name) {
+            if is_natural {
+                let reason = format!("{name} is natural at a horizon: nothing can be derived by it");
+                return Err(SolveError::Member { reason });
+            }
+            along.push(prepared.along_constant(i, size(own[i])));
+            continue;
         }
+        let symbol = prepared.equations.graph.find_symbol(name);
+        let parameter = varied.iter().position(|s| Some(*s) == symbol);
+        let start = || prepared.values.value(symbol?);
+        let value = parameter.map(|i| parameters[i]).or_else(start).unwrap_or(0.0);
+        let mut starts = scene.starts(&[name]).map_err(|error| SolveError::Scene(Box::new(error)))?;
+        let direction = Direction::by(name, value, size(value), &mut |x| {
+            let start = starts.at(&[x]).map_err(|fault| SolveError::Member { reason: fault.to_string() })?;
+            let mut parameters = parameters.clone();
+            parameter.into_iter().for_each(|i| parameters[i] = x);
+            varying.set(&start.state, &parameters, &given, false)?;
+            Ok(varying.prepared().start_and_constants())
+        });
+        // the start that was there first
+        varying.set(&scene.start, &parameters, &given, false)?;
+        along.push(direction?);
     }
+    let prepared = varying.prepared();
     let natural = (0..own.len()).filter(|_| is_natural).map(|i| prepared.along_constant(i, size(own[i]))).collect();
     Ok([along, natural])
 }

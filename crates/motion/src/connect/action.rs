@@ -1,4 +1,4 @@
-//! The action of a motion, `∫ L dt`, by quadrature.
+//! Quadrature, and by it the action of a motion, `∫ L dt`.
 
 use mechanics::System;
 
@@ -14,21 +14,27 @@ const NODES: [[f64; 2]; 2] =
 pub(super) fn action(system: &System, motion: &mut Motion) -> Result<[f64; 2], SolveError> {
     let inputs = [system.positions(), system.velocities(), vec![system.time]].concat();
     let mut lagrangian = system.evaluator::<f64>(&inputs, &[system.lagrangian])?;
-    let (start, end) = (motion.start(), motion.end());
-    let mut integral = |panels: usize| -> Result<f64, SolveError> {
-        let (mut sum, half) = (0.0, 0.5 * (end - start) / panels as f64);
-        for panel in 0..panels {
-            let middle = start + half * (2 * panel + 1) as f64;
-            for [node, weight] in NODES {
-                for t in [middle - half * node, middle + half * node] {
-                    let at = motion.at(t)?;
-                    let values = [&at.coordinates[..], &at.velocities, &[t]].concat();
-                    sum += half * weight * lagrangian.evaluate(&values)[0];
-                }
-            }
-        }
-        Ok(sum)
+    let ends = [motion.start(), motion.end()];
+    let mut at = |t: f64| {
+        let at = motion.at(t)?;
+        Ok(lagrangian.evaluate(&[&at.coordinates[..], &at.velocities, &[t]].concat())[0])
     };
-    let (coarse, fine) = (integral(PANELS)?, integral(2 * PANELS)?);
+    let (coarse, fine) = (integral(ends, PANELS, &mut at)?, integral(ends, 2 * PANELS, &mut at)?);
     Ok([fine, (fine - coarse).abs()])
+}
+
+/// The integral between two ends, by four points of Gauss and Legendre to a panel.
+pub(super) fn integral(
+    [start, end]: [f64; 2],
+    panels: usize,
+    at: &mut dyn FnMut(f64) -> Result<f64, SolveError>,
+) -> Result<f64, SolveError> {
+    let (mut sum, half) = (0.0, 0.5 * (end - start) / panels as f64);
+    for panel in 0..panels {
+        let middle = start + half * (2 * panel + 1) as f64;
+        for [node, weight] in NODES {
+            sum += half * weight * (at(middle - half * node)? + at(middle + half * node)?);
+        }
+    }
+    Ok(sum)
 }

@@ -3,10 +3,10 @@
 use mechanics::{State, System};
 
 use crate::SolveError;
+use crate::connect::action::integral;
 
-/// Panels of the quadrature, and its nodes and weights of Gauss and Legendre on [0, 1], two points.
-const PANELS: usize = 200;
-const NODES: [f64; 2] = [0.211_324_865_405_187_1, 0.788_675_134_594_812_9];
+/// Panels of the quadrature.
+const PANELS: usize = 100;
 /// A function of the position is another at the end where it differs by more than this part of its terms.
 const OTHER: f64 = 1e-6;
 
@@ -30,18 +30,15 @@ pub(super) fn other_leaf(system: &System, start: &State, end: &[f64]) -> Result<
     let inputs = [positions.clone(), vec![system.time]].concat();
     for i in (0..system.constraints.len()).filter(|&i| is_rate(i)) {
         let mut row = system.evaluator::<f64>(&inputs, &entries[i * n..(i + 1) * n])?;
-        let (mut change, mut size) = (0.0, 0.0);
-        for panel in 0..PANELS {
-            for node in NODES {
-                let part = (panel as f64 + node) / PANELS as f64;
+        let mut sum = |of: fn(f64) -> f64| {
+            integral([0.0, 1.0], PANELS, &mut |part| {
                 let q = start.q.iter().zip(end).map(|(a, b)| a + part * (b - a));
                 let at: Vec<f64> = q.chain([start.t]).collect();
                 let terms = row.evaluate(&at).iter().zip(start.q.iter().zip(end)).map(|(a, (p, q))| a * (q - p));
-                let terms: Vec<f64> = terms.collect();
-                change += terms.iter().sum::<f64>() / (2 * PANELS) as f64;
-                size += terms.iter().map(|x| x.abs()).sum::<f64>() / (2 * PANELS) as f64;
-            }
-        }
+                Ok(terms.map(of).sum())
+            })
+        };
+        let (change, size) = (sum(|x| x)?, sum(f64::abs)?);
         if change.abs() > OTHER * size {
             let constraint = g.plain(system.constraints[i]);
             return Ok(Some(format!(

@@ -9,7 +9,6 @@ use scene::Scene;
 use crate::carried::{Carried, Which};
 use crate::connect::velocities::Velocities;
 use crate::connect::{Aim, own_constant_names};
-use crate::differences::ORDER_8;
 use crate::direction::Direction;
 use crate::{Choice, Metric, Settings, SolveError, VAKONOMIC, Varying};
 
@@ -35,9 +34,6 @@ pub(super) struct TwoPoint {
     /// Runs so far, and those with derivatives among them.
     pub(super) runs: [usize; 2],
 }
-
-/// Velocities are moved by this part of their unit for derivatives of the start.
-const MOVE: f64 = 1.0 / 64.0;
 
 impl TwoPoint {
     /// In units of the scene.
@@ -174,24 +170,17 @@ impl TwoPoint {
         Some(curve)
     }
 
-    /// How the start moves with each unknown. With a velocity by a difference of order 8: the start is linear
-    /// in it, or nearly so.
+    /// How the start moves with each unknown.
     pub(super) fn directions(&mut self, x: &[f64]) -> Result<Vec<Direction>, SolveError> {
         let free = self.velocities.free.len();
         let mut along = Vec::new();
         for j in 0..free {
-            let mut sum = vec![0.0; self.varying.prepared().start.len()];
-            let mut moved = x.to_vec();
-            for (k, weight) in (1..).zip(ORDER_8) {
-                for sign in [1.0, -1.0] {
-                    moved[j] = x[j] + sign * f64::from(k) * MOVE * self.units[j];
-                    self.set(&moved)?;
-                    let start = &self.varying.prepared().start;
-                    sum.iter_mut().zip(start).for_each(|(sum, y)| *sum += sign * weight * y / MOVE);
-                }
-            }
-            let constants = vec![0.0; self.varying.constants().len()];
-            along.push(Direction { start: sum, constants, scale: self.units[j] });
+            let (name, scale, mut moved) = (self.names[j].clone(), self.units[j], x.to_vec());
+            along.push(Direction::by(&name, x[j], scale, &mut |value| {
+                moved[j] = value;
+                self.set(&moved)?;
+                Ok(self.varying.prepared().start_and_constants())
+            })?);
         }
         self.set(x)?;
         let prepared = self.varying.prepared();
