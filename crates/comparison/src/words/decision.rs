@@ -33,7 +33,7 @@ pub(super) fn in_brief(comparison: &Comparison) -> (String, String) {
     let constants = constants(membership, "μ₀");
     match some {
         false => (format!("for every μ₀ ({proved})"), own),
-        true if every => (own.clone(), format!("for every μ₀ ({proved})")),
+        true if every => (own, format!("for {constants} ({proved})")),
         true => (format!("{own}; the same with {constants} ({proved})"), own),
     }
 }
