@@ -230,3 +230,36 @@ fn sentences_of_other_commands() {
     }
     assert!(hold(&bowl, [Beside::Brackets(&Integrability::Integrable { exact: true }, 0)]).is_err());
 }
+
+/// A rigid body that turns about its third axis at the rate 1, and rests otherwise: `P_φ` acts on `ψ', θ'`
+/// alone, on nothing at the start. The vakonomic motion has `P_φ = −(∂L/∂φ' + μ)`, any `P_ψ`.
+#[test]
+fn a_costate_without_effect_at_the_start_is_decided_later() {
+    let text = r#"
+title = "Turning"
+[coordinates]
+psi = { start = -1 }
+theta = { start = 0.3 }
+phi = { start = 0.5 }
+[definitions]
+R = "rotation(zxz, psi, theta, phi)"
+W = "body_angular_velocity(R)"
+[system]
+lagrangian = "dot(W, diag(1, 2, 3)*W)/2 - R.zz"
+constraints = ["W.z - 1"]
+[start.velocities]
+"psi'" = 0
+"theta'" = 0
+[run]
+duration = 2
+"#;
+    let scene = Scene::parse("turning", text).unwrap_or_else(|e| panic!("{e}"));
+    let choices = motion::choices(&scene);
+    let of = |name: &str| choices.iter().find(|choice| choice.label.contains(name)).expect("a formulation");
+    let pairing = comparison::Pairing::new(&scene, of("vakonomic"), of("quasi-velocities")).expect("a pair");
+    let found = pairing.decide(2.0).expect("a decision");
+    let decision = &found.decision;
+    assert_eq!(found.contradiction(), None);
+    assert_eq!((decision.until, decision.set.dimension()), (None, 1), "{decision:?}");
+    assert!(decision.set.distance(&[0.7, -3.0]) < 1e-8 && decision.set.distance(&[0.7, 0.0]) > 1.0, "{decision:?}");
+}

@@ -196,3 +196,13 @@ fn short_numbers() {
     assert_eq!(enumerate(&["a".into(), "b".into(), "c".into()]), "a, b and c");
     assert_eq!([None, Some(0.12345)].map(or_dash), ["–", "0.123"]);
 }
+
+/// A particle of constant speed, `x'² + y'² = 1`: at `μ₀ = −1/2`, `L + μ f` has no velocities left.
+#[test]
+fn every_multiplier_is_one_with_regular_equations() {
+    let text = "title = \"Constant speed\"\n[coordinates]\nx = { start = 0 }\ny = { start = 0 }\n[system]\n\
+        lagrangian = \"(x'^2 + y'^2)/2\"\nconstraints = [\"x'^2 + y'^2 - 1\"]\n[start.velocities]\n\"x'\" = 0.6\n\
+        \"y'\" = 0.8\n[run]\nduration = 1\n";
+    let answer = comparison::words::answer(&crate::compared::compared("speed", text)).expect("an answer");
+    assert!(answer.contains("Same: Chetaev and vakonomic, for every μ₀ with regular equations (proved)"), "{answer}");
+}

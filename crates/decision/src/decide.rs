@@ -174,6 +174,9 @@ fn judged(fine: &mut Transport, coarse: &mut Transport, paths: &[Path; 2]) -> Re
     let (start, end) = fine.span();
     let [own, other] = paths;
     let way = (own.end - start).abs().min((other.end - start).abs());
+    if way == 0.0 {
+        return Err(own.stop.clone().unwrap_or(DecisionError::Curve { reason: "it ends where it starts".into() }));
+    }
     let bounds = bounds(own, start, way.copysign(end - start));
     let panels = bounds.len() - 1;
     let (constants, scales) = (fine.family.constants(), fine.scales.constants.clone());
@@ -227,10 +230,9 @@ fn judged(fine: &mut Transport, coarse: &mut Transport, paths: &[Path; 2]) -> Re
     // what no constants can do up to some time they cannot do at all
     let longest = |verdict: Verdict| found.iter().rposition(|decision| decision.verdict == verdict);
     let longest = longest(Verdict::NotContained).or_else(|| longest(Verdict::Contained));
-    match (longest.or(found.len().checked_sub(1)), stopped) {
-        (Some(i), _) => Ok(found.swap_remove(i)),
-        (None, Some(stop)) => Err(own.stop.clone().unwrap_or(stop)),
-        (None, None) => Err(DecisionError::Curve { reason: "it ends where it starts".into() }),
+    match longest.or(found.len().checked_sub(1)) {
+        Some(i) => Ok(found.swap_remove(i)),
+        None => Err(own.stop.clone().or(stopped).unwrap_or(DecisionError::Curve { reason: "it has no part".into() })),
     }
 }
 

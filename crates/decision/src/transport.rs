@@ -127,7 +127,7 @@ impl<'a> Transport<'a> {
         let bounded = self.bounded.evaluate(&bounded);
         // what round-off leaves of a zero says no size
         let values: Vec<f64> = bounded.iter().map(|x| if x.may_be_zero() { 0.0 } else { x.value }).collect();
-        let terms: Vec<f64> = bounded.iter().map(|x| x.magnitude).collect();
+        let terms: Vec<f64> = bounded.iter().map(|x| x.size()).collect();
         let (start, end) = self.curve.span();
         Scales::new(
             shape,

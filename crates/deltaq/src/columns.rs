@@ -114,12 +114,7 @@ pub fn row(t: f64, now: &Outputs) -> String {
 
 /// Numbers with all their digits, between commas.
 pub fn print(numbers: &[f64]) -> String {
-    let mut text = String::with_capacity(20 * numbers.len());
-    for (i, x) in numbers.iter().enumerate() {
-        text += if i == 0 { "" } else { "," };
-        text += &format!("{x:?}");
-    }
-    text
+    format!("{numbers:?}").trim_matches(['[', ']']).replace(", ", ",")
 }
 
 /// The first line of a table.

@@ -54,6 +54,22 @@ fn without_a_certificate_there_is_a_reason() {
 }
 
 #[test]
+fn a_projection_that_moves_nothing_leaves_numbers_exact() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = folder.path().join("sledge.toml").display().to_string();
+    let sledge = include_str!("../../catalogue/scenes/sledge.toml");
+    let projected = |velocities: &str| {
+        let start = format!("[start]\nproject = true\n[start.velocities]\n{velocities}");
+        std::fs::write(&file, sledge.replacen("[start.velocities]\n", &start, 1)).expect("written");
+    };
+    projected("");
+    assert!(answer(&["prove", &file, "--out", "-"], 0).0.contains("\"order\": 1"));
+    projected("\"y'\" = 5\n");
+    let (_, complaint) = answer(&["prove", &file, "--out", "-"], 3);
+    assert!(complaint.contains("but projected ones"), "{complaint}");
+}
+
+#[test]
 fn a_scene_that_is_proved_is_plain() {
     let folder = tempfile::tempdir().expect("a folder");
     let file = folder.path().join("disc.toml").display().to_string();

@@ -28,8 +28,8 @@ pub enum FitError {
     /// A column has no standard deviation.
     #[error("the column `{0}` has no standard deviation, neither in [film] nor by name nor for all columns")]
     NoDeviation(String),
-    /// A standard deviation is not positive.
-    #[error("the standard deviation of `{of}` is {found}; it must be finite and above 0")]
+    /// A standard deviation is not positive, or its square is no number.
+    #[error("the standard deviation of `{of}` is {found}; it must be from 1e-100 to 1e100")]
     Deviation { of: String, found: f64 },
     /// A film begins before the scene.
     #[error("t = {t} is before the start of the scene, t = {start}")]

@@ -95,9 +95,9 @@ impl Deviations {
     }
 }
 
-/// A standard deviation that makes sense.
+/// A standard deviation that makes sense: squares of residuals by it are finite.
 pub(crate) fn positive(of: &str, found: f64) -> Result<f64, FitError> {
-    match found > 0.0 && found.is_finite() {
+    match (1e-100..=1e100).contains(&found) {
         true => Ok(found),
         false => Err(FitError::Deviation { of: of.into(), found }),
     }

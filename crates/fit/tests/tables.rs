@@ -53,6 +53,7 @@ fn what_is_no_film_is_refused_with_its_place() {
         ("t,x\n-1,1\n", 1.0, "film:2:1: t = -1 is before the start of the scene, t = 0"),
         ("t,x\n0,1\n", 0.0, "film:1:3: the standard deviation of `x` is 0"),
         ("t,x\n0,1\n", f64::NAN, "film:1:3: the standard deviation of `x` is NaN"),
+        ("t,x\n0,1\n", 1e-300, "it must be from 1e-100 to 1e100"),
     ] {
         let error = read(table, sigma).unwrap_err().to_string();
         assert!(error.contains(said), "{error}");

@@ -1,6 +1,9 @@
-"""One object of each class, and every method of it from eight threads at once; a freeze ends with the stacks."""
+"""One object of each class, and every method of it from eight threads at once; a freeze ends with the stacks.
+
+Some seconds long, or `ROUNDS` of them, whatever time they take."""
 
 import faulthandler
+import os
 import pickle
 import sys
 import threading
@@ -9,7 +12,8 @@ import time
 import deltaq
 import numpy as np
 
-THREADS, SECONDS, FROZEN = 8, 4.0, 100.0
+THREADS, ROUNDS = 8, int(os.environ.get("ROUNDS", "0"))
+SECONDS, FROZEN = (1e9, 36_000.0) if ROUNDS else (4.0, 100.0)
 # seldom otherwise: a thread that gives Python's lock up finds another one that waits for it
 sys.setswitchinterval(1e-5)
 faulthandler.dump_traceback_later(FROZEN, exit=True)
@@ -107,7 +111,7 @@ def work(place):
         for call in long[place % len(long) :] + long[: place % len(long)]:
             call()
         end, turn = time.monotonic() + SECONDS, 0
-        while turn == 0 or (turn < 100 and time.monotonic() < end):
+        while turn == 0 or (turn < (ROUNDS or 100) and time.monotonic() < end):
             first = (place * len(short)) // THREADS
             for call in short[first:] + short[:first]:
                 call()

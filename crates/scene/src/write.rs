@@ -37,13 +37,13 @@ fn written(scene: &Scene) -> String {
         for p in &system.parameters {
             let written = system.written_parameter(p);
             let is_number = g.as_number(written).is_some();
-            let value = if is_number { number(p.value) } else { quoted(&g.plain(written)) };
+            let value = if is_number { format!("{:?}", p.value) } else { quoted(&g.plain(written)) };
             text.line(&g.name(p.symbol), &value);
         }
     }
     text.header("coordinates");
     for (c, &q) in system.coordinates.iter().zip(&start.q) {
-        text.line(&c.name, &format!("{{ unit = {}, start = {} }}", quoted(&c.unit), number(q)));
+        text.line(&c.name, &format!("{{ unit = {}, start = {q:?} }}", quoted(&c.unit)));
     }
     write_system(&mut text, system);
     for (header, constant) in [("invariants", true), ("observables", false)] {
@@ -59,29 +59,29 @@ fn written(scene: &Scene) -> String {
         text.header(&format!("film.{}", key(&filmed.name)));
         text.line("is", &quoted(&g.plain(filmed.expression)));
         if let Some(sigma) = filmed.sigma {
-            text.line("sigma", &number(sigma));
+            text.line("sigma", &format!("{sigma:?}"));
         }
     }
     for body in &scene.view.bodies {
         write_body(&mut text, &scene.view, body);
     }
     text.header("start");
-    text.line("time", &number(start.t));
+    text.line("time", &format!("{:?}", start.t));
     text.header("start.velocities");
     for (c, &v) in system.coordinates.iter().zip(&start.v) {
-        text.line(&g.name(c.velocity), &number(v));
+        text.line(&g.name(c.velocity), &format!("{v:?}"));
     }
     for r in &scene.removals {
         removal(&mut text, system, r);
     }
     if !scene.multipliers.is_empty() {
         text.header("vakonomic");
-        text.line("multipliers", &list(&scene.multipliers));
+        text.line("multipliers", &format!("{:?}", scene.multipliers));
     }
     text.header("run");
-    text.line("duration", &number(scene.duration));
+    text.line("duration", &format!("{:?}", scene.duration));
     if !system.breakpoints.is_empty() {
-        text.line("breakpoints", &list(&system.breakpoints));
+        text.line("breakpoints", &format!("{:?}", system.breakpoints));
     }
     text.0
 }
@@ -111,7 +111,7 @@ fn write_body(text: &mut Table, View { graph, bodies }: &View, body: &Body) {
         |entries: &[Expr]| format!("[{}]", entries.iter().map(|&e| graph.plain(e)).collect::<Vec<_>>().join(", "));
     text.header(&format!("view.{}", key(&body.name)));
     text.line("shape", &quoted(body.shape.kind.word()));
-    text.line("size", &list(&body.shape.size));
+    text.line("size", &format!("{:?}", body.shape.size));
     text.line("at", &quoted(&vector(&body.at)));
     let rows: Vec<String> = (0..3).map(|i| vector(body.rotation.row(i))).collect();
     text.line("rotation", &quoted(&format!("[{}]", rows.join(", "))));
@@ -129,10 +129,9 @@ fn removal(text: &mut Table, system: &System, removal: &Removal) {
     text.line("parameters", &format!("[{}]", parameters.join(", ")));
     match &removal.constants {
         ConstantsRule::Zero => text.line("constants", "\"zero\""),
-        ConstantsRule::Natural { horizon } => text.line("constants", &format!("{{ horizon = {} }}", number(*horizon))),
+        ConstantsRule::Natural { horizon } => text.line("constants", &format!("{{ horizon = {horizon:?} }}")),
         ConstantsRule::Given(values) => {
-            let entry =
-                |(w, x): (&mechanics::MemoryVariable, &f64)| format!("{} = {}", key(&g.name(w.symbol)), number(*x));
+            let entry = |(w, x): (&mechanics::MemoryVariable, &f64)| format!("{} = {x:?}", key(&g.name(w.symbol)));
             let entries: Vec<String> = removal.memory.iter().zip(values).map(entry).collect();
             text.line("constants", &format!("{{ start = {{ {} }} }}", entries.join(", ")));
         }
@@ -178,15 +177,6 @@ impl Table {
 pub(super) fn key(name: &str) -> String {
     let bare = |c: char| c.is_ascii_alphanumeric() || c == '_' || c == '-';
     if !name.is_empty() && name.chars().all(bare) { name.into() } else { quoted(name) }
-}
-
-fn list(numbers: &[f64]) -> String {
-    format!("[{}]", numbers.iter().map(|&x| number(x)).collect::<Vec<_>>().join(", "))
-}
-
-/// The shortest number that reads back as the same one.
-fn number(x: f64) -> String {
-    format!("{x:?}")
 }
 
 /// `text` as a basic string of TOML.

@@ -166,7 +166,8 @@ impl Form {
         let quarter = g.mul(g.ratio(1, 4), g.powi(u, 2));
         let scope = |name: &str| match name {
             "u" => Some(u),
-            _ => Some(clock.unwrap_or(quarter)),
+            "s" => Some(clock.unwrap_or(quarter)),
+            _ => None,
         };
         let read = g.parse(FORMS[self.which % FORMS.len()], &scope, &[]);
         read.unwrap_or_else(|fault| unreachable!("a rare function cannot be read: {fault}"))

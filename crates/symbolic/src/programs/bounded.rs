@@ -45,6 +45,11 @@ impl Bounded {
         self.value.abs() <= self.round_off()
     }
 
+    /// The magnitude; zero where it is what underflows.
+    pub fn size(self) -> f64 {
+        if self.magnitude * f64::EPSILON > UNDERFLOW { self.magnitude } else { 0.0 }
+    }
+
     /// Whether value and magnitude are finite.
     pub fn is_finite(self) -> bool {
         self.value.is_finite() && self.magnitude.is_finite()
