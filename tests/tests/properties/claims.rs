@@ -17,7 +17,7 @@ static ALL: LazyLock<Suite> = LazyLock::new(|| {
 /// Systems with constraints.
 static CONSTRAINED: LazyLock<Suite> = LazyLock::new(|| Suite::new(Kind::ALL[1..].to_vec(), &[(9, 64), (12, 64)]));
 static LINEAR: LazyLock<Suite> = LazyLock::new(|| Suite::new(linear(), &[(7, 64), (8, 16)]));
-static INTEGRABLE: LazyLock<Suite> = LazyLock::new(|| Suite::new(integrable(), &[(1, 48), (14, 48)]));
+static INTEGRABLE: LazyLock<Suite> = LazyLock::new(|| Suite::new(integrable(), &[(1, 96), (14, 96)]));
 static NONINTEGRABLE: LazyLock<Suite> =
     LazyLock::new(|| Suite::new(nonintegrable(), &[(5, 64), (15, 24), (16, 48), (17, 48)]));
 static AFFINE: LazyLock<Suite> = LazyLock::new(|| Suite::new(vec![Kind::Affine], &[(6, 48)]));
