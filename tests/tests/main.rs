@@ -2,6 +2,7 @@
 
 mod acceptance;
 mod architecture;
+mod counts;
 mod discrete;
 mod faults;
 mod formulas;

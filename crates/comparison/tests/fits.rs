@@ -10,8 +10,8 @@ use scene::Scene;
 use symbolic::SplitMix;
 
 /// Values per constant on a line through the fit, half of them equidistant, half dense near it; and as many
-/// drawn ones around it.
-const VALUES: usize = 400;
+/// drawn ones around it. Where `FITS_OF` asks for scenes, four times as many.
+const VALUES: usize = 100;
 
 /// Scenes of the ordinary test, with what their vakonomic fits have to stay under; `FITS_OF=all` takes every
 /// scene, `FITS_OF=NAME,…` these.
@@ -43,7 +43,8 @@ impl Family<'_> {
 /// Values on lines through `center`, and drawn ones around it.
 fn values(center: &[f64]) -> Vec<Vec<f64>> {
     let size = center.iter().fold(1.0, |a: f64, c| a.max(c.abs()));
-    let half = VALUES / 2;
+    let values = if std::env::var_os("FITS_OF").is_some() { 4 * VALUES } else { VALUES };
+    let half = values / 2;
     let part = |i: usize| (i as f64 + 0.5) / half as f64;
     let sign = |i: usize| if i.is_multiple_of(2) { size } else { -size };
     let near = |i: usize| sign(i) * 10f64.powf(5.0 * part(i) - 4.0);
@@ -55,7 +56,7 @@ fn values(center: &[f64]) -> Vec<Vec<f64>> {
     let line = |j: usize| (0..half).flat_map(move |i| [5.0 * size * (2.0 * part(i) - 1.0), near(i)].map(|by| (j, by)));
     let mut rows: Vec<Vec<f64>> = (0..center.len()).flat_map(line).map(|(j, by)| moved(j, by)).collect();
     let mut random = SplitMix::new(7);
-    let drawn = if center.len() > 1 { VALUES * center.len() } else { 0 };
+    let drawn = if center.len() > 1 { values * center.len() } else { 0 };
     rows.extend((0..drawn).map(|_| {
         let radius = size * 10f64.powf(5.0 * random.unit() - 4.0);
         center.iter().map(|c| c + radius * (2.0 * random.unit() - 1.0)).collect()

@@ -36,10 +36,9 @@ impl System {
         let place: Vec<f64> = q.iter().copied().chain([t]).collect();
         let mut rows = Rows::new(self)?;
         let start = rows.at(&place)?;
-        let svd = SingularValues::of(&start);
-        let rank = rank(&svd, AT_START);
-        let velocities = SingularValues::of(&start.columns(0, q.len()).into_owned());
-        if rank == rows.count || self::rank(&velocities, AT_START) < rank {
+        let rank_of = |matrix: &DMatrix<f64>| rank(&SingularValues::of(matrix), AT_START);
+        let rank = rank_of(&start);
+        if rank == rows.count || rank_of(&start.columns(0, q.len()).into_owned()) < rank {
             return None;
         }
         let stays = (0..WAYS).all(|way| rows.keeps_rank(&place, &start, rank, way) == Some(true));

@@ -11,6 +11,7 @@ import subprocess
 from fractions import Fraction
 
 import pytest
+import test_proof
 from test_proof import CATALOGUE, FORGED, PROGRAM, SCRIPT, UNREADABLE, VERIFIED, changed, changes, same_function, scene_file, signed, verdict, written
 
 SLEIGH = "m/2*((x' - a*phi'*sin(phi))^2 + (y' + a*phi'*cos(phi))^2) + J/2*phi'^2"
@@ -341,8 +342,9 @@ REAL = [
 
 
 def test_certificates_of_the_program(tmp_path):
+    """Of every other system, and some forged; of all of them with PROOF_CHANGES. Every kind is among them several times."""
     kinds = {"no measure": 0, "measure": 0, "multiplier": 0, "no multiplier": 0, "bound": 0, "integral": 0}
-    for place, (name, sets) in enumerate(REAL):
+    for place, (name, sets) in enumerate(REAL if test_proof.ALL else REAL[::2]):
         scene, folder = CATALOGUE / f"{name}.toml", tmp_path / str(place)
         words = [PROGRAM, "integrals", scene, "--certificates", folder, "--quiet", *(word for text in sets for word in ("--set", text))]
         subprocess.run(words, check=True, capture_output=True)
@@ -363,7 +365,7 @@ def test_certificates_of_the_program(tmp_path):
             assert code == FORGED, (name, sets, file.name, said)
             if sets:
                 assert verdict(tmp_path, true | {"set": {}}, scene)[0] == FORGED
-    assert all(count >= 10 for count in kinds.values()), kinds
+    assert all(count >= (10 if test_proof.ALL else 4) for count in kinds.values()), kinds
     print(kinds)
 
 
@@ -398,7 +400,7 @@ def harmless(true, path, other):
 
 @pytest.mark.parametrize("kind", ["no measure", "measure", "multiplier", "no multiplier", "bound", "integral"])
 def test_what_is_changed_is_forged_or_cannot_be_read(images, tmp_path, kind):
-    # each single change, held against the file
+    # single changes, held against the file: of every field the first and each third one, or all
     over, off = sleigh(a="0", potential="x^2*y"), sleigh(potential="x^2*y + sin(phi)")
     true = {
         "no measure": lambda: no_measure(images), "measure": lambda: measure(images, over, "1/4", phi=["0", "-1/2"]),
@@ -406,6 +408,11 @@ def test_what_is_changed_is_forged_or_cannot_be_read(images, tmp_path, kind):
         "multiplier": lambda: multiplier(images, sleigh(a="0"), "-1/4", phi=["0", "1/2"]), "no multiplier": lambda: no_multiplier(images, sleigh()),
     }[kind]()
     found = [(path, other) for path, other in changes(true) if path]
+    if not test_proof.ALL:
+        of = {}
+        for path, other in found:
+            of.setdefault(path[:1], []).append((path, other))
+        found = [change for changes_of_field in of.values() for change in changes_of_field[::3]]
     counts = [0, 0, 0]
     file = tmp_path / "scene.toml"
     table = lambda name, fields: f"[{name}]\n" + "".join(f"{x} = {y}\n" for x, y in fields.items())

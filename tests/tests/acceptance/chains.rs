@@ -135,7 +135,7 @@ fn a_long_train_is_trusted_and_as_good_as_it_says() {
 #[test]
 fn short_hitches_are_no_reason_for_another_form() {
     for (trailers, hitch) in [(4, 1e-2), (3, 1e-5)] {
-        let overrides = [("d", hitch), ("duration", 10.0 * hitch)].map(|(name, x)| (name.to_string(), x.into()));
+        let overrides = [("d", hitch), ("duration", 3.0 * hitch)].map(|(name, x)| (name.to_string(), x.into()));
         let scene = scene::catalogue::find(&format!("n-trailer-{trailers}"), &overrides).expect("a train");
         must_be_as_good_as_it_says(&format!("{trailers} trailers, hitches of {hitch:e}"), &scene);
     }

@@ -1,4 +1,7 @@
 //! One suite a theorem. What each claim says and assumes is at the check, in the crate `random`.
+//!
+//! The check `reports` puts the same claims to 1,000 systems. Here are as many of others as a fault in a derivation
+//! needs to be seen, and the fractions at the end of a test to be told from chance; `PROPTEST_CASES` takes more.
 
 use std::sync::LazyLock;
 
@@ -9,14 +12,14 @@ use super::support::{Suite, for_all, part};
 
 /// Systems with and without constraints, and how many of them for each theorem.
 static ALL: LazyLock<Suite> = LazyLock::new(|| {
-    Suite::new(Kind::ALL.to_vec(), &[(0, 96), (2, 96), (3, 150), (4, 150), (6, 96), (10, 64), (11, 256)])
+    Suite::new(Kind::ALL.to_vec(), &[(0, 48), (2, 48), (3, 64), (4, 64), (6, 48), (10, 32), (11, 256)])
 });
 /// Systems with constraints.
-static CONSTRAINED: LazyLock<Suite> = LazyLock::new(|| Suite::new(Kind::ALL[1..].to_vec(), &[(9, 64), (12, 96)]));
-static LINEAR: LazyLock<Suite> = LazyLock::new(|| Suite::new(linear(), &[(7, 96), (8, 24)]));
+static CONSTRAINED: LazyLock<Suite> = LazyLock::new(|| Suite::new(Kind::ALL[1..].to_vec(), &[(9, 64), (12, 64)]));
+static LINEAR: LazyLock<Suite> = LazyLock::new(|| Suite::new(linear(), &[(7, 64), (8, 16)]));
 static INTEGRABLE: LazyLock<Suite> = LazyLock::new(|| Suite::new(integrable(), &[(1, 96), (14, 96)]));
 static NONINTEGRABLE: LazyLock<Suite> =
-    LazyLock::new(|| Suite::new(nonintegrable(), &[(5, 96), (15, 24), (16, 48), (17, 48), (18, 24)]));
+    LazyLock::new(|| Suite::new(nonintegrable(), &[(5, 64), (15, 24), (16, 48), (17, 48), (18, 24)]));
 static AFFINE: LazyLock<Suite> = LazyLock::new(|| Suite::new(vec![Kind::Affine], &[(6, 48)]));
 
 /// Kinds with constraints that are linear (or affine) in the velocities and well conditioned.

@@ -1,0 +1,96 @@
+//! What is done twice is seen: operations on expressions, counted by the room that asks for them. Nobody waits for
+//! one motion that is derived twice; who compares, sweeps, or draws a thousand systems, does.
+
+use comparison::{Comparison, Extent};
+use motion::{Ensemble, EnsembleOptions, Prepared, Settings, choices, derive_in_form, setting, solve_choice};
+use scene::Scene;
+use symbolic::faults::chances;
+
+const DERIVE: usize = 0;
+const PLAN: usize = 1;
+/// Folders of what is counted together.
+const ROOMS: [&[&str]; 2] = [
+    &["crates/chetaev/", "crates/vakonomic/", "crates/removed-constraint/", "crates/reduction/"],
+    &["equations/src/plan"],
+];
+
+/// What work says, and the operations of each of [`ROOMS`] in it.
+fn counted<T>(work: impl FnOnce() -> T) -> (T, [usize; ROOMS.len()]) {
+    let (result, asked) = chances(work);
+    let files: Vec<String> = asked.iter().map(|chance| chance.at.file().replace('\\', "/")).collect();
+    (result, ROOMS.map(|room| files.iter().filter(|file| room.iter().any(|folder| file.contains(folder))).count()))
+}
+
+fn scene(name: &str) -> Scene {
+    catalogue::find(name, &[]).unwrap_or_else(|error| panic!("{error}"))
+}
+
+/// Choices of a scene by place, each with a scene of its own: a graph remembers what was asked of it.
+fn each<T>(name: &str, work: impl Fn(&Scene, &motion::Choice) -> T) -> Vec<T> {
+    let all = 0..choices(&scene(name)).len();
+    all.map(|i| {
+        let scene = scene(name);
+        work(&scene, &choices(&scene)[i])
+    })
+    .collect()
+}
+
+const SCENES: [&str; 4] = ["sledge", "disc", "trailer", "ball-in-cone"];
+
+#[test]
+fn a_motion_is_derived_and_planned_once() {
+    let settings = Settings::default();
+    for name in SCENES {
+        let parts = each(name, |scene, choice| {
+            let (derived, [derive, none]) =
+                counted(|| derive_in_form(&scene.system, &scene.start, choice, settings.form));
+            let (equations, _) = derived.unwrap_or_else(|error| panic!("{name}: {error}"));
+            let (prepared, [_, plan]) = counted(|| Prepared::new(setting(scene), equations, &settings));
+            assert!(prepared.is_ok() && none == 0 && derive > 0, "{name}, {}", choice.label);
+            [derive, plan]
+        });
+        let whole = each(name, |scene, choice| {
+            let (motion, count) = counted(|| solve_choice(scene, choice, &settings));
+            (motion.is_ok_and(|motion| motion.charts.is_empty()), count)
+        });
+        println!("{name}: {parts:?}");
+        // in another chart on the way, a motion is derived anew
+        let one_chart: Vec<_> = whole.into_iter().zip(&parts).filter(|((one, _), _)| *one).collect();
+        assert!(
+            one_chart.len() > 2 && one_chart.iter().all(|((_, count), parts)| count == *parts),
+            "{name}: {one_chart:?}"
+        );
+        assert!(parts.iter().any(|count| count[PLAN] > 0), "{name}: nothing is planned");
+    }
+}
+
+#[test]
+fn a_comparison_derives_and_plans_each_motion_once() {
+    let settings = Settings::default();
+    for name in SCENES {
+        let alone = each(name, |scene, choice| counted(|| solve_choice(scene, choice, &settings)).1);
+        let scene = scene(name);
+        let all = choices(&scene);
+        let mut comparison = Comparison::new(scene, Extent::Gaps, &settings).expect("compared");
+        let (_, together) = counted(|| {
+            for choice in all {
+                comparison.solve(choice, &settings).expect("compared");
+            }
+        });
+        let sum: [usize; 2] = [DERIVE, PLAN].map(|room| alone.iter().map(|count| count[room]).sum());
+        assert_eq!(together, sum, "{name}");
+    }
+}
+
+#[test]
+fn members_are_neither_derived_nor_planned() {
+    for name in ["sledge", "disc", "trailer"] {
+        let scene = scene(name);
+        let ensemble = Ensemble::new(&scene, &choices(&scene)[0], &[], &Settings::default());
+        let mut ensemble = ensemble.unwrap_or_else(|error| panic!("{name}: {error}"));
+        let members: Vec<_> = (0..20).filter_map(|_| ensemble.member(&[]).ok()).collect();
+        let options = EnsembleOptions { threads: 1, estimate: true };
+        let (motions, count) = counted(|| ensemble.motions(&members, &[0.5 * scene.duration], &options));
+        assert_eq!((motions.len(), count), (20, [0, 0]), "{name}");
+    }
+}
