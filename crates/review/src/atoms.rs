@@ -198,6 +198,10 @@ pub(crate) fn atoms(reading: &Reading) -> Vec<Atom> {
     for (i, terms) in terms.iter().enumerate() {
         found.extend(terms.iter().map(|&t| (Called::Term(g.plain(t), places[i].clone()), rows(&[(i, t)]))));
     }
+    for &x in &q {
+        let words = format!("{} turns the other way in L, as by a rotation transposed", g.name(x));
+        found.push((Called::Whole(words), balances(g.sub(turned(g, system.lagrangian, x), system.lagrangian))));
+    }
     for t in terms_of(g, system.lagrangian) {
         found.extend(misprints(system, t, "of L", false).into_iter().map(|(called, l)| (called, balances(l))));
     }
@@ -210,29 +214,50 @@ pub(crate) fn atoms(reading: &Reading) -> Vec<Atom> {
     found.into_iter().map(of).collect()
 }
 
-/// Each constraint written wrong in one term.
-pub(crate) fn wrong_constraints(system: &System) -> Vec<(usize, Expr, String)> {
-    let g = &system.graph;
-    let mut found = Vec::new();
-    for (i, &f) in system.constraints.iter().enumerate() {
-        let terms = terms_of(g, f);
-        let turned = |x: Symbol| {
+/// `e` with `−sin x` for `sin x`: a rotation by `x` that is transposed.
+fn turned(g: &Graph, e: Expr, x: Symbol) -> Expr {
+    let sine = g.call(Function::Sin, g.variable(x));
+    g.replace(e, &[(sine, g.neg(sine))].into_iter().collect())
+}
+
+/// The constraints with one of them written wrong in one term, or all in one way; what is wrong.
+pub(crate) fn wrong_constraints(system: &System) -> Vec<(Vec<Expr>, String)> {
+    let (g, own) = (&system.graph, &system.constraints);
+    let mut found: Vec<(Vec<Expr>, String)> = Vec::new();
+    for p in &system.parameters {
+        let negative = [(p.symbol, g.neg(g.variable(p.symbol)))].into_iter().collect();
+        let words =
+            format!("{} has the wrong sign in the constraints, as for a contact on the other side", g.name(p.symbol));
+        found.push((g.substitute_all(own, &negative), words));
+    }
+    for x in system.positions() {
+        let words = format!("{} turns the other way in the constraints, as by a rotation transposed", g.name(x));
+        found.push((own.iter().map(|&f| turned(g, f, x)).collect(), words));
+    }
+    for (i, &f) in own.iter().enumerate() {
+        let mut add = |f: Expr, words: String| {
+            let mut all = own.clone();
+            all[i] = f;
+            found.push((all, format!("{words} in constraint {}", i + 1)));
+        };
+        for x in system.positions() {
             let [sine, cosine] = [Function::Sin, Function::Cos].map(|f| g.call(f, g.variable(x)));
             let exchanged = g.replace(f, &[(sine, cosine), (cosine, sine)].into_iter().collect());
-            (exchanged != f).then(|| (i, exchanged, format!("sine and cosine of {} are exchanged", g.name(x))))
-        };
-        found.extend(system.positions().into_iter().filter_map(turned));
+            add(exchanged, format!("sine and cosine of {} are exchanged", g.name(x)));
+        }
+        let terms = terms_of(g, f);
         for &t in terms.iter().filter(|_| terms.len() > 1) {
             for (kappa, factor) in
                 [(-1.0, g.integer(-1)), (-2.0, g.integer(-2)), (1.0, g.one()), (-0.5, g.ratio(-1, 2))]
             {
                 let words = Called::Term(g.plain(t), String::new()).words(kappa).unwrap_or_default();
-                found.push((i, g.add(f, g.mul(factor, t)), words));
+                add(g.add(f, g.mul(factor, t)), words);
             }
             for (called, change) in misprints(system, t, "", true) {
-                found.push((i, g.add(f, change), called.words(1.0).unwrap_or_default()));
+                add(g.add(f, change), called.words(1.0).unwrap_or_default());
             }
         }
     }
+    found.retain(|(all, _)| all != own);
     found
 }

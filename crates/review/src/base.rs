@@ -221,7 +221,7 @@ pub(crate) fn substituted(scene: &Scene, reading: &Reading, terms: &[Expr]) -> V
 
 /// The scene with one constraint written wrong: in its rate and in the reaction, or in one of them, or with
 /// the rate of its coefficients left out besides; and how often what was written wrong.
-pub(crate) fn with_constraints(reading: &Reading, wrong: Vec<(usize, Expr, String)>) -> Vec<Base> {
+pub(crate) fn with_constraints(reading: &Reading, wrong: Vec<(Vec<Expr>, String)>) -> Vec<Base> {
     let system = &reading.system;
     let (g, v, flow) = (&system.graph, system.velocities(), system.flow());
     let (momenta, slopes) = (g.gradient(system.lagrangian, &v), g.gradient(system.lagrangian, &system.positions()));
@@ -236,13 +236,11 @@ pub(crate) fn with_constraints(reading: &Reading, wrong: Vec<(usize, Expr, Strin
     };
     let right = g.total_derivatives(&system.constraints, &flow);
     let mut bases = Vec::new();
-    for (i, f, what) in wrong {
-        let mut constraints = system.constraints.clone();
-        constraints[i] = f;
+    for (constraints, what) in wrong {
         let rates = g.total_derivatives(&constraints, &flow);
         let driven = g.total_derivatives(&constraints, &still);
         let frozen: Vec<Expr> = rates.iter().zip(driven).map(|(&rate, driven)| g.sub(rate, driven)).collect();
-        let said = |more: &str| format!("{what} in constraint {}{more}", i + 1);
+        let said = |more: &str| format!("{what}{more}");
         bases.extend(base(&constraints, &rates, vec![said("")]));
         bases.extend(base(&constraints, &right, vec![said(", in its reaction only")]));
         bases.extend(base(&system.constraints, &rates, vec![said(", in its rate only")]));

@@ -1,5 +1,5 @@
 //! A C function `y' = F(t, y)` rewritten in the notation of scenes: assignments in a row, calls of functions
-//! of the same file with the same names, and `solve(n, a, b)` for `a z = b`. The entry `a[3]` is named `a_3_`.
+//! of the same file with the same names, and `solve(n, a, b)` for `a z = b`. `a[3]` is the name `a_3_`.
 
 use std::collections::HashSet;
 

@@ -28,21 +28,31 @@ pub(crate) type Columns<C> = Vec<Vec<Vec<C>>>;
 
 /// A residual over all points, and columns as long.
 struct Stack<C> {
-    residual: Vec<C>,
-    columns: Vec<Vec<C>>,
+    at: Residuals<C>,
     /// The same at the shifted points, and how many these are.
     slopes: Residuals<C>,
     unknowns: usize,
 }
 
 impl<C: Number> Stack<C> {
-    /// Whether accelerations are determined with these multiples of columns: `0 = 0` explains everything.
-    fn determines(&self, of: &[(usize, C)]) -> bool {
-        let add = |i: usize, x: C| of.iter().fold(x, |sum, &(k, kappa)| sum + kappa * self.slopes.columns[k][i]);
-        let slopes: Vec<C> = self.slopes.residual.iter().enumerate().map(|(i, &x)| add(i, x)).collect();
-        let rows = slopes.len() / self.unknowns.max(1);
-        let mut slopes: Vec<Vec<C>> = slopes.chunks(rows.max(1)).map(<[C]>::to_vec).collect();
-        eliminate(&mut slopes, rows).len() == self.unknowns
+    /// The multiples `κ` of these columns that make up for the residual, where accelerations are determined
+    /// with them: `0 = 0` explains everything.
+    fn multiples(&self, of: &[usize]) -> Option<Vec<C>> {
+        let row =
+            |all: &Residuals<C>, i: usize| of.iter().map(|&k| all.columns[k][i]).chain([all.residual[i]]).collect();
+        let mut rows: Vec<Vec<C>> = (0..self.at.residual.len()).map(|i| row(&self.at, i)).collect();
+        let pivots = eliminate(&mut rows, of.len());
+        if pivots.len() < of.len() || rows[of.len()..].iter().any(|row| !row[of.len()].vanishes()) {
+            return None;
+        }
+        let mut kappas = vec![C::ZERO; of.len()];
+        pivots.iter().zip(&rows).for_each(|(&k, row)| kappas[k] = -row[of.len()]);
+        let count = self.slopes.residual.len();
+        let sum = |row: Vec<C>| row.iter().zip(&kappas).fold(row[of.len()], |sum, (&x, &kappa)| sum + kappa * x);
+        let slopes: Vec<C> = (0..count).map(|i| sum(row(&self.slopes, i))).collect();
+        let width = (count / self.unknowns.max(1)).max(1);
+        let mut slopes: Vec<Vec<C>> = slopes.chunks(width).map(<[C]>::to_vec).collect();
+        (eliminate(&mut slopes, width).len() == self.unknowns).then_some(kappas)
     }
 }
 
@@ -123,8 +133,8 @@ impl<'f, C: Number> Case<'f, C> {
             }
             Some(all)
         };
-        let Residuals { residual, columns } = over(&self.points, at_points)?;
-        Some(Stack { residual, columns, slopes: over(&self.shifted, at_shifted)?, unknowns: self.shifted.len() })
+        let at = over(&self.points, at_points)?;
+        Some(Stack { at, slopes: over(&self.shifted, at_shifted)?, unknowns: self.shifted.len() })
     }
 
     /// Whether theirs are these equations.
@@ -164,7 +174,7 @@ impl<'f, C: Number> Case<'f, C> {
         let stacks = base.signs(self.frame).into_iter().filter_map(|signs| self.stack(base, &signs, columns));
         let mut found: Vec<(usize, Vec<String>)> = Vec::new();
         for stack in stacks {
-            if pairs { two(&stack, called, &mut found) } else { one(&stack, called, &mut found) }
+            found.extend(explained(&stack, called, pairs));
         }
         found.sort_by_key(|(odd, _)| *odd);
         found.truncate(TOLD);
@@ -180,62 +190,37 @@ fn named<C: Number>(called: &Called, kappa: C) -> Option<(usize, String)> {
     called.words(kappa).map(|words| (odd, words))
 }
 
-fn one<C: Number>(stack: &Stack<C>, called: &[&Called], found: &mut Vec<(usize, Vec<String>)>) {
-    for (k, (column, called)) in stack.columns.iter().zip(called).enumerate() {
-        let open = (0..column.len()).filter(|&i| !column[i].vanishes());
-        let Some(place) = open.max_by(|&a, &b| column[a].weight().total_cmp(&column[b].weight())) else { continue };
-        // in proportion; quotients are dear in a field
-        let (r, u) = (stack.residual[place], column[place]);
-        if stack.residual.iter().zip(column).any(|(&own, &x)| !(own * u - r * x).vanishes()) {
-            continue;
-        }
-        let Some(over) = u.inverse() else { continue };
-        let kappa = -(r * over);
-        if let Some((odd, words)) = named(called, kappa).filter(|_| stack.determines(&[(k, kappa)])) {
-            found.push((odd, vec![words]));
-        }
-    }
-}
-
-/// Pairs: the determinants of the residual and two columns in three sums of rows tell which are looked at.
-fn two<C: Number>(stack: &Stack<C>, called: &[&Called], found: &mut Vec<(usize, Vec<String>)>) {
+/// The columns, or pairs, of which multiples with a name make up for the residual. Determinants with it in
+/// three sums of rows tell which are looked at.
+fn explained<C: Number>(stack: &Stack<C>, called: &[&Called], pairs: bool) -> Vec<(usize, Vec<String>)> {
     let mut random = symbolic::SplitMix::new(7);
-    let weights: Vec<Vec<C>> = (0..3)
-        .map(|_| (0..stack.residual.len()).map(|_| C::draw(&mut random, 8, 1.0).coefficient(0)).collect())
-        .collect();
-    let sums = |column: &[C]| -> Vec<C> {
-        let sum = |w: &Vec<C>| w.iter().zip(column).fold(C::ZERO, |sum, (&w, &x)| sum + w * x);
-        weights.iter().map(sum).collect()
+    let count = stack.at.residual.len();
+    let weights: [Vec<C>; 3] =
+        std::array::from_fn(|_| (0..count).map(|_| C::draw(&mut random, 8, 1.0).coefficient(0)).collect());
+    let sums = |column: &Vec<C>| -> [C; 3] {
+        std::array::from_fn(|k| weights[k].iter().zip(column).fold(C::ZERO, |sum, (&w, &x)| sum + w * x))
     };
-    let cross = |a: &[C], b: &[C]| [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
-    let residual = sums(&stack.residual);
-    let columns: Vec<Vec<C>> = stack.columns.iter().map(|column| sums(column)).collect();
-    for (i, a) in columns.iter().enumerate() {
-        let normal = cross(&residual, a);
-        for (j, b) in columns.iter().enumerate().skip(i + 1) {
-            let determinant = normal.iter().zip(b).fold(C::ZERO, |sum, (&x, &y)| sum + x * y);
-            if !determinant.vanishes() {
-                continue;
-            }
-            // κ_a a + κ_b b = −r, by the largest minor
-            let minors = cross(a, b);
-            let largest = (0..3).max_by(|&x, &y| minors[x].weight().total_cmp(&minors[y].weight()));
-            let Some((k, over)) = largest.and_then(|k| Some((k, minors[k].inverse()?))) else { continue };
-            if minors[k].vanishes() {
-                continue;
-            }
-            let kappas = [-(cross(&residual, b)[k] * over), cross(&residual, a)[k] * over];
-            let all = stack.residual.iter().zip(&stack.columns[i]).zip(&stack.columns[j]);
-            if all.into_iter().any(|((&r, &a), &b)| !(r + kappas[0] * a + kappas[1] * b).vanishes()) {
-                continue;
-            }
-            if let (Some((x, one)), Some((y, two))) = (named(called[i], kappas[0]), named(called[j], kappas[1]))
-                && stack.determines(&[(i, kappas[0]), (j, kappas[1])])
-            {
-                found.push((x + y, vec![one, two]));
-            }
+    let cross =
+        |a: [C; 3], b: [C; 3]| [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
+    let words = |of: &[usize]| {
+        let kappas = stack.multiples(of)?;
+        let names: Option<Vec<_>> = of.iter().zip(kappas).map(|(&k, kappa)| named(called[k], kappa)).collect();
+        names.map(|names| (names.iter().map(|(odd, _)| odd).sum(), names.into_iter().map(|(_, words)| words).collect()))
+    };
+    let residual = sums(&stack.at.residual);
+    let columns: Vec<[C; 3]> = stack.at.columns.iter().map(sums).collect();
+    let mut found = Vec::new();
+    for (i, &a) in columns.iter().enumerate() {
+        let normal = cross(residual, a);
+        let parallel = |b: &[C; 3]| normal.iter().zip(b).fold(C::ZERO, |sum, (&x, &y)| sum + x * y).vanishes();
+        if pairs {
+            let others = (i + 1..columns.len()).filter(|&j| parallel(&columns[j]));
+            found.extend(others.filter_map(|j| words(&[i, j])));
+        } else if normal.iter().all(|x| x.vanishes()) {
+            found.extend(words(&[i]));
         }
     }
+    found
 }
 
 /// Names and columns of mistakes.

@@ -103,9 +103,14 @@ impl Notation {
 /// # }
 /// ```
 pub fn review(scene: &Scene, file: &str, text: &str, asked: &Asked) -> Result<Review, ReviewError> {
+    read(scene, file, text, asked, true)
+}
+
+/// The review, with explanations or with the verdict only.
+fn read(scene: &Scene, file: &str, text: &str, asked: &Asked, explains: bool) -> Result<Review, ReviewError> {
     let system = &scene.system;
     let lines = match Notation::of(file, text) {
-        Notation::Table => return review::review(scene, &[], Some(&table::rows(system, file, text)?), asked),
+        Notation::Table => return review::review(scene, &[], Some(&table::rows(system, file, text)?), asked, explains),
         Notation::Text => text::lines(file, text),
         Notation::Latex => latex::lines(&system.graph, &names(scene, asked), file, text)?,
         Notation::C => {
@@ -116,7 +121,7 @@ pub fn review(scene: &Scene, file: &str, text: &str, asked: &Asked) -> Result<Re
     if lines.is_empty() {
         return Err(ReviewError::Unreadable { place: file.into(), what: "there are no equations in it".into() });
     }
-    review::review(scene, &lines, None, asked)
+    review::review(scene, &lines, None, asked, explains)
 }
 
 /// Names of the scene, and those in which its names are given.

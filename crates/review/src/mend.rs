@@ -5,7 +5,7 @@ use std::ops::Range;
 
 use scene::Scene;
 
-use crate::{Asked, Notation, Verdict, review};
+use crate::{Asked, Notation, Verdict};
 
 /// A factor of one term that makes equations right, with what it says of the term.
 const CHANGES: [(&str, &str); 4] = [
@@ -64,7 +64,7 @@ pub fn mends(scene: &Scene, text: &str, asked: &Asked) -> Vec<Mend> {
             let changed = format!("{}{factor}*({term}){}", &line[..at.start], &line[at.end..]);
             let text: Vec<&str> =
                 lines.iter().enumerate().map(|(j, line)| if i == j { &changed } else { *line }).collect();
-            review(scene, "", &text.join("\n"), asked).is_ok_and(|review| review.verdict == Verdict::Right)
+            crate::read(scene, "", &text.join("\n"), asked, false).is_ok_and(|review| review.verdict == Verdict::Right)
         };
         if let Some((_, fault)) = CHANGES.into_iter().find(|(factor, _)| is_right(factor)) {
             let column = line[..at.start].chars().count() + 1;

@@ -100,6 +100,7 @@ pub(crate) fn review(
     lines: &[Line],
     rows: Option<&[Row]>,
     to_be: &Asked,
+    explains: bool,
 ) -> Result<Review, ReviewError> {
     let reading = read(scene, lines, &to_be.wheres)?;
     let formulation = to_be.formulation;
@@ -132,7 +133,7 @@ pub(crate) fn review(
         review.notes.push(format!("the scene has no {} equations that these can be compared with", formulation.title));
         return Ok(review);
     }
-    let held = Held { scene, frame: &frame, asked: &asked, formulation };
+    let held = Held { scene, frame: &frame, asked: &asked, formulation, explains };
     if let Some(rows) = rows {
         let points = held.points(rows, to_be.tolerance);
         review.differences = held.differences(&points, &mut review.state);
@@ -161,7 +162,7 @@ pub(crate) fn review(
         }
         Some(trouble) => review.notes.push(trouble.words()),
     }
-    for seed in 0..if review.verdict == Verdict::Wrong { 10 } else { 0 } {
+    for seed in 0..if review.verdict == Verdict::Wrong && explains { 10 } else { 0 } {
         let drawn = frame.draw::<Bounded>(seed, u32::from(seed > 0), true).and_then(|inputs| frame.at(inputs));
         let points: Vec<Point<Bounded>> = drawn.into_iter().collect();
         review.differences = held.differences(&points, &mut review.state);
@@ -213,6 +214,7 @@ struct Held<'a> {
     frame: &'a Frame<'a>,
     asked: &'a [Base],
     formulation: &'static Formulation,
+    explains: bool,
 }
 
 impl Held<'_> {
@@ -246,7 +248,7 @@ impl Held<'_> {
                     .push(format!("for the numbers of the scene: {} stand in none of these", absent.join(", ")));
             }
         }
-        if review.verdict == Verdict::Wrong {
+        if review.verdict == Verdict::Wrong && self.explains {
             review.explanations = explanations(self.scene, self.frame.reading, case, self.asked, self.formulation);
         }
         Ok(())

@@ -60,6 +60,30 @@ fn other_formulations_are_named_whatever_their_multipliers_are_called() {
 }
 
 #[test]
+fn mistakes_about_bodies_are_named() {
+    let disc = "m*x'' = X\nm*y'' = Y\nI*psi'' = -R*(X*cos(phi) + Y*sin(phi))\nJ*phi'' = 0\n\
+                x' = R*psi'*cos(phi)\ny' = R*psi'*sin(phi)";
+    assert_eq!(of("disc", disc).verdict, Verdict::Right);
+    let sleigh = "m*x'' - m*a*(phi''*sin(phi) + phi'^2*cos(phi)) = -N*sin(phi)
+        m*y'' + m*a*(phi''*cos(phi) - phi'^2*sin(phi)) = N*cos(phi)
+        I*phi'' = m*a*(x''*sin(phi) - y''*cos(phi))\ny'*cos(phi) = x'*sin(phi)";
+    for (scene, theirs, said) in [
+        (
+            "disc",
+            &disc.replace("R*", "(-R)*"),
+            "R has the wrong sign in the constraints, as for a contact on the other side",
+        ),
+        ("disc", &disc.replace("sin(phi)", "sin(-phi)"), "phi turns the other way in the constraints"),
+        // the moment of inertia about the mass centre, for rates about the blade
+        ("sleigh", &sleigh.to_string(), "`m*a^2*phi'^2/2` is missing in L"),
+    ] {
+        let found = of(scene, theirs);
+        assert_eq!(found.verdict, Verdict::Wrong, "{theirs}");
+        assert!(found.explanations[0][0].starts_with(said), "{said}: {found:?}");
+    }
+}
+
+#[test]
 fn numbers_of_the_scene_are_enough_where_theirs_have_no_names() {
     let scene = scene::catalogue::find("planar-body", &[]).unwrap();
     let text = "title = \"fall\"\n[parameters]\nm = 2\ng = 9.81\nr = 1\n[coordinates]\nz = { start = 0 }\n[system]\n\

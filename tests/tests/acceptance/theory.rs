@@ -283,8 +283,8 @@ fn friction_needs_the_right_half_plane() {
     }
 }
 
-/// Theorem 9(b): in `(q, v, μ = N f)` added mass is a regular perturbation of the vakonomic motion, in velocities
-/// alone it is stiff.
+/// Theorem 9(b): in `(q, v, μ = N f)` added mass is a regular perturbation of the vakonomic motion, in
+/// velocities alone it is stiff.
 #[test]
 fn added_mass_is_a_regular_perturbation_with_its_multiplier() {
     let own = scene("particle", &[]);

@@ -98,7 +98,7 @@ fn run_massive(
     run(Setting { system: &free, start: &start, ..setting }, Method::Dop853, equations, &multipliers)
 }
 
-/// The system without constraints, and its equations with `L + ½ N f·f` and the force `−κ N Aᵀ f` in `(q, v, μ)`:
+/// The system without constraints, and its equations in `(q, v, μ)` with `L + ½ N f·f` and `−κ N Aᵀ f`:
 ///
 /// ```text
 /// d/dt 𝓛_v − 𝓛_q = Q − κ Aᵀ μ ,        d/dt f = μ̇/N
