@@ -170,7 +170,8 @@ fn what_the_curvature_predicts_and_what_was_measured_are_told_apart() {
         "{why}"
     );
     // substitution is said of removals without costates, and only of those
-    let said = "t^3.00. No memory variable has a costate (P = 0) in removed constraint (coordinates): this is substitution";
+    let said =
+        "t^3.00. No memory variable has a costate (P = 0) in removed constraint (coordinates): this is substitution";
     assert!(why.contains(said) && why.matches("substitution").count() == 1, "{why}");
 }
 

@@ -95,11 +95,7 @@ pub(crate) fn is_seen(gap: &Gap) -> bool {
 
 /// One line per pair: the verdict, when thresholds are passed, and how sure it is; for a page, or with all
 /// digits.
-pub(crate) fn pairs<'a>(
-    comparison: &Comparison,
-    pairs: impl IntoIterator<Item = &'a Pair>,
-    for_page: bool,
-) -> Table {
+pub(crate) fn pairs<'a>(comparison: &Comparison, pairs: impl IntoIterator<Item = &'a Pair>, for_page: bool) -> Table {
     let columns = ["pair", "verdict", ">1e-6 after (s)", ">1e-3 after (s)", ">0.1 after (s)", ">largest gap"];
     let coordinates =
         comparison.scene.system.coordinates.iter().map(|c| format!(">largest in {} ({})", c.name, c.unit));

@@ -192,7 +192,11 @@ mod tests {
         let list = std::fs::read_to_string(LIST).expect("the list");
         let listed: Vec<Listed> = list.lines().filter_map(read).collect();
         let (mut tried, mut missed) = (0, Vec::new());
-        for name in crate::sources::names().expect("names").iter().filter(|name| crate::pages::is_page(name) && !is_written(name)) {
+        for name in crate::sources::names()
+            .expect("names")
+            .iter()
+            .filter(|name| crate::pages::is_page(name) && !is_written(name))
+        {
             let page = Page::of(name, &std::fs::read_to_string(name).expect("a page"));
             for (line, part) in &page.parts {
                 for number in numbers(part) {

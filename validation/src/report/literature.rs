@@ -149,7 +149,9 @@ impl Case {
     fn question(&self) -> String {
         let link = self.asked.link();
         match &self.along {
-            None if self.put_in => format!("{link}: does $L$ give Chetaev's motion after the constraint is substituted into it?"),
+            None if self.put_in => {
+                format!("{link}: does $L$ give Chetaev's motion after the constraint is substituted into it?")
+            }
             None if self.almost_every_start => format!("{link}: almost every start"),
             None => format!("{link}: this start"),
             Some(Along { formulation: Formulation { name, .. }, quantity, during: [from, to], between }) => {
