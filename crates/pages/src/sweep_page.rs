@@ -32,8 +32,8 @@ struct Point {
 type Measure = (&'static str, &'static str, &'static str, fn(&Point) -> Option<f64>);
 
 const MEASURES: [Measure; 2] = [
-    ("apart", "time to a gap of 1e-3 (s)", "none by the end", |point| point.apart),
-    ("decision", "least mismatch of accelerations, relative", "not decided", |point| point.mismatch),
+    ("apart", "time to a gap of 1e-3 (s)", "no such gap", |point| point.apart),
+    ("decision", "relative mismatch", "not decided", |point| point.mismatch),
 ];
 
 impl Point {
