@@ -1,4 +1,5 @@
-//! Discrete variational principles of nonholonomic systems: structure-preserving time steps without equations of motion.
+//! Discrete variational principles of nonholonomic systems: structure-preserving steps without equations of
+//! motion.
 //!
 //! Time is cut into steps `h`; on the interval from node `k` to node `k+1` every function is taken at the
 //! midpoint, with `x̄ = (x_k + x_{k+1})/2`, `ẋ ≈ (x_{k+1} − x_k)/h`, `t̄ = t_k + h/2`. Derivatives are by

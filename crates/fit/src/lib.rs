@@ -1,4 +1,4 @@
-//! # Fits of nonholonomic models to recordings (films): estimates with intervals, and the formulation supported
+//! # Fits of nonholonomic models to recordings (films): estimates, intervals, the formulation supported
 //!
 //! Given: a scene, films, and unknowns of the scene. A film is a table of times `t_k` and columns
 //! `c(t, q, v, p)` with standard deviations σ; unknown numbers θ are parameters, start values, multipliers

@@ -47,11 +47,6 @@ fn unlinked(text: &str) -> String {
     format!("{ahead}{label}{}", unlinked(behind))
 }
 
-/// A part of a page that opens where its summary is clicked.
-pub fn folded(summary: &str, body: &str) -> String {
-    format!("<details><summary>{summary}</summary>\n\n{body}\n</details>")
-}
-
 /// Text in which nothing begins a tag of HTML.
 fn tagless(text: &str) -> String {
     let begins_a_tag = |c: char| c.is_ascii_alphabetic() || "/!?".contains(c);

@@ -15,12 +15,8 @@ pub type Swept = (String, f64, f64, usize);
 
 /// The name of a number with its unit, which is known of coordinates and their velocities at the start.
 pub fn with_unit(scene: &Scene, name: &str) -> String {
-    let coordinates = &scene.system.coordinates;
-    match coordinates.iter().find(|c| c.name == name.trim_end_matches('\'')) {
-        Some(c) if c.name == name => format!("{name} ({})", c.unit),
-        Some(c) => format!("{name} ({}/s)", c.unit),
-        None => name.to_owned(),
-    }
+    let coordinate = scene.system.coordinates.iter().find(|c| c.name == name.trim_end_matches('\''));
+    coordinate.map_or(name.to_owned(), |c| format!("{name} ({}{})", c.unit, if c.name == name { "" } else { "/s" }))
 }
 
 /// A row of the table, as read.
@@ -36,8 +32,8 @@ struct Point {
 type Measure = (&'static str, &'static str, &'static str, fn(&Point) -> Option<f64>);
 
 const MEASURES: [Measure; 2] = [
-    ("apart", "time to a gap of 1e-3 (s)", "none by the end", |point| point.apart),
-    ("decision", "least mismatch of accelerations, relative", "not decided", |point| point.mismatch),
+    ("apart", "time to a gap of 1e-3 (s)", "no such gap", |point| point.apart),
+    ("decision", "relative mismatch", "not decided", |point| point.mismatch),
 ];
 
 impl Point {
@@ -94,18 +90,16 @@ pub fn sweep_files(scene: &Scene, [first, second]: [&str; 2], ranges: &[Swept], 
 fn message(title: &str, [first, second]: [&str; 2], (kind, .., value): &Measure, points: &[Point]) -> String {
     let (all, mut values) = (points.len(), points.iter().filter_map(value).collect::<Vec<f64>>());
     values.sort_by(f64::total_cmp);
-    match (*kind, values.first().zip(values.last())) {
-        ("apart", Some((least, most))) => format!(
-            "{title}: {first} and {second} differ by 1e-3 within {} to {} s at {} of {all} points",
-            short(*least),
-            short(*most),
-            values.len()
-        ),
-        ("decision", _) => {
+    let count = values.len();
+    match (*kind, &values[..]) {
+        ("apart", [least, ..]) => {
+            let [least, most] = [*least, values[count - 1]].map(short);
+            format!("{title}: {first} and {second} differ by 1e-3 after {least} to {most} s at {count} of {all} points")
+        }
+        _ => {
             let some = points.iter().filter(|point| point.has_some()).count();
             format!("{title}: constants make the {second} motion the {first} one at {some} of {all} points")
         }
-        _ => format!("{title}: {first} and {second}"),
     }
 }
 

@@ -21,7 +21,7 @@ const HABITS: [(&str, &str); 6] = [
 ];
 
 /// No page has a sentence over [`SENTENCE`] words, a page over [`PAGE`], one of the [`HABITS`], a number
-/// without a source, or a citation without its entry; nor has a message, help or front page of a crate such a habit.
+/// without a source, or a citation without its entry; nor has a message, help or front page such a habit.
 pub(crate) fn check() -> Result<Outcome> {
     let (names, mut faults) = (names()?, Vec::new());
     let pages: Vec<Page> =

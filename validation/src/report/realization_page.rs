@@ -289,7 +289,8 @@ fn picture(name: &str, approaches: &[Approach]) -> Result<String> {
     let curve = |a: &Approach| Curve {
         label: a.name.into(),
         style: a.style,
-        points: STRENGTHS.iter().copied().zip(a.distances.iter().copied()).collect(),
+        // a realization that stops has no distance
+        points: STRENGTHS.iter().copied().zip(a.distances.iter().copied()).filter(|(_, d)| d.is_finite()).collect(),
     };
     let first = approaches.iter().find_map(|a| a.distances.first().copied().filter(|d| d.is_finite()));
     // a line of slope -1 below the others

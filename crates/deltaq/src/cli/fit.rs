@@ -20,8 +20,8 @@ pub struct FitArguments {
     /// Unknowns: parameters and start values. `NAME~VALUE` gives the first guess, `NAME~MEAN±DEVIATION` a
     /// prior, `NAME>=BOUND` a bound. Each film has start values of its own and
     /// shares parameters; `NAME@2` is the second film's own; `start` is all coordinates and given velocities;
-    /// `clock` is the relative error of the recordings' clock. Multipliers and costates at the start are unknown
-    /// anyway.
+    /// `clock` is the relative error of the recordings' clock. Multipliers and costates at the start are
+    /// unknown anyway.
     #[arg(long, value_name = "NAME,…", value_delimiter = ',', required = true, allow_hyphen_values = true)]
     pub free: Vec<Unknown>,
     /// Numbers of the first-order law, which adds a row: `eps` (ε ≥ 0), `slip` (1/N, above 0); as in

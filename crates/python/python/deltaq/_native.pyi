@@ -1268,7 +1268,7 @@ class Connection:
 
 @final
 class Residuals:
-    """Residuals between a motion and data at k times, as a function of numbers p of its system: for `scipy.optimize`.
+    """Residuals between a motion and data at k times, as a function of numbers p: for `scipy.optimize`.
 
     Residual i of a column is (value at time i - data)/sigma; columns follow one another, so that there are
     as many residuals as columns times k. They have no unit where `sigma` has that of its column.
