@@ -4,6 +4,7 @@
 //! ones are errors that say by how much.
 
 mod complete;
+mod configurations;
 mod data;
 mod error;
 mod numeric;
@@ -13,6 +14,7 @@ mod regularity;
 mod removal_start;
 mod velocities;
 
+pub use configurations::configurations;
 pub use complete::{StartProgram, complete_start};
 pub use data::{Completion, StartData, StartNumbers, StartShape};
 pub use error::{Quantity, StartError};

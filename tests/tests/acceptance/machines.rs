@@ -1,6 +1,5 @@
-//! Systems from bodies against those whose formulas were written by hand.
+//! Built-in scenes of bodies against formulas that were written by hand.
 
-use scene::catalogue::find;
 use comparison::{Beyond, beyond_contacts};
 use mechanics::{ConstantsRule, State};
 use motion::{CHETAEV, REMOVED_CONSTRAINT, Settings, VAKONOMIC, solve_choice};
@@ -10,57 +9,37 @@ use symbolic::SplitMix;
 
 use super::support::{choice, gap, must, tight, values};
 
-macro_rules! bodies {
-    ($($name:literal),* $(,)?) => { [$(($name, include_str!(concat!("../scenes/bodies/", $name, ".toml")))),*] };
+macro_rules! by_hand {
+    ($($name:literal)*) => { [$(($name, include_str!(concat!("../scenes/by-hand/", $name, ".toml")))),*] };
 }
 
-/// Built-in scenes whose formulas follow from these bodies.
-const MACHINES: [(&str, &str); 28] = bodies![
-    "ball-in-cone",
-    "ball-in-cylinder",
-    "ball-on-incline",
-    "bicycle",
-    "bowl",
-    "chaplygin-sphere",
-    "coin-on-incline",
-    "disc",
-    "falling-disc",
-    "mobile-robot",
-    "one-motor-robot",
-    "planar-body",
-    "rattleback",
-    "roller-racer",
-    "routh-sphere",
-    "rubber-ball",
-    "rubber-chaplygin-sphere",
-    "rudder-skate",
-    "sledge",
-    "sledge-with-friction",
-    "sleigh",
-    "snakeboard",
-    "trailer",
-    "turning-knife-edge",
-    "turntable",
-    "two-wheeled-carriage",
-    "unicycle-in-potential",
-    "veselova",
-];
+/// Built-in scenes of bodies, and their definitions and `[system]` by hand.
+const MACHINES: [(&str, &str); 31] = by_hand!(
+    "ball-in-cone" "ball-in-cylinder" "ball-on-incline" "bicycle" "bowl" "chaplygin-sphere" "coin-on-incline" "disc"
+    "falling-disc" "mobile-robot" "one-motor-robot" "planar-body" "rattleback" "roller-racer" "routh-sphere"
+    "rubber-ball" "rubber-chaplygin-sphere" "rudder-skate" "servo-pendulum" "sledge" "sledge-with-friction" "sleigh"
+    "snakeboard" "suslov" "trailer" "turning-knife-edge" "turntable" "two-wheeled-carriage" "unicycle-in-potential"
+    "velocity-pendulum" "veselova"
+);
 
-/// A built-in scene with bodies in the place of its formulas and picture.
-fn from_bodies(name: &str, bodies: &str) -> String {
-    let own = scene::catalogue::source(name).unwrap_or_else(|e| panic!("{e}"));
+/// A built-in scene with formulas by hand instead of its bodies and picture.
+fn with_formulas(name: &str, by_hand: &str) -> String {
+    const BODIES: [&str; 8] = ["definitions", "system", "view", "body", "contact", "spring", "damper", "motor"];
     let mut kept = String::new();
     let mut skips = false;
-    for line in own.lines() {
+    for line in source(name).lines() {
         if let Some(header) = line.strip_prefix('[') {
-            skips = ["definitions]", "system]", "view."].iter().any(|section| header.starts_with(section));
+            skips = BODIES.iter().any(|section| header.starts_with(section));
         }
-        if !skips {
+        if !skips && !line.starts_with("gravity") {
             kept += &format!("{line}\n");
         }
     }
-    let gravity = bodies.lines().next().filter(|line| line.starts_with("gravity")).unwrap_or_default();
-    format!("{gravity}\n{kept}{}", &bodies[gravity.len()..])
+    format!("{kept}{by_hand}")
+}
+
+fn source(name: &str) -> String {
+    scene::catalogue::source(name).unwrap_or_else(|e| panic!("{e}"))
 }
 
 pub(crate) fn parsed(text: &str) -> Scene {
@@ -130,16 +109,18 @@ pub(crate) fn same_system(title: &str, by_hand: &Scene, scene: &Scene) {
 
 #[test]
 fn bodies_give_lagrangian_and_constraints_by_hand() {
-    for (name, bodies) in MACHINES {
-        let by_hand = find(name, &[]).unwrap_or_else(|e| panic!("{e}"));
-        same_system(name, &by_hand, &parsed(&from_bodies(name, bodies)));
+    for (name, by_hand) in MACHINES {
+        let scene = parsed(&source(name));
+        assert!(scene.meant.is_some(), "{name} has no bodies");
+        same_system(name, &parsed(&with_formulas(name, by_hand)), &scene);
     }
+
 }
 
 #[test]
 fn the_scene_of_formulas_is_the_same_system() {
-    for (name, bodies) in MACHINES {
-        let scene = parsed(&from_bodies(name, bodies));
+    for (name, _) in MACHINES {
+        let scene = parsed(&source(name));
         let formulas = scene.meant.as_ref().map(|meant| meant.formulas.clone()).unwrap_or_default();
         assert!(!formulas.contains("[body"), "{name}");
         let again = parsed(&formulas);
@@ -157,11 +138,11 @@ fn the_scene_of_formulas_is_the_same_system() {
 #[test]
 fn bodies_move_as_formulas_by_hand_in_every_formulation() {
     let settings = Settings { max_steps: 40_000, ..tight() };
-    for (name, bodies) in MACHINES {
+    for (name, by_hand) in MACHINES {
         let set = [("duration".to_string(), 0.3)];
         let read = |text: &str| Scene::parse_with("scene", text, &set).unwrap_or_else(|e| panic!("{name}: {e}"));
-        let by_hand = read(&scene::catalogue::source(name).unwrap_or_else(|e| panic!("{e}")));
-        let scene = read(&from_bodies(name, bodies));
+        let by_hand = read(&with_formulas(name, by_hand));
+        let scene = read(&source(name));
         let h = by_hand.system.constraints.len();
         // multipliers belong to constraints as they are written: μ₀ = 0 says the same of both
         let mut choices = vec![
@@ -208,17 +189,16 @@ fn multipliers_are_the_forces_of_the_ground() {
         let now = motion.at(scene.start.t).unwrap_or_else(|e| panic!("{e}"));
         now.multipliers.into_iter().take(names).collect()
     };
-    let of = |name: &str| MACHINES.iter().find(|(known, _)| *known == name).map(|(name, b)| from_bodies(name, b));
     // a homogeneous ball on an incline is held back by 2/7 of its weight's pull
-    let found = reactions(&of("ball-on-incline").unwrap_or_default(), &[("duration", 0.1), ("m", 1.4)]);
+    let found = reactions(&source("ball-on-incline"), &[("duration", 0.1), ("m", 1.4)]);
     must("ball on incline: friction", (found[0] + 2.0 / 7.0 * 1.4 * 9.81 * 0.3).abs().max(found[1].abs()), 1e-12);
     // the bicycle stands upright: moments of its weights about where the rear wheel touches
-    let found = reactions(&of("bicycle").unwrap_or_default(), &[("duration", 0.1), ("v", 0.0)]);
+    let found = reactions(&source("bicycle"), &[("duration", 0.1), ("v", 0.0)]);
     let front = 9.81 * (85.0 * 0.3 + 4.0 * 0.9 + 3.0 * 1.02) / 1.02;
     must("bicycle: normal force in front", (found[4] - front).abs() / front, 1e-12);
     // a rattleback at rest in its equilibrium carries its weight
     let at_rest = [("duration", 0.1), ("psi'", 0.0), ("alpha'", 0.0), ("beta'", 0.0)];
-    let found = reactions(&of("rattleback").unwrap_or_default(), &at_rest);
+    let found = reactions(&source("rattleback"), &at_rest);
     must("rattleback: normal force", (found[2] - 9.81).abs(), 1e-12);
 }
 
@@ -227,8 +207,7 @@ fn multipliers_are_the_forces_of_the_ground() {
 #[test]
 fn vakonomic_torques_are_none_of_contacts() {
     for (name, coordinate) in [("disc", "psi"), ("sledge", "phi")] {
-        let (_, bodies) = MACHINES.iter().find(|(known, _)| *known == name).expect("a machine");
-        let scene = Scene::parse_with("scene", &from_bodies(name, bodies), &[("duration".to_string(), 1.0)]);
+        let scene = Scene::parse_with("scene", &source(name), &[("duration".to_string(), 1.0)]);
         let scene = scene.unwrap_or_else(|e| panic!("{e}"));
         let h = scene.system.constraints.len();
         let motion = |formulation, constants| {
