@@ -204,8 +204,9 @@ fn constraints_that_outweigh_the_masses_choose_no_pivots() {
 
 #[test]
 fn a_large_disc_and_a_short_hitch() {
-    let set =
-        |name: &str, key: &str, value: f64| scene::catalogue::find(name, &[(key.into(), value.into())]).expect("a scene");
+    let set = |name: &str, key: &str, value: f64| {
+        scene::catalogue::find(name, &[(key.into(), value.into())]).expect("a scene")
+    };
     for (name, key, values, depth) in [("disc", "R", [5e8, 5e-8], 2), ("trailer", "d", [1e-7, 1e7], 4)] {
         for value in values {
             let scene = set(name, key, value);

@@ -1,7 +1,6 @@
 //! What is zero at the start and switched on later stays in the equations: by steps, edges and bumps, at a
 //! time or a place on the way, in every form, removal and ensemble. And where it is lost, the motion says so.
 
-use scene::catalogue::built_in;
 use comparison::{Verdict, compare_motions, multipliers_of};
 use equations::Formulation;
 use mechanics::{ConstantsRule, Coordinate, Parameter, fresh_symbol};
@@ -11,6 +10,7 @@ use motion::{
     solve_choice,
 };
 use scene::Scene;
+use scene::catalogue::built_in;
 use symbolic::{Expr, SplitMix};
 
 /// Number of switched scenes that are drawn; `SWITCHED` asks for more, 0 for all of them.

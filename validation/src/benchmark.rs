@@ -4,7 +4,6 @@
 use std::fmt::Write;
 
 use anyhow::{Context, Result, bail};
-use scene::catalogue::find;
 use equations::Formulation;
 use mechanics::{ConstantsRule, project_velocity};
 use motion::{
@@ -13,6 +12,7 @@ use motion::{
 use program::File;
 use reference::{DoubleDouble, Point, Question, Wide, reference};
 use scene::Scene;
+use scene::catalogue::find;
 use serde_json::{Value, json};
 use symbolic::SplitMix;
 

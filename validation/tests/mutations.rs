@@ -32,8 +32,10 @@ fn is_wanted(name: &str, writing: &str) -> bool {
 
 #[test]
 fn other_writings_of_a_scene_have_its_sentences() {
-    let wanted: Vec<(&str, &str)> =
-        scene::catalogue::built_in().copied().filter(|(name, _)| WRITINGS.iter().any(|w| is_wanted(name, w.name))).collect();
+    let wanted: Vec<(&str, &str)> = scene::catalogue::built_in()
+        .copied()
+        .filter(|(name, _)| WRITINGS.iter().any(|w| is_wanted(name, w.name)))
+        .collect();
     let asked = over_threads(0, wanted.len(), |i| of_scene(wanted[i].0, wanted[i].1));
     let (mut counts, mut wrong) = (BTreeMap::<String, usize>::new(), Vec::new());
     for (lines, faults) in asked {

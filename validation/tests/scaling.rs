@@ -1,9 +1,9 @@
 //! How cost grows: counts that do not depend on the machine.
 
 use bench::exponent;
-use scene::catalogue::trailer::Coordinates;
 use equations::Formulation;
 use motion::{CHETAEV, REDUCED_CHETAEV, REDUCED_VAKONOMIC};
+use scene::catalogue::trailer::Coordinates;
 use validation::scaling::{FROM, Limits, TRAILERS, counts, line};
 
 #[test]

@@ -1,8 +1,8 @@
 //! A car with trailers.
 
-use scene::catalogue::trailer::{Coordinates, scene, text};
 use mechanics::State;
 use scene::Scene;
+use scene::catalogue::trailer::{Coordinates, scene, text};
 use symbolic::Expr;
 
 /// One body at the start: `x`, `y`, `θ` and their rates.

@@ -195,7 +195,9 @@ impl Maker<'_> {
         let before = join(&under.turns, &axes);
         let turns = match &joint.motion {
             // the orientation of a ball on a surface is that in space
-            Motion::Surface(_, rotation) => rotation.as_ref().map_or(Ok(Vec::new()), |rotation| self.turns(rotation))?,
+            Motion::Surface(_, rotation) => {
+                rotation.as_ref().map_or(Ok(Vec::new()), |rotation| self.turns(rotation))?
+            }
             _ => join(&join(&before, &turn), &backwards(&axes)),
         };
         let rotation = if turns.is_empty() {

@@ -207,7 +207,14 @@ impl Maker<'_> {
     }
 
     /// The velocity of a place against the support, along and across a heading, by name.
-    fn seen(&mut self, c: &Contact, on: Option<usize>, i: usize, (parts, heading): (&[Part], &Sum), at: &str) -> String {
+    fn seen(
+        &mut self,
+        c: &Contact,
+        on: Option<usize>,
+        i: usize,
+        (parts, heading): (&[Part], &Sum),
+        at: &str,
+    ) -> String {
         let frame = join(&[], &[Turn { axis: Axis::Letter('z'), angle: heading.clone() }]);
         let text = match on.map(|on| (self.stands_on(i, on), self.placed(on))) {
             // the axes of a support that carries the body do not turn for what is on it
@@ -220,7 +227,9 @@ impl Maker<'_> {
             _ => {
                 let velocity = self.velocity(parts, &frame);
                 match self.carried(on, at) {
-                    Some(carried) => format!("{velocity} - {}", turned(&written(&backwards(&frame)), &format!("({carried})"))),
+                    Some(carried) => {
+                        format!("{velocity} - {}", turned(&written(&backwards(&frame)), &format!("({carried})")))
+                    }
                     None => velocity,
                 }
             }
@@ -361,7 +370,8 @@ impl Maker<'_> {
         let rows = first.map(|first| {
             let seen = self.seen(c, support, i, (&parts, &first.angle), &at);
             let turns = written(&join(&backwards(&[first]), &turns));
-            let slip = self.define(&c.name, "slip", format!("{seen} + {}", turned(&turns, &format!("cross({omega}, {r})"))));
+            let slip =
+                self.define(&c.name, "slip", format!("{seen} + {}", turned(&turns, &format!("cross({omega}, {r})"))));
             [format!("{slip}.x"), format!("{slip}.y")]
         });
         Touch { slip, rows, height: format!("{middle}.z - {reach}"), normal: None, spin, at }

@@ -92,11 +92,22 @@ impl Maker<'_> {
         let from = if origin.is_empty() { middle.clone() } else { format!("{middle} - {origin}") };
         let p = match rotation.is_empty() && origin.is_empty() {
             true => from,
-            false => self.define(&c.name, "p", if rotation.is_empty() { from } else { format!("transpose({rotation})*({from})") }),
+            false => self.define(
+                &c.name,
+                "p",
+                if rotation.is_empty() { from } else { format!("transpose({rotation})*({from})") },
+            ),
         };
         let height = format!("{p}.z - ({k}*{p}.x^2 + {l}*{p}.y^2)/2");
         let zero = || "[0, 0, 0]".to_string();
-        Ok(Touch { at: middle, slip: zero(), rows: Some([zero(), zero()].map(|v| format!("{v}.x"))), height, normal: None, spin: "0".into() })
+        Ok(Touch {
+            at: middle,
+            slip: zero(),
+            rows: Some([zero(), zero()].map(|v| format!("{v}.x"))),
+            height,
+            normal: None,
+            spin: "0".into(),
+        })
     }
 }
 

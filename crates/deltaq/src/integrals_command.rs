@@ -62,7 +62,8 @@ fn swept(arguments: &IntegralsArguments, quiet: bool) -> Result<String> {
     let (text, degree) = (scene::catalogue::source(name)?, usize::from(arguments.degree));
     let asked = |point: &[f64]| -> Result<Reversed> {
         let values = grid.names().map(String::from).zip(point.iter().map(|&x| Number::from(x)));
-        let scene = scene::catalogue::read(name, &text, &set.overrides.iter().cloned().chain(values).collect::<Vec<_>>())?;
+        let scene =
+            scene::catalogue::read(name, &text, &set.overrides.iter().cloned().chain(values).collect::<Vec<_>>())?;
         Ok(reversible_scene(&scene, degree)?)
     };
     // a name that means nothing is a fault of the call

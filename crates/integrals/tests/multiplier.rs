@@ -1,8 +1,8 @@
 //! Chaplygin's multiplier of systems that were built with one.
 
-use scene::catalogue::read;
 use decision::ExactStart;
 use integrals::{Multiplier, reversible};
+use scene::catalogue::read;
 use symbolic::Fraction;
 
 /// `g = (1 + x²) 1` on the constraints, whose lifts have `[X_x, X_y] = ∂_u`, `[X_x, X_z] = ∂_w`. With `f =

@@ -14,8 +14,8 @@ mod regularity;
 mod removal_start;
 mod velocities;
 
-pub use configurations::configurations;
 pub use complete::{StartProgram, complete_start};
+pub use configurations::configurations;
 pub use data::{Completion, StartData, StartNumbers, StartShape};
 pub use error::{Quantity, StartError};
 pub use project::project_velocity;

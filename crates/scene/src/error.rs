@@ -193,7 +193,8 @@ fn joined(roles: &[&str]) -> String {
 }
 
 fn configurations(names: &[String], found: &[Vec<f64>]) -> String {
-    let one = |x: &Vec<f64>| names.iter().zip(x).map(|(name, x)| format!("{name} = {x:.6}")).collect::<Vec<_>>().join(", ");
+    let one =
+        |x: &Vec<f64>| names.iter().zip(x).map(|(name, x)| format!("{name} = {x:.6}")).collect::<Vec<_>>().join(", ");
     let names = names.join(", ");
     match found {
         [] => format!("no start of {names} is known: no values were found that constraints on positions determine"),

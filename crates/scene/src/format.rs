@@ -89,7 +89,11 @@ pub const SCENE: &[Key] = &[
 /// A coordinate.
 pub const COORDINATE: &[Key] = &[
     may("unit", Text, "a label; angles are in radians"),
-    may("start", Expression, "q at the start, in parameters, t and the coordinates above; without it constraints supply it"),
+    may(
+        "start",
+        Expression,
+        "q at the start, in parameters, t and the coordinates above; without it constraints supply it",
+    ),
     may("guess", Number, "a number near q at the start, where constraints on positions leave a choice"),
 ];
 

@@ -23,9 +23,9 @@
 
 use std::fmt;
 
+use crate::Scene;
 use mechanics::{Body, Place, Pose, Poses};
 use picture::{Bodies, MovingPicture, Placement, Solid, Style};
-use crate::Scene;
 use symbolic::CompileError;
 
 /// A motion that is drawn.

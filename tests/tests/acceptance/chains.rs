@@ -1,6 +1,5 @@
 //! Chains in few coordinates, by the velocities of their bodies, are the same systems.
 
-use scene::catalogue::trailer::{self, Coordinates};
 use equations::{Compiled, Plan};
 use mechanics::ConstantsRule;
 use motion::{
@@ -8,6 +7,7 @@ use motion::{
 };
 use reference::{Question, Wide, reference};
 use scene::Scene;
+use scene::catalogue::trailer::{self, Coordinates};
 use symbolic::Scalar;
 
 use super::support::{at, chetaev, choice, common_times, equations, must, some_multipliers};

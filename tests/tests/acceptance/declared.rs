@@ -1,10 +1,10 @@
 //! Declared time derivatives: series taken from those one order ahead are those of their own formulas.
 
-use scene::catalogue::trailer::Coordinates;
 use equations::{Compiled, Equations, Plan};
 use motion::REDUCED_CHETAEV;
 use proptest::{prop_assert, test_runner::TestCaseError};
 use scene::Scene;
+use scene::catalogue::trailer::Coordinates;
 
 use super::chains::{hanging, train};
 use super::reduced_form;

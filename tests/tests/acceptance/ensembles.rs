@@ -1,7 +1,6 @@
 //! Members of ensembles against motions derived and solved one by one, in every formulation of every scene;
 //! their starts against those of the text with other numbers in it.
 
-use scene::catalogue::{CLASSICS, SCENES, find};
 use equations::Equations;
 use integrate::Method;
 use motion::{
@@ -9,6 +8,7 @@ use motion::{
     setting, solve_choice,
 };
 use scene::Scene;
+use scene::catalogue::{CLASSICS, SCENES, find};
 
 /// Not divisible by the number of lanes.
 const MEMBERS: usize = 11;

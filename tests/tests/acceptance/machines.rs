@@ -114,7 +114,6 @@ fn bodies_give_lagrangian_and_constraints_by_hand() {
         assert!(scene.meant.is_some(), "{name} has no bodies");
         same_system(name, &parsed(&with_formulas(name, by_hand)), &scene);
     }
-
 }
 
 #[test]
@@ -177,29 +176,56 @@ fn built_in_scenes_are_not_remarkable() {
     }
 }
 
-/// Multipliers are forces of contacts: Newton and Euler by hand.
+/// Multipliers are forces of contacts: Newton's and Euler's equations by hand, with the reaction as unknown.
 #[test]
 fn multipliers_are_the_forces_of_the_ground() {
-    let reactions = |text: &str, set: &[(&str, f64)]| -> Vec<f64> {
-        let set: Vec<_> = set.iter().map(|&(name, x)| (name.to_string(), x)).collect();
-        let scene = Scene::parse_with("scene", text, &set).unwrap_or_else(|e| panic!("{e}"));
-        let names = scene.meant.as_ref().map(|meant| meant.constraints.len()).unwrap_or_default();
+    let reactions = |name: &str, set: &[(&str, f64)]| -> (State, Vec<f64>) {
+        let set: Vec<_> = set.iter().chain(&[("duration", 0.1)]).map(|&(name, x)| (name.to_string(), x)).collect();
+        let scene = Scene::parse_with("scene", &source(name), &set).unwrap_or_else(|e| panic!("{e}"));
+        let rows = scene.meant.as_ref().map(|meant| meant.constraints.len()).unwrap_or_default();
         let chetaev = choice(CHETAEV, None, ConstantsRule::Given(Vec::new()));
         let mut motion = solve_choice(&scene, &chetaev, &tight()).unwrap_or_else(|e| panic!("{e}"));
         let now = motion.at(scene.start.t).unwrap_or_else(|e| panic!("{e}"));
-        now.multipliers.into_iter().take(names).collect()
+        (scene.start, now.multipliers.into_iter().take(rows).collect())
     };
-    // a homogeneous ball on an incline is held back by 2/7 of its weight's pull
-    let found = reactions(&source("ball-on-incline"), &[("duration", 0.1), ("m", 1.4)]);
-    must("ball on incline: friction", (found[0] + 2.0 / 7.0 * 1.4 * 9.81 * 0.3).abs().max(found[1].abs()), 1e-12);
+    let near = |what: &str, found: &[f64], expected: &[f64]| {
+        let off = found.iter().zip(expected).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        let size = expected.iter().fold(1.0_f64, |size, x| size.max(x.abs()));
+        must(&format!("{what}: force of the contact"), off / size, 1e-12);
+    };
+    // a homogeneous ball on an incline is held back by 2/7 of its weight's pull: the friction needed is 2/7 tan(alpha)
+    let (_, found) = reactions("ball-on-incline", &[("m", 1.4)]);
+    near("ball on incline", &found, &[-2.0 / 7.0 * 1.4 * 9.81 * 0.3, 0.0]);
+    let (pull, normal) = (found[0].hypot(found[1]), 1.4 * 9.81 * 0.3_f64.asin().cos());
+    must("ball on incline: friction needed", (pull / normal - 2.0 / 7.0 * 0.3_f64.asin().tan()).abs(), 1e-12);
     // the bicycle stands upright: moments of its weights about where the rear wheel touches
-    let found = reactions(&source("bicycle"), &[("duration", 0.1), ("v", 0.0)]);
-    let front = 9.81 * (85.0 * 0.3 + 4.0 * 0.9 + 3.0 * 1.02) / 1.02;
-    must("bicycle: normal force in front", (found[4] - front).abs() / front, 1e-12);
+    let (_, found) = reactions("bicycle", &[("v", 0.0)]);
+    near("bicycle", &found[4..], &[9.81 * (85.0 * 0.3 + 4.0 * 0.9 + 3.0 * 1.02) / 1.02]);
     // a rattleback at rest in its equilibrium carries its weight
-    let at_rest = [("duration", 0.1), ("psi'", 0.0), ("alpha'", 0.0), ("beta'", 0.0)];
-    let found = reactions(&source("rattleback"), &at_rest);
-    must("rattleback: normal force", (found[2] - 9.81).abs(), 1e-12);
+    let (_, found) = reactions("rattleback", &[("psi'", 0.0), ("alpha'", 0.0), ("beta'", 0.0)]);
+    near("rattleback", &found, &[0.0, 0.0, 9.81]);
+    // the centre of the upright disc runs on a circle: m v phi' across, along x and y
+    let (State { q, v, .. }, found) = reactions("disc", &[]);
+    let across = 0.5 * v[2] * v[3];
+    near("disc", &found, &[-across * q[3].sin(), across * q[3].cos()]);
+    // on an incline the pull across is held, and (m + I/R²) v' = m g s cos(phi) along
+    let (State { q, v, .. }, found) = reactions("coin-on-incline", &[]);
+    let pull = 9.81 * 0.6;
+    let (along, across) = (-pull * q[3].cos() / 3.0, 0.5 * v[2] * v[3] + pull * q[3].sin());
+    let (sin, cos) = q[3].sin_cos();
+    near("coin on incline", &found, &[along * cos - across * sin, along * sin + across * cos]);
+    let (State { q, v, .. }, found) = reactions("sledge", &[]);
+    near("sledge", &found, &[v[0].hypot(v[1]) * v[2] + 9.81 * 0.4_f64.sin() * q[2].sin()]);
+    // (I + m a²) phi'' = -m a v phi', and m (v phi' + a phi'') across
+    let (State { q, v, .. }, found) = reactions("sleigh", &[]);
+    let speed = v[0] * q[2].cos() + v[1] * q[2].sin();
+    near("sleigh", &found, &[speed * v[2] * (1.0 - 0.16 / 0.46)]);
+    let (State { q, v, .. }, found) = reactions("unicycle-in-potential", &[]);
+    let across = 0.9 * (q[1] * q[2].cos() - q[0] * q[2].sin());
+    near("unicycle", &found, &[v[0].hypot(v[1]) * v[2] + across]);
+    // a circle at 2/7 of the table's rate
+    let (_, found) = reactions("turntable", &[]);
+    near("turntable", &found, &[-(0.2_f64).powi(2) * 0.6, 0.0]);
 }
 
 /// What turns a vakonomic disc and sledge is `C μ`, and no contact has it; Chetaev's reactions are forces of
@@ -226,7 +252,11 @@ fn vakonomic_torques_are_none_of_contacts() {
             "disc" => 0.5 * now.velocities[3],
             _ => now.velocities[0].hypot(now.velocities[1]),
         };
-        let torque = (now.multipliers[h - 1] * rate).abs();
+        let across = match name {
+            "disc" => now.multipliers[1] * now.coordinates[3].cos() - now.multipliers[0] * now.coordinates[3].sin(),
+            _ => now.multipliers[0],
+        };
+        let torque = (across * rate).abs();
         must(&format!("{name}: torque of {torque:.3} at {t:.2}"), (force.abs() - torque).abs() / torque, 1e-8);
     }
 }

@@ -2,7 +2,6 @@
 
 use std::f64::consts::FRAC_PI_2;
 
-use scene::catalogue::trailer::{self, Coordinates};
 use diffsol_methods::{BDF, ESDIRK34, EVERY, TR_BDF2, TSIT45};
 use integrate::Method;
 use mechanics::ConstantsRule;
@@ -11,6 +10,7 @@ use motion::{
     solve_choice,
 };
 use scene::Scene;
+use scene::catalogue::trailer::{self, Coordinates};
 
 use super::closed_forms::sledge;
 use super::support::{

@@ -1,12 +1,12 @@
 //! Chetaev in quasi-velocities is Chetaev: against the saddle-point form and Maggi's, derived independently.
 
-use scene::catalogue::trailer::{self, Coordinates};
 use equations::{Compiled, Equations};
 use mechanics::State;
 use motion::REDUCED_CHETAEV;
 use proptest::{prop_assert, test_runner::TestCaseError};
 use referees::maggi::Maggi;
 use scene::Scene;
+use scene::catalogue::trailer::{self, Coordinates};
 use symbolic::{Expr, Symbol};
 
 use super::support::{

@@ -2,13 +2,13 @@
 
 use std::cell::Cell;
 
-use scene::catalogue::trailer::{self, Coordinates};
 use equations::{Compiled, Equations, Formulation, Outputs, Plan};
 use integrate::Method;
 use motion::{REDUCED_VAKONOMIC, Settings, VAKONOMIC, VAKONOMIC_COSTATE};
 use proptest::prop_assert;
 use reduction::Frame;
 use scene::Scene;
+use scene::catalogue::trailer::{self, Coordinates};
 use symbolic::Function;
 
 use super::support::{

@@ -293,7 +293,10 @@ fn circles(p: [f64; 2], r: f64, q: [f64; 2], s: f64) -> [[f64; 2]; 2] {
 fn configurations(title: &str, given: &str, names: [&str; 2], bodies: &str, expected: [[f64; 2]; 2]) {
     let with = |guess: &dyn Fn(usize) -> String| {
         let free: String = names.iter().enumerate().map(|(k, q)| format!("{q} = {{ {} }}\n", guess(k))).collect();
-        scene::Scene::parse(title, &format!("{HEAD}[coordinates]\n{given}{free}{bodies}[start.velocities]\n\"a'\" = 1\n"))
+        scene::Scene::parse(
+            title,
+            &format!("{HEAD}[coordinates]\n{given}{free}{bodies}[start.velocities]\n\"a'\" = 1\n"),
+        )
     };
     let error = match with(&|_| String::new()) {
         Ok(_) => panic!("{title}: no choice"),
@@ -376,7 +379,10 @@ between = {{ rod = [0, {}], right = "0.15*[-cos(0.3), sin(0.3)]" }}
     let angles = pins.map(|[x, y]| {
         let turn = |angle: f64| angle - std::f64::consts::TAU * (angle / std::f64::consts::TAU).round();
         // at 0 the rod points along -y, and the right arm at pi - 0.3
-        [turn((y - end[1]).atan2(x - end[0]) + 0.5 * std::f64::consts::PI), turn((y + 0.6).atan2(x) - (std::f64::consts::PI - 0.3))]
+        [
+            turn((y - end[1]).atan2(x - end[0]) + 0.5 * std::f64::consts::PI),
+            turn((y + 0.6).atan2(x) - (std::f64::consts::PI - 0.3)),
+        ]
     });
     configurations("Ackermann linkage", "a = { start = 0.2 }\n", ["b", "c"], &ackermann, angles);
 }

@@ -242,12 +242,14 @@ fn a_factor_of_the_constraint() {
     let text = scene::catalogue::source("sledge").expect("built in");
     let factor = "(2 + sin(phi) + x^2)*(y'*cos(phi) - x'*sin(phi))";
     let factor = format!("\n[system]\nconstraints = [\"{factor}\"]\n[start.velocities]");
-    let (free, contact) = text.split_once("[contact").and_then(|(head, tail)| tail.split_once("[start.velocities]").map(|(_, tail)| (head, tail))).expect("a contact");
+    let (free, contact) = text
+        .split_once("[contact")
+        .and_then(|(head, tail)| tail.split_once("[start.velocities]").map(|(_, tail)| (head, tail)))
+        .expect("a contact");
     let other = format!("{free}{factor}{contact}");
     let both = |numbers: &[(&str, f64)]| {
         let numbers: Vec<(String, f64)> = numbers.iter().map(|&(n, x)| (n.to_string(), x)).collect();
-        [&text, &other]
-            .map(|text| Scene::parse_with("sledge", text, &numbers).unwrap_or_else(|e| panic!("{e}")))
+        [&text, &other].map(|text| Scene::parse_with("sledge", text, &numbers).unwrap_or_else(|e| panic!("{e}")))
     };
     let [plain, other] = both(&[("kappa", 5.0), ("duration", 1.0)]);
     let family = |scene: &Scene, mu0: f64| motion_of(scene, equations(&scene.system, KAPPA, None), &[mu0], &tight());

@@ -23,11 +23,7 @@ const PAIRS: [(&str, &str, f64); 4] = [
         include_str!("../scenes/rattleback-by-vectors.toml"),
         1.0,
     ),
-    (
-        include_str!("../../../crates/scene/scenes/bicycle.toml"),
-        include_str!("../scenes/bicycle-by-vectors.toml"),
-        0.5,
-    ),
+    (include_str!("../../../crates/scene/scenes/bicycle.toml"), include_str!("../scenes/bicycle-by-vectors.toml"), 0.5),
 ];
 
 #[test]

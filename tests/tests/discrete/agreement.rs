@@ -1,6 +1,5 @@
 //! Every scene, and systems that nobody chose: discrete motions of order 8 come to the derived ones.
 
-use scene::catalogue::{SCENES, find};
 use discrete::{Composition, DiscreteError};
 use integrate::Method;
 use mechanics::ConstantsRule;
@@ -9,6 +8,7 @@ use motion::{
 };
 use random::{Case, Kind, draw_recipe};
 use scene::Scene;
+use scene::catalogue::{SCENES, find};
 
 /// The horizon, s, at most, and the steps that the continuous motion may need for it: near the edge of a
 /// chart (the ball in the cone after 0.4 s) time scales are a millisecond, which no grid knows.

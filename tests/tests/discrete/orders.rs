@@ -1,7 +1,6 @@
 //! Orders of discrete principles and compositions: error against step, above the plateau of round-off.
 
 use bench::exponent;
-use scene::catalogue::find;
 use discrete::Composition;
 use equations::Formulation;
 use mechanics::ConstantsRule;
@@ -9,6 +8,7 @@ use motion::{
     CHETAEV, Choice, Motion, REMOVED_CONSTRAINT, Settings, Steps, VAKONOMIC, choices, solve_by_steps, solve_choice,
 };
 use scene::Scene;
+use scene::catalogue::find;
 
 /// Errors under this times the size of the motion are round-off; over [`COARSE`] they tell no order yet.
 const PLATEAU: f64 = 2e-13;

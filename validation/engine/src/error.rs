@@ -1,7 +1,7 @@
 //! Errors of a run.
 
-use scene::catalogue::NotFound;
 use motion::SolveError;
+use scene::catalogue::NotFound;
 
 /// Why a scene cannot be put to the engine, or compared with it.
 #[derive(Debug, thiserror::Error)]

@@ -4,9 +4,9 @@ use std::path::PathBuf;
 use std::time::Instant;
 
 use anyhow::{Result, bail};
-use scene::catalogue::find;
 use engine::{Ladder, Study, files};
 use program::write_all;
+use scene::catalogue::find;
 
 fn main() -> Result<()> {
     let folder = PathBuf::from(std::env::args_os().nth(1).unwrap_or_else(|| "reports".into()));

@@ -208,7 +208,11 @@ fn appell_hamel_runs_straight_and_slows() {
 
 #[test]
 fn without_constraints_it_is_lagrange() {
-    let text = SLEDGE.split("[removal").next().unwrap().replace("[contact.blade]          # (5)\nof = \"sledge\"\non = \"slope\"\nlaw = \"blade\"\n", "")
+    let text = SLEDGE
+        .split("[removal")
+        .next()
+        .unwrap()
+        .replace("[contact.blade]          # (5)\nof = \"sledge\"\non = \"slope\"\nlaw = \"blade\"\n", "")
         + "[run]\nduration = 1";
     let scene = scene(&text.replace("\"x'\"   =", "\"y'\" = 0.2\n\"x'\" ="), &[]);
     let state = Maggi::new(&scene.system).unwrap().solve(&scene.start, 1.0, 1e-12).unwrap().state(1.0).unwrap();

@@ -13,10 +13,10 @@ use serde::Deserialize;
 use serde_json::Value;
 
 use crate::report::folder_of;
-use scene::catalogue::CLASSICS;
 use comparison::words::short;
 use pages::{DataPackage, Table};
 use program::File;
+use scene::catalogue::CLASSICS;
 
 const DATA: &str = include_str!("../../equivalence/pages/systems.toml");
 

@@ -6,8 +6,8 @@ use clap::{Args, ValueEnum};
 use equations::Formulation;
 use scene::{Number, Scene};
 
-use scene::catalogue::NotFound;
 use program::TextOrJson;
+use scene::catalogue::NotFound;
 
 /// A scene with changes.
 #[derive(Args, Debug)]

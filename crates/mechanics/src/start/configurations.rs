@@ -57,7 +57,8 @@ pub fn configurations(system: &System, t: f64, q: &[f64], free: &[usize]) -> Res
         if at(&turned).relative_residual(&turned) <= NewtonOptions::default().limit {
             x = turned;
         }
-        let is_known = |known: &Vec<f64>| known.iter().zip(x.iter()).all(|(a, b)| (a - b).abs() <= APART * (size + b.abs()));
+        let is_known =
+            |known: &Vec<f64>| known.iter().zip(x.iter()).all(|(a, b)| (a - b).abs() <= APART * (size + b.abs()));
         if root.rank == n && !found.iter().any(is_known) {
             found.push(x.as_slice().to_vec());
         }

@@ -9,8 +9,8 @@
 //! Two degrees of freedom however long the train: the speed of the car along its heading, and its turning.
 //! With n = 3 and minimal coordinates it is the scene `trailer`.
 
-use mechanics::{Completion, Parameter, State, System, View};
 use crate::Scene;
+use mechanics::{Completion, Parameter, State, System, View};
 use symbolic::{Expr, ParseError};
 
 /// Description of the train.

@@ -170,8 +170,7 @@ const ELSEWHERE: &str = "say what to do: without a command the main job runs, wh
 /// The root of the sources of this program, if the current folder belongs to them.
 pub(crate) fn sources() -> Option<PathBuf> {
     let here = std::env::current_dir().unwrap_or_default();
-    let is_root =
-        |folder: &&Path| folder.join("crates/scene/scenes").is_dir() && folder.join("validation").is_dir();
+    let is_root = |folder: &&Path| folder.join("crates/scene/scenes").is_dir() && folder.join("validation").is_dir();
     here.ancestors().find(is_root).map(Path::to_owned)
 }
 

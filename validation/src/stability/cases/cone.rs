@@ -34,11 +34,7 @@ pub(super) fn chart(theta: f64) -> Vec<Question> {
 fn questions(point: f64, overrides: &[(&str, f64)]) -> Vec<Question> {
     let overrides: Vec<(String, f64)> = overrides.iter().map(|&(name, x)| (name.into(), x)).collect();
     let scene = move || -> Result<Scene, SceneError> {
-        Scene::parse_with(
-            "ball-in-cone",
-            include_str!("../../../../crates/scene/scenes/ball-in-cone.toml"),
-            &overrides,
-        )
+        Scene::parse_with("ball-in-cone", include_str!("../../../../crates/scene/scenes/ball-in-cone.toml"), &overrides)
     };
     let start = scene().map(|scene| scene.start);
     let mut questions = super::questions(point, scene, &FORMULATIONS, |name| match &start {

@@ -45,8 +45,8 @@ fn massive(strength: f64) -> Result<Subject, String> {
 }
 
 pub(super) fn ratio(mass: f64) -> Vec<Question> {
-    let text = include_str!("../../../../crates/scene/scenes/particle.toml")
-        .replace("z'^2)/2", &format!("{mass:?}*z'^2)/2"));
+    let text =
+        include_str!("../../../../crates/scene/scenes/particle.toml").replace("z'^2)/2", &format!("{mass:?}*z'^2)/2"));
     super::questions(
         mass,
         move || Scene::parse("particle", &text),
