@@ -121,7 +121,7 @@ const MISTAKES_OF_THE_ROBOT: &[(&str, &str, &str)] = &[
     ("- trail*cos(c)", "+ trail*cos(c)", "scene:52:7: the contact of `castor` slips on `ground`"),
     ("trail*sin(c)*(phi' + c')", "trail*sin(c)*c'", "scene:52:7: the contact of `castor` slips on `ground`"),
     ("- ac*w'", "- a*w'", "scene:52:7: the contact of `castor` slips on `ground`"),
-    ("u + b*phi' - a*r'", "u - b*phi' - a*r'", "scene:40:7: the contact of `right` slips on `ground`"),
+    ("u + b*phi' - a*r'", "u + 2*b*phi' - a*r'", "scene:40:7: the contact of `right` slips on `ground`"),
     ("- a*l'", "+ a*l'", "scene:46:7: the contact of `left` slips on `ground`"),
     ("-loss", "loss", "scene:31:1: forces that depend on velocities drive"),
     (" + TC\"", "\"", "scene:4:1: `mc` is used by nothing"),

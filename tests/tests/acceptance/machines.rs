@@ -23,7 +23,7 @@ const MACHINES: [(&str, &str); 31] = by_hand!(
 );
 
 /// A built-in scene with formulas by hand instead of its bodies and picture.
-fn with_formulas(name: &str, by_hand: &str) -> String {
+pub(crate) fn with_formulas(name: &str, by_hand: &str) -> String {
     const BODIES: [&str; 8] = ["definitions", "system", "view", "body", "contact", "spring", "damper", "motor"];
     let mut kept = String::new();
     let mut skips = false;

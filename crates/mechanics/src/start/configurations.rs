@@ -50,12 +50,12 @@ pub fn configurations(system: &System, t: f64, q: &[f64], free: &[usize]) -> Res
         let Ok(root) = solve(&mut at, from, &NewtonOptions::default()) else { continue };
         let mut x = root.x;
         // an angle and one that is full turns away are one configuration, where the constraints say so
-        let turned = DVector::from_fn(n, |k, _| match is_angle[k] {
-            true => x[k] - std::f64::consts::TAU * ((x[k] - near[k]) / std::f64::consts::TAU).round(),
-            false => x[k],
-        });
-        if at(&turned).relative_residual(&turned) <= NewtonOptions::default().limit {
-            x = turned;
+        for k in (0..n).filter(|&k| is_angle[k]) {
+            let mut turned = x.clone();
+            turned[k] -= std::f64::consts::TAU * ((x[k] - near[k]) / std::f64::consts::TAU).round();
+            if at(&turned).relative_residual(&turned) <= NewtonOptions::default().limit {
+                x = turned;
+            }
         }
         let is_known =
             |known: &Vec<f64>| known.iter().zip(x.iter()).all(|(a, b)| (a - b).abs() <= APART * (size + b.abs()));
