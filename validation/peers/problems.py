@@ -2,11 +2,9 @@
 
 import math
 from dataclasses import dataclass, field, replace
-from pathlib import Path
 
 import deltaq
 
-SCENES = Path(__file__).parents[2] / "crates/scene/scenes"
 # times at which errors are taken, the start among them
 TIMES = 21
 TRAILERS = (5, 20, 80)
@@ -98,7 +96,7 @@ def train(n, duration, bodies=False):
 
 def problems():
     """Every problem, in the order of the page."""
-    sledge, cone = ((SCENES / f"{name}.toml").read_text() for name in ("sledge", "ball-in-cone"))
+    sledge, cone = (deltaq.built_in(name).to_toml() for name in ("sledge", "ball-in-cone"))
     cases = [
         Case("sledge, Chetaev", "sledge-chetaev", sledge, "chetaev", 10.0),
         Case("sledge, vakonomic", "sledge-vakonomic", sledge, "vakonomic", 10.0),

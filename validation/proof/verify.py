@@ -524,6 +524,7 @@ def verify(proof):
 
 def hold(table, proof):
     """Holds the plain scene, for which the certificate is verified, against the file."""
+    readable("body" not in table, "bodies; `deltaq show --formulas` writes the scene that they mean")
     scene, given, order = proof["scene"], proof["set"], proof["order"]
     names, extra = list(table["coordinates"]), []
     start, definitions, parameters = [table.get(section, {}) for section in ("start", "definitions", "parameters")]

@@ -152,7 +152,7 @@ const SYMPY_SCENES: [&str; 4] = ["sledge", "disc", "particle", "appell-hamel"];
 pub fn built_in(name: &str, amount: Amount) -> Result<Question> {
     let (_, text) = scene::catalogue::SCENES.iter().find(|(known, _)| *known == name).context("no such scene")?;
     let scene = Scene::parse(name, text)?;
-    let mut question = Question::new(&scene, text, amount)?;
+    let mut question = Question::new(&scene, &scene.without_bodies(text), amount)?;
     if SYMPY_SCENES.contains(&name) {
         question = question.with_lagranges_method(SYMPY_STATES);
     }
@@ -169,7 +169,7 @@ pub fn built_in(name: &str, amount: Amount) -> Result<Question> {
 /// Where the text is no scene, or a rate of ours cannot be evaluated.
 pub fn pushed(name: &str, text: &str, states: usize) -> Result<Question> {
     let scene = Scene::parse(name, text)?;
-    let question = Question::new(&scene, text, Amount { states, times: 0 })?;
+    let question = Question::new(&scene, &scene.without_bodies(text), Amount { states, times: 0 })?;
     match TRANSCRIBED.iter().find(|(scene, ..)| name.strip_suffix(forced::SUFFIX) == Some(scene)) {
         // with forces the sledge comes to the end of a chart within its horizon
         Some((_, horizon, intervals)) => question.with_transcription(&scene, horizon / 2.0, *intervals),

@@ -54,7 +54,7 @@ fn a_wrong_control_that_is_not_flagged_is_a_fault_of_the_program() {
 fn a_right_control_that_is_flagged_is_a_fault_of_the_program() {
     let other = |chetaev: &mut Run, _: &mut Run| {
         let text = scene::catalogue::SCENES.iter().find(|scene| scene.0 == "disc").expect("built in").1;
-        let text = text.replace("J/2*phi'^2\"", "J/2*phi'^2 + x/10\"");
+        let text = format!("{text}\n[system]\nlagrangian = \"x/10\"\n");
         let scene = Scene::parse_with("disc", &text, &[("duration".to_owned(), 0.5)]).expect("a scene");
         chetaev.outcome = solve_choice(&scene, &chetaev.choice, &Settings::default());
     };

@@ -50,6 +50,7 @@ fn other_writings_of_a_scene_have_its_sentences() {
 /// What became of each sentence in each writing, and what is wrong.
 fn of_scene(name: &str, text: &str) -> (Vec<String>, Vec<String>) {
     let (mut lines, mut wrong) = (Vec::new(), Vec::new());
+    let text = Scene::parse(name, text).unwrap_or_else(|fault| panic!("{fault}")).without_bodies(text);
     let value: toml::Table = text.parse().unwrap_or_else(|fault| panic!("{name}: {fault}"));
     let read = |value: &toml::Table| Scene::parse(name, &written(value));
     let plain = plain(&value);

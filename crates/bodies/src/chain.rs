@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use crate::text::{Sum, is_zero_vector, vector};
-use crate::turn::{Turn, backwards, join, read, turned, written};
+use crate::turn::{Turn, backwards, join, matrix, read, turned, written};
 use crate::{Body, Fault, FaultKind, Formulas, Machine, Made, Motion, Picture, Written};
 
 /// Definitions and brackets within one another that are looked into.
@@ -15,9 +15,18 @@ pub(crate) struct Placed {
     pub(crate) base: Option<usize>,
     /// `c`, empty for the origin.
     pub(crate) at: String,
+    /// What `c` is the sum of.
+    pub(crate) parts: Vec<Part>,
     pub(crate) turns: Vec<Turn>,
     /// `R`, empty for none.
     pub(crate) rotation: String,
+}
+
+/// `R v`, a part of a place.
+#[derive(Clone, Debug)]
+pub(crate) struct Part {
+    pub(crate) turns: Vec<Turn>,
+    pub(crate) vector: String,
 }
 
 /// Formulas while they are made.
@@ -156,7 +165,9 @@ impl Maker<'_> {
             self.place(parent, path)?;
             path.pop();
             let base = Placed { base: Some(parent), ..Placed::default() };
-            under = if self.machine.is_base(self.body(parent)) { base } else { self.placed(parent) };
+            let is_on_surface = matches!(body.joint.motion, Motion::Surface(..));
+            let stands_on_base = self.machine.is_base(self.body(parent)) && !is_on_surface;
+            under = if stands_on_base { base } else { self.placed(parent) };
         }
         let placed = self.join(body, &under)?;
         self.placed[i] = Some(placed);
@@ -179,9 +190,16 @@ impl Maker<'_> {
                 (vec![Turn::new("z", &angle.text)], Some(format!("[{}, {}, 0]", x.text, y.text)))
             }
             Motion::Turned(rotation) => (self.turns(rotation)?, None),
+            Motion::Surface(..) => (Vec::new(), None),
         };
         let before = join(&under.turns, &axes);
-        let turns = join(&join(&before, &turn), &backwards(&axes));
+        let turns = match &joint.motion {
+            // the orientation of a ball on a surface is that in space
+            Motion::Surface(_, rotation) => {
+                rotation.as_ref().map_or(Ok(Vec::new()), |rotation| self.turns(rotation))?
+            }
+            _ => join(&join(&before, &turn), &backwards(&axes)),
+        };
         let rotation = if turns.is_empty() {
             String::new()
         } else if turns == under.turns {
@@ -189,20 +207,31 @@ impl Maker<'_> {
         } else {
             self.define(&body.name, "R", written(&turns))
         };
-        let given =
-            |text: &Option<Written>| text.as_ref().filter(|v| !is_zero_vector(&v.text)).map(|v| vector(&v.text));
-        let mut terms: Vec<String> = Vec::new();
-        terms.extend((!under.at.is_empty()).then(|| under.at.clone()));
-        terms.extend(given(&joint.at).map(|at| turned(&under.rotation, &at)));
-        terms.extend(shift.map(|shift| turned(&written(&before), &shift)));
-        let sum = terms.join(" + ");
+        let given = |text: &Option<Written>| {
+            let text = text.as_ref().filter(|v| !is_zero_vector(&v.text));
+            text.map(|v| vector(&v.text))
+        };
+        let mut added: Vec<Part> = Vec::new();
+        added.extend(given(&joint.at).map(|vector| Part { turns: under.turns.clone(), vector }));
+        added.extend(shift.map(|vector| Part { turns: before.clone(), vector }));
+        if let Motion::Surface(coordinates, _) = &joint.motion {
+            added.push(self.on_surface(body, coordinates, &under.turns)?);
+        }
+        let terms = added.iter().map(|part| match part.turns == under.turns {
+            true => turned(&under.rotation, &part.vector),
+            false => turned(&matrix(&part.turns), &part.vector),
+        });
+        let sum = (!under.at.is_empty()).then(|| under.at.clone()).into_iter().chain(terms).collect::<Vec<_>>();
+        let sum = sum.join(" + ");
         let text = match given(&joint.own) {
             Some(own) if sum.is_empty() => format!("-{}", turned(&rotation, &own)),
             Some(own) => format!("{sum} - {}", turned(&rotation, &own)),
             None => sum,
         };
+        added.extend(given(&joint.own).map(|own| Part { turns: turns.clone(), vector: format!("-{own}") }));
+        let parts = [under.parts.clone(), added].concat();
         let at = if text.is_empty() || text == under.at { text } else { self.define(&body.name, "at", text) };
-        Ok(Placed { base: under.base, at, turns, rotation })
+        Ok(Placed { base: under.base, at, parts, turns, rotation })
     }
 
     /// A point of a body against its base.
@@ -214,6 +243,26 @@ impl Maker<'_> {
             ("", false) => turned(&rotation, &vector(own)),
             (_, false) => format!("{at} + {}", turned(&rotation, &vector(own))),
         }
+    }
+
+    /// The velocity of a place that is the sum of `parts`, along the axes that `frame` turns to.
+    pub(crate) fn velocity(&self, parts: &[Part], frame: &[Turn]) -> String {
+        let mut sum = String::new();
+        for Part { turns, vector } in parts {
+            let mut terms = Vec::new();
+            terms.extend(self.machine.moves(vector).then(|| format!("({vector})'")));
+            let rates = turns.iter().map(|turn| (turn, self.rate(&turn.angle))).collect::<Vec<_>>();
+            let rate = match &rates[..] {
+                [(turn, rate)] => turn.axis.vector(&rate.to_string()),
+                _ => format!("body_angular_velocity({})", written(turns)),
+            };
+            terms.extend(rates.iter().any(|(_, rate)| !rate.is_empty()).then(|| format!("cross({rate}, {vector})")));
+            if !terms.is_empty() {
+                let seen = matrix(&join(&backwards(frame), turns));
+                sum += &format!("{}{}", if sum.is_empty() { "" } else { " + " }, turned(&seen, &terms.join(" + ")));
+            }
+        }
+        if sum.is_empty() { "[0, 0, 0]".into() } else { sum }
     }
 
     /// A place against a base, in space.
@@ -232,7 +281,9 @@ impl Maker<'_> {
     /// The picture of a body.
     fn draw(&mut self, i: usize) {
         let body = self.body(i);
-        let Some((word, size)) = &body.shape else { return };
+        let is_drawn = self.machine.drawn.contains(&body.name.text);
+        let none = (Written::default(), Vec::new());
+        let Some((word, size)) = body.shape.as_ref().or(is_drawn.then_some(&none)) else { return };
         let Placed { base, at, rotation, .. } = self.placed(i);
         let sizes: Vec<String> = size.iter().map(|size| size.text.clone()).collect();
         let (shape, size) = match (word.text.as_str(), &sizes[..]) {

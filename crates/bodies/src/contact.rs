@@ -1,9 +1,9 @@
 //! Contacts: what does not slip, and the height that stays.
 
-use crate::chain::{Maker, Placed};
+use crate::chain::{Maker, Part, Placed};
 use crate::energy::carrier;
 use crate::text::{Sum, components, factor, is_zero, vector};
-use crate::turn::{Axis, Turn};
+use crate::turn::{Axis, Turn, backwards, join, turned, written};
 use crate::{Contact, Fault, FaultKind, Law, Made, Row, Written};
 
 /// Of a contact: where it is, how it slips, its two directions and its height, each a formula.
@@ -189,8 +189,10 @@ impl Maker<'_> {
         let velocity = self.against(support, format!("{at}'"), &at);
         let rows = match heading {
             Some(heading) => {
-                let [along, across] = directions(&heading);
-                Some([format!("dot({velocity}, {along})"), format!("dot({velocity}, {across})")])
+                let mut parts = self.placed(i).parts;
+                parts.push(Part { turns: turns.clone(), vector: own });
+                let seen = self.seen(contact, support, i, (&parts, &heading), &at);
+                Some([format!("{seen}.x"), format!("{seen}.y")])
             }
             None if contact.law == Law::Blade => return None,
             None => None,
@@ -202,6 +204,46 @@ impl Maker<'_> {
             self.upward(&axes, &omega)
         };
         Some(Touch { slip: velocity, rows, height: format!("{at}.z"), normal: None, spin, at })
+    }
+
+    /// The velocity of a place against the support, along and across a heading, by name.
+    fn seen(
+        &mut self,
+        c: &Contact,
+        on: Option<usize>,
+        i: usize,
+        (parts, heading): (&[Part], &Sum),
+        at: &str,
+    ) -> String {
+        let frame = join(&[], &[Turn { axis: Axis::Letter('z'), angle: heading.clone() }]);
+        let text = match on.map(|on| (self.stands_on(i, on), self.placed(on))) {
+            // the axes of a support that carries the body do not turn for what is on it
+            Some((true, Placed { parts: below, turns, .. })) => {
+                let against = |turns_of: &[Turn]| join(&backwards(&turns), turns_of);
+                let own = parts.iter().skip(below.len());
+                let own: Vec<Part> = own.map(|part| Part { turns: against(&part.turns), ..part.clone() }).collect();
+                self.velocity(&own, &against(&frame))
+            }
+            _ => {
+                let velocity = self.velocity(parts, &frame);
+                match self.carried(on, at) {
+                    Some(carried) => {
+                        format!("{velocity} - {}", turned(&written(&backwards(&frame)), &format!("({carried})")))
+                    }
+                    None => velocity,
+                }
+            }
+        };
+        self.define(&c.name, "v", text)
+    }
+
+    /// Whether a chain of joints leads from body `i` to another one.
+    fn stands_on(&self, i: usize, other: usize) -> bool {
+        let mut under = self.body(i).on.as_ref().and_then(|on| self.machine.find(on).ok());
+        while let Some(body) = under.filter(|&body| body != other) {
+            under = self.body(body).on.as_ref().and_then(|on| self.machine.find(on).ok());
+        }
+        under == Some(other)
     }
 
     /// A name for a formula that is used more than once.
@@ -232,7 +274,7 @@ impl Maker<'_> {
             return self.leaning(c, support, [a, tyre.unwrap_or("0")], [&middle, &axes, &omega], spin);
         }
         // from the middle to the contact along the wheel's own z axis: s = ṗ − a ψ̇ (heading), p the contact
-        let down = crate::turn::turned(&axes, &format!("[0, 0, {a}]"));
+        let down = turned(&axes, &format!("[0, 0, {a}]"));
         let leans = carried_by.iter().any(|turn| turn.is_about('x'));
         let down = if leans { down } else { format!("[0, 0, {a}]") };
         let below = tyre.map_or_else(String::new, |b| format!(" - [0, 0, {b}]"));
@@ -249,7 +291,17 @@ impl Maker<'_> {
         };
         let rolls = if own.is_empty() { String::new() } else { format!(" - {a}*{}", factor(&own.to_string())) };
         let slip = if own.is_empty() { velocity.clone() } else { format!("{velocity}{rolls}*{along}") };
-        let rows = [format!("dot({velocity}, {along}){rolls}"), format!("dot({velocity}, {across})")];
+        let rows = match tyre {
+            Some(_) => [format!("dot({velocity}, {along}){rolls}"), format!("dot({velocity}, {across})")],
+            None => {
+                let mut parts = self.placed(i).parts;
+                let turns = if leans { carried_by.to_vec() } else { Vec::new() };
+                parts.push(Part { turns, vector: format!("-[0, 0, {a}]") });
+                let heading = heading(carried_by).unwrap_or_default();
+                let seen = self.seen(c, support, i, (&parts, &heading), &at);
+                [format!("{seen}.x{rolls}"), format!("{seen}.y")]
+            }
+        };
         Touch { slip, rows: Some(rows), height: format!("{at}.z"), normal: None, spin, at }
     }
 
@@ -312,7 +364,17 @@ impl Maker<'_> {
         let at = self.define(&c.name, "touch", format!("{middle} + {rotation}*{r}"));
         let slip = self.against(support, format!("{middle}' + {rotation}*cross({omega}, {r})"), &at);
         let spin = self.upward(&rotation, &omega);
-        Touch { slip, rows: None, height: format!("{middle}.z - {reach}"), normal: None, spin, at }
+        let Placed { parts, turns, .. } = self.placed(i);
+        let carries = support.is_some_and(|on| self.stands_on(i, on));
+        let first = turns.first().filter(|turn| turn.is_about('z') && !carries).cloned();
+        let rows = first.map(|first| {
+            let seen = self.seen(c, support, i, (&parts, &first.angle), &at);
+            let turns = written(&join(&backwards(&[first]), &turns));
+            let slip =
+                self.define(&c.name, "slip", format!("{seen} + {}", turned(&turns, &format!("cross({omega}, {r})"))));
+            [format!("{slip}.x"), format!("{slip}.y")]
+        });
+        Touch { slip, rows, height: format!("{middle}.z - {reach}"), normal: None, spin, at }
     }
 }
 

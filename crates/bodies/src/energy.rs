@@ -1,7 +1,7 @@
 //! `L = Σ m |ċ_G|²/2 + ω·Jω/2 + m g·c_G`.
 
-use crate::chain::{Maker, Placed};
-use crate::text::{Sum, components, factor, is_zero, is_zero_vector};
+use crate::chain::{Maker, Part, Placed};
+use crate::text::{Sum, components, factor, is_zero, is_zero_vector, vector};
 use crate::turn::{Axis, Turn, written};
 use crate::{Body, Fault, Inertia, Written};
 
@@ -12,9 +12,19 @@ impl Maker<'_> {
         let mut terms: Vec<String> = Vec::new();
         if let Some(mass) = body.mass.as_ref().filter(|mass| !is_zero(&mass.text)) {
             let mass = factor(&mass.text);
-            let centre = self.centre(i, &body);
+            let (centre, parts) = self.centre(i, &body);
             if !centre.is_empty() {
-                terms.push(format!("{mass}/2*dot({centre}', {centre}')"));
+                // along axes in which the first moving part is at rest, sines and cosines of their turn do not appear
+                let turns = |part: &Part| part.turns.iter().any(|turn| !self.rate(&turn.angle).is_empty());
+                let first = parts.iter().find(|part| turns(part) || self.machine.moves(&part.vector));
+                let rate = match first.filter(|part| turns(part)).map(|part| part.turns.clone()) {
+                    None => format!("{centre}'"),
+                    Some(frame) => {
+                        let velocity = self.velocity(&parts, &frame);
+                        self.define(&body.name, "V", velocity)
+                    }
+                };
+                terms.push(format!("{mass}/2*dot({rate}, {rate})"));
                 terms.extend(self.weight(i, &mass, &centre));
             }
         }
@@ -28,8 +38,8 @@ impl Maker<'_> {
         Ok(())
     }
 
-    /// The mass centre against the base, by name; empty for the origin.
-    fn centre(&mut self, i: usize, body: &Body) -> String {
+    /// The mass centre against the base, by name, and its parts; empty for the origin.
+    fn centre(&mut self, i: usize, body: &Body) -> (String, Vec<Part>) {
         let of_rod = || match &body.shape {
             Some((word, size)) if word.text == "rod" => {
                 size.first().map(|length| format!("[{}/2, 0, 0]", factor(&length.text)))
@@ -37,11 +47,13 @@ impl Maker<'_> {
             _ => None,
         };
         let own = body.centre.as_ref().map(|centre| centre.text.clone()).or_else(of_rod);
+        let Placed { at, mut parts, turns, .. } = self.placed(i);
         match own.filter(|own| !is_zero_vector(own)) {
-            None => self.placed(i).at,
+            None => (at, parts),
             Some(own) => {
                 let centre = self.point(i, &own);
-                self.define(&body.name, "G", centre)
+                parts.push(Part { turns, vector: vector(&own) });
+                (self.define(&body.name, "G", centre), parts)
             }
         }
     }

@@ -32,8 +32,10 @@ pub enum FaultKind {
     Apart { body: String, on: String },
     #[error("nothing can stand on `{on}`: {why}")]
     Support { on: String, why: &'static str },
-    #[error("a joint is one of hinge, slider, plane, ball and fixed; found {found}")]
+    #[error("a joint is one of hinge, slider, plane, ball, surface and fixed; found {found}")]
     Joint { found: String },
+    #[error("`{name}` has a joint `surface`: it is a ball or a point, on a cone or a cylinder with its sizes")]
+    Surface { name: String },
     #[error("`{key}` places a body that has no `joint`; with one, it stands in the joint")]
     Twice { key: String },
     #[error(

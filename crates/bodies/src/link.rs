@@ -47,7 +47,7 @@ impl Maker<'_> {
             Motion::Hinge(_, coordinate) | Motion::Slider(_, coordinate) | Motion::Plane([_, _, coordinate]) => {
                 Ok(coordinate.text.clone())
             }
-            Motion::Fixed | Motion::Turned(_) => {
+            Motion::Fixed | Motion::Turned(_) | Motion::Surface(..) => {
                 let kind = FaultKind::NoJoint { name: joint.text.clone() };
                 Err(Fault { place: joint.place.clone(), kind })
             }

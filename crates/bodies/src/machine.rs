@@ -90,6 +90,8 @@ pub enum Motion {
     Plane([Written; 3]),
     /// A rotation as written.
     Turned(Written),
+    /// Parameters of the cone or cylinder that it is on, and its rotation in space.
+    Surface(Box<[Written; 2]>, Option<Written>),
 }
 
 /// A contact.

@@ -53,8 +53,27 @@ impl Turn {
         Turn { axis, angle: if round { angle.negative() } else { angle } }
     }
 
+    /// Whether it is a quarter turn, and which way: its sine and cosine are exact.
+    fn quarter(&self) -> Option<f64> {
+        match (&self.axis, &self.angle.0[..]) {
+            (Axis::Letter(_), [(negative, angle)]) if angle.replace(' ', "") == "pi/2" => {
+                Some(if *negative { -1.0 } else { 1.0 })
+            }
+            _ => None,
+        }
+    }
+
     pub(crate) fn is_about(&self, letter: char) -> bool {
         self.axis == Axis::Letter(letter)
+    }
+}
+
+/// The matrix of a turn by `sign` π/2.
+fn quarter_turn(letter: char, sign: f64) -> String {
+    match letter {
+        'x' => format!("[[1, 0, 0], [0, 0, {}], [0, {sign}, 0]]", -sign),
+        'y' => format!("[[0, 0, {sign}], [0, 1, 0], [{}, 0, 0]]", -sign),
+        _ => format!("[[0, {}, 0], [{sign}, 0, 0], [0, 0, 1]]", -sign),
     }
 }
 
@@ -77,6 +96,17 @@ pub(crate) fn join(first: &[Turn], then: &[Turn]) -> Vec<Turn> {
 
 pub(crate) fn backwards(turns: &[Turn]) -> Vec<Turn> {
     turns.iter().rev().map(|turn| Turn { angle: turn.angle.negative(), ..turn.clone() }).collect()
+}
+
+/// [`written`] as a matrix, of quarter turns with exact sines and cosines.
+pub(crate) fn matrix(turns: &[Turn]) -> String {
+    let quarter = turns.iter().position(|turn| turn.quarter().is_some());
+    let Some((i, turn, sign)) = quarter.and_then(|i| Some((i, &turns[i], turns[i].quarter()?))) else {
+        return written(turns);
+    };
+    let letter = if let Axis::Letter(letter) = turn.axis { letter } else { 'z' };
+    let factors = [written(&turns[..i]), quarter_turn(letter, sign), matrix(&turns[i + 1..])];
+    factors.into_iter().filter(|factor| !factor.is_empty()).collect::<Vec<_>>().join("*")
 }
 
 /// The formula; none for no turn.

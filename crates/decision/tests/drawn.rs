@@ -118,7 +118,9 @@ fn driven_classic(draw: &mut Draw) -> String {
     ]);
     let term = if classic.contains("x1 ") { term.replace('x', "x1").replace('y', "y1") } else { term };
     let term = if classic.contains("psi") { term.replace('z', "x") } else { term };
-    let line = classic.lines().find(|line| line.trim_start().starts_with("lagrangian")).expect("a Lagrangian");
+    let Some(line) = classic.lines().find(|line| line.trim_start().starts_with("lagrangian")) else {
+        return format!("{classic}\n[system]\nlagrangian = \"{term}\"\n");
+    };
     let end = line.rfind('"').expect("a quote");
     classic.replace(line, &format!("{} + {term}{}", &line[..end], &line[end..]))
 }

@@ -75,6 +75,7 @@ fn the_page_of_the_scene_format_is_true() {
         "tests/tests/scenes/rattleback-by-vectors.toml",
         "tests/tests/scenes/ball-by-spin.toml",
         "crates/scene/scenes/sledge.toml",
+        "crates/scene/classics/sledge-with-friction.toml",
         "crates/deltaq/src/robot.toml",
     ]
     .map(read);

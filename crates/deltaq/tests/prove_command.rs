@@ -107,7 +107,8 @@ fn what_has_no_text_is_said() {
     let certificate: Value = serde_json::from_str(&told).expect("JSON");
     assert_eq!(certificate["set"], json!({ "phi": "pi/3 + 0.1" }));
     assert_eq!(certificate["scene"]["positions"]["phi"], "1/10 + 1*pi/3");
-    let turned = sledge.replace("x*sin(alpha)", "x*sin(alpha + pi/3 + 0.1)");
+    let turned =
+        sledge.replace("rotation(y, alpha)\"\n\n[body.sledge", "rotation(y, alpha + pi/3 + 0.1)\"\n\n[body.sledge");
     assert_ne!(turned, sledge);
     std::fs::write(&file, turned).expect("written");
     let (_, complaint) = answer(&["prove", &file, "--out", "-"], 3);

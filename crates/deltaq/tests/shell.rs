@@ -58,7 +58,7 @@ fn a_scene_is_read_from_standard_input() {
         let (expected, _) = answer(&[&[name, "sledge"], &options[..]].concat(), 0);
         assert_eq!((output.status.code(), text(&output.stdout)), (Some(0), expected), "{}", text(&output.stderr));
     }
-    let output = given(&["show", "-"], &SLEDGE.replace("x'*sin(phi)", "x'*sin(psi)"));
+    let output = given(&["show", "-"], &SLEDGE.replace("u'*sin(phi)", "u'*sin(psi)"));
     let complaint = text(&output.stderr);
     assert_eq!(output.status.code(), Some(2));
     assert!(complaint.contains("stdin:") && complaint.contains("undefined name `psi`"), "{complaint}");

@@ -86,7 +86,7 @@ pub use singular_values::SingularValues;
 pub use start::{
     Completion, Quantity, Recombination, RemovalProgram, RemovalStart, StartData, StartError, StartNumbers,
     StartProgram, StartShape, check_reactions, check_regularity, complete_removal_start, complete_start,
-    project_velocity,
+    configurations, project_velocity,
 };
 pub use system::{Constancy, Coordinate, Parameter, State, System, Watched, fresh_symbol};
 pub use view::{Body, Pose, Poses, Touch, View};

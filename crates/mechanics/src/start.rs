@@ -4,6 +4,7 @@
 //! ones are errors that say by how much.
 
 mod complete;
+mod configurations;
 mod data;
 mod error;
 mod numeric;
@@ -14,6 +15,7 @@ mod removal_start;
 mod velocities;
 
 pub use complete::{StartProgram, complete_start};
+pub use configurations::configurations;
 pub use data::{Completion, StartData, StartNumbers, StartShape};
 pub use error::{Quantity, StartError};
 pub use project::project_velocity;

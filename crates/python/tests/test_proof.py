@@ -40,10 +40,20 @@ def written(folder, scene, *options, code=0, **changes):
     return run.stderr if code else json.loads(path.read_text())
 
 
+def in_formulas(folder, file):
+    """The file, or of a scene of bodies one that says what they mean."""
+    if "[body." not in file.read_text():
+        return file
+    formulas = folder / f"formulas-{file.name}"
+    formulas.write_text(subprocess.run([PROGRAM, "show", "--formulas", file], check=True, capture_output=True, text=True).stdout)
+    return formulas
+
+
 def verdict(folder, certificate, *scene):
     """What the script says of a certificate, with its code."""
     path = folder / "looked-at.json"
     path.write_text(json.dumps(certificate))
+    scene = [in_formulas(folder, file) for file in scene]
     said = io.StringIO()
     with contextlib.redirect_stdout(said):
         code = verify.main(*map(str, scene), str(path))
@@ -86,7 +96,7 @@ def test_a_certificate_is_verified(tmp_path, scene, order, changes):
     certificate = written(tmp_path, scene, **changes)
     assert certificate["order"] == order
     code, said = verdict(tmp_path, certificate, scene)
-    assert code == VERIFIED and f"(order {order}, minor {certificate['minor']}" in said and f"it is that of {scene}" in said
+    assert code == VERIFIED and f"(order {order}, minor {certificate['minor']}" in said and f"it is that of {in_formulas(tmp_path, scene)}" in said
     assert all(f"{name.replace('__', chr(39))} = {x}" in said for name, x in changes.items())
     assert verdict(tmp_path, certificate)[0] == VERIFIED
     code, said = verdict(tmp_path, written(tmp_path, scene, "--almost-every", **changes), scene)
@@ -159,7 +169,7 @@ def test_of_random_systems(tmp_path, index):
 
 
 def test_the_script_alone_ends_with_its_code(tmp_path):
-    scene, path = CATALOGUE / "scenes" / "sledge.toml", tmp_path / "certificate.json"
+    scene, path = in_formulas(tmp_path, CATALOGUE / "scenes" / "sledge.toml"), tmp_path / "certificate.json"
     certificate = written(tmp_path, scene)
     for code, text in enumerate((path.read_text(), json.dumps(certificate | {"minor": 1}), "{")):
         path.write_text(text)

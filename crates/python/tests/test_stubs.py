@@ -16,7 +16,7 @@ TREE = ast.parse(STUBS.read_text())
 CLASSES = {node.name: node for node in TREE.body if isinstance(node, ast.ClassDef)}
 FUNCTIONS = {node.name: node for node in TREE.body if isinstance(node, ast.FunctionDef)}
 PYTHON = {"Design", "Estimate", "FilmFit", "FormulationFit", "Functions", "Integrals", "Profile", "Proof", "Sweep"}
-PYTHON |= {"designs", "ensemble", "from_sympy", "review", "sweep"}
+PYTHON |= {"designs", "ensemble", "from_sympy", "from_urdf", "review", "sweep"}
 VALUES = {node.target.id for node in TREE.body if isinstance(node, ast.AnnAssign) and not node.target.id.startswith("_")}
 
 

@@ -133,6 +133,14 @@ pub enum SceneErrorKind {
         residual: f64,
         limit: f64,
     },
+    /// Coordinates without a start that constraints on positions do not determine.
+    #[error("{}", configurations(.names, .found))]
+    Configurations {
+        /// The coordinates.
+        names: Vec<String>,
+        /// All values that were found for them.
+        found: Vec<Vec<f64>>,
+    },
     /// Definitions or parameters that need each other.
     #[error("these are defined in a circle: {}", .names.join(" → "))]
     Circle { names: Vec<String> },
@@ -182,6 +190,20 @@ fn meant(suggestion: &Option<String>) -> String {
 
 fn joined(roles: &[&str]) -> String {
     if roles.is_empty() { "none of them".into() } else { roles.join(" and ") }
+}
+
+fn configurations(names: &[String], found: &[Vec<f64>]) -> String {
+    let one =
+        |x: &Vec<f64>| names.iter().zip(x).map(|(name, x)| format!("{name} = {x:.6}")).collect::<Vec<_>>().join(", ");
+    let names = names.join(", ");
+    match found {
+        [] => format!("no start of {names} is known: no values were found that constraints on positions determine"),
+        _ => format!(
+            "constraints on positions leave {} configurations: {}; choose one by `guess` in [coordinates]",
+            found.len(),
+            found.iter().map(one).collect::<Vec<_>>().join("; ")
+        ),
+    }
 }
 
 impl SceneError {

@@ -89,7 +89,12 @@ pub const SCENE: &[Key] = &[
 /// A coordinate.
 pub const COORDINATE: &[Key] = &[
     may("unit", Text, "a label; angles are in radians"),
-    must("start", Expression, "q at the start, in parameters, t and the coordinates above"),
+    may(
+        "start",
+        Expression,
+        "q at the start, in parameters, t and the coordinates above; without it constraints supply it",
+    ),
+    may("guess", Number, "a number near q at the start, where constraints on positions leave a choice"),
 ];
 
 /// `[film.NAME]`.
@@ -155,6 +160,12 @@ pub const JOINT: &[Key] = &[
     may("shift", Expression, "the shift of the slider"),
     may("plane", List(&Expression), "[x, y, angle]: a shift in the plane of x and y, and a turn about z"),
     may("ball", Text, "any rotation, as in \"rotation(zxz, psi, theta, phi)\""),
+    may(
+        "surface",
+        List(&Expression),
+        "[r, angle] on the cone that it is on, from the apex, or [x, angle] in a cylinder, from its lowest line",
+    ),
+    may("rotation", Text, "of a ball on a surface: from its axes to those of space"),
     may("fixed", Truth, "true: nothing moves"),
     may("at", Vector, "the point of the joint in the parent"),
     may("own", Vector, "the same point in this body; the two coincide"),

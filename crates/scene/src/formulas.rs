@@ -33,11 +33,24 @@ pub(super) fn with<'a>(table: &DeTable<'a>, made: &Formulas) -> DeTable<'a> {
     table
 }
 
-/// The picture; a body that is drawn by hand, too, is drawn as there.
+/// The picture; a body that is drawn by hand is drawn as there, and touches what its contacts say.
 fn draw(view: Option<&mut DeTable>, made: &Formulas) {
     let Some(view) = view else { return };
     for picture in &made.pictures {
-        if view.keys().any(|key| key.get_ref() == picture.name.as_str()) {
+        let touches = |at: &Range<usize>| {
+            let mut touches = DeTable::new();
+            for (on, place) in &picture.touches {
+                set(Some(&mut touches), on, text(place, at));
+            }
+            Spanned::new(at.clone(), DeValue::Table(touches))
+        };
+        if let Some((_, drawn)) = view.iter_mut().find(|(key, _)| key.get_ref() == picture.name.as_str()) {
+            if let DeValue::Table(drawn) = drawn.get_mut()
+                && !picture.touches.is_empty()
+                && drawn.keys().all(|key| key.get_ref() != "touches")
+            {
+                set(Some(drawn), "touches", touches(&picture.place));
+            }
             continue;
         }
         let at = &picture.place;
@@ -50,11 +63,7 @@ fn draw(view: Option<&mut DeTable>, made: &Formulas) {
             set(Some(&mut body), "rotation", text(&picture.rotation, at));
         }
         if !picture.touches.is_empty() {
-            let mut touches = DeTable::new();
-            for (on, place) in &picture.touches {
-                set(Some(&mut touches), on, text(place, at));
-            }
-            set(Some(&mut body), "touches", Spanned::new(at.clone(), DeValue::Table(touches)));
+            set(Some(&mut body), "touches", touches(at));
         }
         set(Some(view), &picture.name, Spanned::new(at.clone(), DeValue::Table(body)));
     }

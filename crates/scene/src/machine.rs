@@ -231,13 +231,17 @@ impl Reader<'_> {
     fn joint(&self, entry: &Entry, s: &Section) -> Result<Joint, SceneError> {
         let vector = |key: &str| s.get(key).map(|entry| self.vector(&entry)).transpose();
         let kinds: Vec<Entry> =
-            ["hinge", "slider", "plane", "ball", "fixed"].iter().filter_map(|kind| s.get(kind)).collect();
+            ["hinge", "slider", "plane", "ball", "surface", "fixed"].iter().filter_map(|kind| s.get(kind)).collect();
         let motion = match &kinds[..] {
             [kind] => match kind.key {
                 "hinge" => Motion::Hinge(self.axis(kind)?, self.required(s, "angle", "the angle of the hinge")?),
                 "slider" => Motion::Slider(self.axis(kind)?, self.required(s, "shift", "the shift of the slider")?),
                 "plane" => Motion::Plane(self.numbers(kind, "a list of x, y and the angle")?),
                 "ball" => Motion::Turned(self.rotation(kind)?),
+                "surface" => {
+                    let rotation = s.get("rotation").map(|entry| self.rotation(&entry)).transpose()?;
+                    Motion::Surface(Box::new(self.numbers(kind, "a list of two coordinates of the surface")?), rotation)
+                }
                 _ => Motion::Fixed,
             },
             several => {

@@ -2,8 +2,8 @@
 
 use std::collections::{HashMap, HashSet};
 
-use mechanics::{Kind, State, View};
-use symbolic::{Evaluator, Expr, SplitMix, Symbol, names_in};
+use mechanics::{Body, Kind, State, System, View};
+use symbolic::{Evaluator, Expr, Graph, SplitMix, Symbol, names_in};
 use toml::de::DeValue;
 
 use super::context::Context;
@@ -251,12 +251,22 @@ impl<'c> Reviewer<'c> {
         else {
             return Vec::new();
         };
-        let expressions: Vec<Expr> = view.bodies.iter().flat_map(|body| body.expressions()).collect();
-        let rates = g.total_derivatives(&expressions, &system.flow());
+        let (mut contacts, mut slips) = (Vec::new(), Vec::new());
+        for (i, body) in view.bodies.iter().enumerate() {
+            for touch in &body.touches {
+                let [here, there] = [body, &view.bodies[touch.body]].map(|body| material(system, g, body, touch.at));
+                let against: [Expr; 3] = std::array::from_fn(|k| g.sub(here[k], there[k]));
+                let sideways = (0..3).map(|k| g.mul(body.rotation.entries()[3 * k + 1], against[k]));
+                slips.extend(match body.shape.kind {
+                    Kind::Disc | Kind::Ball | Kind::Ellipsoid | Kind::Cylinder => against,
+                    Kind::Blade | Kind::Cart => [sideways.fold(g.zero(), |sum, e| g.add(sum, e)), g.zero(), g.zero()],
+                    _ => [g.zero(); 3],
+                });
+                contacts.push((i, touch.body));
+            }
+        }
         let inputs = [&[system.time], &system.positions()[..], &system.velocities()].concat();
-        let Ok(tape) = g.compile(&inputs, &[expressions, rates].concat(), &system.parameter_values()) else {
-            return Vec::new();
-        };
+        let Ok(tape) = g.compile(&inputs, &slips, &system.parameter_values()) else { return Vec::new() };
         let mut program = Evaluator::<f64>::new(tape);
         let mut largest = vec![(0.0_f64, String::new()); view.bodies.len()];
         let still = vec![0.0; system.dimension()];
@@ -268,20 +278,10 @@ impl<'c> Reviewer<'c> {
             if system.constraints.iter().any(|&f| self.value(f, &values).abs().total_cmp(&(SMALL * size)).is_ge()) {
                 continue;
             }
-            let now = program.evaluate(&[&[self.start.t], &self.start.q[..], &v].concat()).to_vec();
-            let poses = poses(view, &now);
-            for (i, body) in view.bodies.iter().enumerate() {
-                for (touch, p) in body.touches.iter().zip(&poses[i].touches) {
-                    let [here, there] = [&poses[i], &poses[touch.body]].map(|pose| pose.velocity(*p));
-                    let against = [0, 1, 2].map(|k| here[k] - there[k]);
-                    let slip = match body.shape.kind {
-                        Kind::Disc | Kind::Ball | Kind::Ellipsoid | Kind::Cylinder => norm(&against),
-                        Kind::Blade | Kind::Cart => dot(&[1, 4, 7].map(|k| poses[i].rotation[k]), &against).abs(),
-                        _ => 0.0,
-                    };
-                    if slip > 10.0 * SMALL * size && slip > largest[i].0 {
-                        largest[i] = (slip, view.bodies[touch.body].name.clone());
-                    }
+            let now = program.evaluate(&[&[self.start.t], &self.start.q[..], &v].concat());
+            for (slip, (i, on)) in now.chunks(3).map(norm).zip(&contacts) {
+                if slip > 10.0 * SMALL * size && slip > largest[*i].0 {
+                    largest[*i] = (slip, view.bodies[*on].name.clone());
                 }
             }
         }
@@ -293,37 +293,14 @@ impl<'c> Reviewer<'c> {
     }
 }
 
-/// A body at an instant, with rates.
-struct Pose {
-    at: [f64; 3],
-    rotation: [f64; 9],
-    rate: [f64; 3],
-    turning: [f64; 9],
-    touches: Vec<[f64; 3]>,
-}
-
-impl Pose {
-    /// Of the material point that is at `p`: `ċ + Ṙ Rᵀ (p − c)`.
-    fn velocity(&self, p: [f64; 3]) -> [f64; 3] {
-        let from = [0, 1, 2].map(|k| p[k] - self.at[k]);
-        let own = [0, 1, 2].map(|k| (0..3).map(|i| self.rotation[3 * i + k] * from[i]).sum::<f64>());
-        [0, 1, 2].map(|i| self.rate[i] + (0..3).map(|k| self.turning[3 * i + k] * own[k]).sum::<f64>())
-    }
-}
-
-fn poses(view: &View, now: &[f64]) -> Vec<Pose> {
-    let (values, rates) = now.split_at(now.len() / 2);
-    let mut place = 0;
-    let pose = |body: &mechanics::Body| {
-        let from = place;
-        place += 12 + 3 * body.touches.len();
-        let three = |of: &[f64], at: usize| [of[at], of[at + 1], of[at + 2]];
-        let nine = |of: &[f64]| std::array::from_fn(|k| of[from + 3 + k]);
-        let touches = (0..body.touches.len()).map(|k| three(values, from + 12 + 3 * k)).collect();
-        let (at, rate) = (three(values, from), three(rates, from));
-        Pose { at, rotation: nine(values), rate, turning: nine(rates), touches }
-    };
-    view.bodies.iter().map(pose).collect()
+/// The velocity of the material point of a body that is at `p`: `ċ + Ṙ Rᵀ (p − c)`.
+fn material(system: &System, g: &Graph, body: &Body, p: [Expr; 3]) -> [Expr; 3] {
+    let rotation = body.rotation.entries();
+    let rates = g.total_derivatives(&[&body.at, rotation].concat(), &system.flow());
+    let sum = |terms: [Expr; 3]| g.add(g.add(terms[0], terms[1]), terms[2]);
+    let from: [Expr; 3] = std::array::from_fn(|k| g.sub(p[k], body.at[k]));
+    let own: [Expr; 3] = std::array::from_fn(|k| sum(std::array::from_fn(|i| g.mul(rotation[3 * i + k], from[i]))));
+    std::array::from_fn(|i| g.add(rates[i], sum(std::array::from_fn(|k| g.mul(rates[3 + 3 * i + k], own[k])))))
 }
 
 fn dot(a: &[f64], b: &[f64]) -> f64 {

@@ -61,6 +61,13 @@ pub struct Filmed {
 }
 
 impl Scene {
+    /// For readers that know neither bodies nor vectors: the scene's own `text` where it has no bodies,
+    /// otherwise the same scene by components.
+    #[must_use]
+    pub fn without_bodies(&self, text: &str) -> String {
+        if self.meant.is_some() { self.to_toml() } else { text.to_owned() }
+    }
+
     /// Names of the multipliers `μ₀`, one per constraint: those of the free constants of vakonomic motions.
     #[must_use]
     pub fn multiplier_names(&self) -> Vec<String> {

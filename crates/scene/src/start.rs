@@ -19,7 +19,9 @@ pub(super) fn complete(context: &Context, removals: &[Removal]) -> Result<(State
     let mut written = context.written.clone();
     let (mut guess, mut guessed) = (Vec::new(), Vec::new());
     let mut equations = Vec::new();
-    let mut place = context.root.get("system").map_or(0..0, |e| e.key_span);
+    // what follows from bodies stands there
+    let of = |key: &str| context.root.get(key).map(|e| e.key_span).filter(|span| !span.is_empty());
+    let mut place = of("system").or_else(|| of("body")).unwrap_or(0..0);
     if let Some(start) = &start {
         place = start.span.clone();
         start.check_keys(format::START);
@@ -59,7 +61,7 @@ pub(super) fn complete(context: &Context, removals: &[Removal]) -> Result<(State
         let place = match &error {
             StartError::ContradictoryEquation { equation, .. } => Some(places[equation - 1].clone()),
             StartError::ProjectedEquations => start.as_ref().and_then(|s| s.get("project")).map(|e| e.key_span),
-            error => blamed(context, error),
+            error => blamed(context, error).filter(|place| !place.is_empty()).or_else(|| of("body")),
         }
         .unwrap_or(place);
         context.source.error(&place, SceneErrorKind::Start(error))

@@ -305,7 +305,17 @@ fn start_time(context: &mut Context) -> Result<f64, SceneError> {
 
 fn positions(context: &mut Context, coordinates: &Section) -> Result<(), SceneError> {
     let mut values = context.constants();
-    for (entry, symbol) in coordinates.entries().zip(context.system.positions()) {
+    let (mut missing, mut guesses) = (Vec::new(), Vec::new());
+    for (i, (entry, symbol)) in coordinates.entries().zip(context.system.positions()).enumerate() {
+        let given = entry.section().ok().filter(|section| section.get("start").is_none());
+        if let Some(section) = given.filter(|_| !context.system.on_positions.is_empty())
+            && context.overrides.written(entry.key).is_none()
+        {
+            missing.push((i, entry.clone()));
+            guesses.extend(section.get("guess").and_then(|guess| context.source.note(guess.number())).map(|x| (i, x)));
+            context.positions.push(0.0);
+            continue;
+        }
         let read = || -> Result<_, SceneError> {
             let start = entry.section()?;
             let start = start.require("start", "a number, or an expression in parameters and earlier coordinates")?;
@@ -328,6 +338,37 @@ fn positions(context: &mut Context, coordinates: &Section) -> Result<(), SceneEr
         values.insert(symbol, x);
         context.positions.push(x);
         context.written.push((symbol, written));
+    }
+    match missing.first() {
+        Some((_, first)) if context.positions.iter().all(|x| x.is_finite()) => {
+            let places: Vec<usize> = missing.iter().map(|(i, _)| *i).collect();
+            supply_positions(context, first, &places, &guesses)
+        }
+        _ => Ok(()),
+    }
+}
+
+/// Coordinates without a start, from the constraints on positions.
+fn supply_positions(
+    context: &mut Context,
+    entry: &Entry,
+    places: &[usize],
+    guesses: &[(usize, f64)],
+) -> Result<(), SceneError> {
+    guesses.iter().for_each(|&(i, x)| context.positions[i] = x);
+    let found = mechanics::configurations(&context.system, context.time, &context.positions, places);
+    let found = found.map_err(|error| entry.error(SceneErrorKind::Start(error.into())))?;
+    let chosen = match &found[..] {
+        [one] => one,
+        [nearest, ..] if !guesses.is_empty() => nearest,
+        _ => {
+            let names = places.iter().map(|&i| context.system.coordinates[i].name.clone()).collect();
+            return Err(entry.error_at_key(SceneErrorKind::Configurations { names, found }));
+        }
+    };
+    for (&i, &x) in places.iter().zip(chosen) {
+        context.positions[i] = x;
+        context.written.push((context.system.positions()[i], context.system.graph.number(x)));
     }
     Ok(())
 }

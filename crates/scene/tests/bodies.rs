@@ -56,12 +56,12 @@ const FAULTS: &[(&str, &str, &str)] = &[
     (
         "slider = [1, 0, 0]",
         "slider = [1, 0, 0], hinge = [1, 0, 0]",
-        "8:9: a joint is one of hinge, slider, plane, ball and fixed; found hinge and slider",
+        "8:9: a joint is one of hinge, slider, plane, ball, surface and fixed; found hinge and slider",
     ),
     (
         "joint = { slider = [1, 0, 0], shift = \"x\" }",
         "joint = {}",
-        "8:9: a joint is one of hinge, slider, plane, ball and fixed; found none",
+        "8:9: a joint is one of hinge, slider, plane, ball, surface and fixed; found none",
     ),
     (", shift = \"x\"", "", "8:1: `shift` is missing in [body.cart.joint]"),
     ("shift = \"x\"", "shift = \"y\"", "8:40: undefined name `y`"),

@@ -42,7 +42,9 @@ pub fn hanging(links: usize) -> Scene {
 /// the same.
 #[test]
 fn full_blocks_are_factorized_and_sparse_ones_eliminated() {
-    let sparse = [hanging(2), train(9, Coordinates::Minimal), super::support::scene("bicycle", &[])];
+    let bicycle = super::machines::with_formulas("bicycle", include_str!("../scenes/by-hand/bicycle.toml"));
+    let bicycle = super::machines::parsed(&bicycle);
+    let sparse = [hanging(2), train(9, Coordinates::Minimal), bicycle];
     for (scene, is_full) in [(hanging(8), true)].into_iter().chain(sparse.map(|scene| (scene, false))) {
         let motion = &mut chetaev(&scene);
         let equations = motion.equations.clone();

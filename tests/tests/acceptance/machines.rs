@@ -1,4 +1,4 @@
-//! Systems from bodies against those whose formulas were written by hand.
+//! Built-in scenes of bodies against formulas that were written by hand.
 
 use comparison::{Beyond, beyond_contacts};
 use mechanics::{ConstantsRule, State};
@@ -10,57 +10,37 @@ use symbolic::SplitMix;
 
 use super::support::{choice, gap, must, tight, values};
 
-macro_rules! bodies {
-    ($($name:literal),* $(,)?) => { [$(($name, include_str!(concat!("../scenes/bodies/", $name, ".toml")))),*] };
+macro_rules! by_hand {
+    ($($name:literal)*) => { [$(($name, include_str!(concat!("../scenes/by-hand/", $name, ".toml")))),*] };
 }
 
-/// Built-in scenes whose formulas follow from these bodies.
-const MACHINES: [(&str, &str); 28] = bodies![
-    "ball-in-cone",
-    "ball-in-cylinder",
-    "ball-on-incline",
-    "bicycle",
-    "bowl",
-    "chaplygin-sphere",
-    "coin-on-incline",
-    "disc",
-    "falling-disc",
-    "mobile-robot",
-    "one-motor-robot",
-    "planar-body",
-    "rattleback",
-    "roller-racer",
-    "routh-sphere",
-    "rubber-ball",
-    "rubber-chaplygin-sphere",
-    "rudder-skate",
-    "sledge",
-    "sledge-with-friction",
-    "sleigh",
-    "snakeboard",
-    "trailer",
-    "turning-knife-edge",
-    "turntable",
-    "two-wheeled-carriage",
-    "unicycle-in-potential",
-    "veselova",
-];
+/// Built-in scenes of bodies, and their definitions and `[system]` by hand.
+const MACHINES: [(&str, &str); 31] = by_hand!(
+    "ball-in-cone" "ball-in-cylinder" "ball-on-incline" "bicycle" "bowl" "chaplygin-sphere" "coin-on-incline" "disc"
+    "falling-disc" "mobile-robot" "one-motor-robot" "planar-body" "rattleback" "roller-racer" "routh-sphere"
+    "rubber-ball" "rubber-chaplygin-sphere" "rudder-skate" "servo-pendulum" "sledge" "sledge-with-friction" "sleigh"
+    "snakeboard" "suslov" "trailer" "turning-knife-edge" "turntable" "two-wheeled-carriage" "unicycle-in-potential"
+    "velocity-pendulum" "veselova"
+);
 
-/// A built-in scene with bodies in the place of its formulas and picture.
-fn from_bodies(name: &str, bodies: &str) -> String {
-    let own = scene::catalogue::source(name).unwrap_or_else(|e| panic!("{e}"));
+/// A built-in scene with formulas by hand instead of its bodies and picture.
+pub(crate) fn with_formulas(name: &str, by_hand: &str) -> String {
+    const BODIES: [&str; 8] = ["definitions", "system", "view", "body", "contact", "spring", "damper", "motor"];
     let mut kept = String::new();
     let mut skips = false;
-    for line in own.lines() {
+    for line in source(name).lines() {
         if let Some(header) = line.strip_prefix('[') {
-            skips = ["definitions]", "system]", "view."].iter().any(|section| header.starts_with(section));
+            skips = BODIES.iter().any(|section| header.starts_with(section));
         }
-        if !skips {
+        if !skips && !line.starts_with("gravity") {
             kept += &format!("{line}\n");
         }
     }
-    let gravity = bodies.lines().next().filter(|line| line.starts_with("gravity")).unwrap_or_default();
-    format!("{gravity}\n{kept}{}", &bodies[gravity.len()..])
+    format!("{kept}{by_hand}")
+}
+
+fn source(name: &str) -> String {
+    scene::catalogue::source(name).unwrap_or_else(|e| panic!("{e}"))
 }
 
 pub(crate) fn parsed(text: &str) -> Scene {
@@ -130,16 +110,17 @@ pub(crate) fn same_system(title: &str, by_hand: &Scene, scene: &Scene) {
 
 #[test]
 fn bodies_give_lagrangian_and_constraints_by_hand() {
-    for (name, bodies) in MACHINES {
-        let by_hand = find(name, &[]).unwrap_or_else(|e| panic!("{e}"));
-        same_system(name, &by_hand, &parsed(&from_bodies(name, bodies)));
+    for (name, by_hand) in MACHINES {
+        let scene = parsed(&source(name));
+        assert!(scene.meant.is_some(), "{name} has no bodies");
+        same_system(name, &parsed(&with_formulas(name, by_hand)), &scene);
     }
 }
 
 #[test]
 fn the_scene_of_formulas_is_the_same_system() {
-    for (name, bodies) in MACHINES {
-        let scene = parsed(&from_bodies(name, bodies));
+    for (name, _) in MACHINES {
+        let scene = parsed(&source(name));
         let formulas = scene.meant.as_ref().map(|meant| meant.formulas.clone()).unwrap_or_default();
         assert!(!formulas.contains("[body"), "{name}");
         let again = parsed(&formulas);
@@ -157,11 +138,11 @@ fn the_scene_of_formulas_is_the_same_system() {
 #[test]
 fn bodies_move_as_formulas_by_hand_in_every_formulation() {
     let settings = Settings { max_steps: 40_000, ..tight() };
-    for (name, bodies) in MACHINES {
+    for (name, by_hand) in MACHINES {
         let set = [("duration".to_string(), 0.3)];
         let read = |text: &str| Scene::parse_with("scene", text, &set).unwrap_or_else(|e| panic!("{name}: {e}"));
-        let by_hand = read(&scene::catalogue::source(name).unwrap_or_else(|e| panic!("{e}")));
-        let scene = read(&from_bodies(name, bodies));
+        let by_hand = read(&with_formulas(name, by_hand));
+        let scene = read(&source(name));
         let h = by_hand.system.constraints.len();
         // multipliers belong to constraints as they are written: μ₀ = 0 says the same of both
         let mut choices = vec![
@@ -196,30 +177,56 @@ fn built_in_scenes_are_not_remarkable() {
     }
 }
 
-/// Multipliers are forces of contacts: Newton and Euler by hand.
+/// Multipliers are forces of contacts: Newton's and Euler's equations by hand, with the reaction as unknown.
 #[test]
 fn multipliers_are_the_forces_of_the_ground() {
-    let reactions = |text: &str, set: &[(&str, f64)]| -> Vec<f64> {
-        let set: Vec<_> = set.iter().map(|&(name, x)| (name.to_string(), x)).collect();
-        let scene = Scene::parse_with("scene", text, &set).unwrap_or_else(|e| panic!("{e}"));
-        let names = scene.meant.as_ref().map(|meant| meant.constraints.len()).unwrap_or_default();
+    let reactions = |name: &str, set: &[(&str, f64)]| -> (State, Vec<f64>) {
+        let set: Vec<_> = set.iter().chain(&[("duration", 0.1)]).map(|&(name, x)| (name.to_string(), x)).collect();
+        let scene = Scene::parse_with("scene", &source(name), &set).unwrap_or_else(|e| panic!("{e}"));
+        let rows = scene.meant.as_ref().map(|meant| meant.constraints.len()).unwrap_or_default();
         let chetaev = choice(CHETAEV, None, ConstantsRule::Given(Vec::new()));
         let mut motion = solve_choice(&scene, &chetaev, &tight()).unwrap_or_else(|e| panic!("{e}"));
         let now = motion.at(scene.start.t).unwrap_or_else(|e| panic!("{e}"));
-        now.multipliers.into_iter().take(names).collect()
+        (scene.start, now.multipliers.into_iter().take(rows).collect())
     };
-    let of = |name: &str| MACHINES.iter().find(|(known, _)| *known == name).map(|(name, b)| from_bodies(name, b));
-    // a homogeneous ball on an incline is held back by 2/7 of its weight's pull
-    let found = reactions(&of("ball-on-incline").unwrap_or_default(), &[("duration", 0.1), ("m", 1.4)]);
-    must("ball on incline: friction", (found[0] + 2.0 / 7.0 * 1.4 * 9.81 * 0.3).abs().max(found[1].abs()), 1e-12);
+    let near = |what: &str, found: &[f64], expected: &[f64]| {
+        let off = found.iter().zip(expected).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        let size = expected.iter().fold(1.0_f64, |size, x| size.max(x.abs()));
+        must(&format!("{what}: force of the contact"), off / size, 1e-12);
+    };
+    // a homogeneous ball on an incline is held back by 2/7 of its weight's pull: the friction needed is 2/7 tan(alpha)
+    let (_, found) = reactions("ball-on-incline", &[("m", 1.4)]);
+    near("ball on incline", &found, &[-2.0 / 7.0 * 1.4 * 9.81 * 0.3, 0.0]);
+    let (pull, normal) = (found[0].hypot(found[1]), 1.4 * 9.81 * 0.3_f64.asin().cos());
+    must("ball on incline: friction needed", (pull / normal - 2.0 / 7.0 * 0.3_f64.asin().tan()).abs(), 1e-12);
     // the bicycle stands upright: moments of its weights about where the rear wheel touches
-    let found = reactions(&of("bicycle").unwrap_or_default(), &[("duration", 0.1), ("v", 0.0)]);
-    let front = 9.81 * (85.0 * 0.3 + 4.0 * 0.9 + 3.0 * 1.02) / 1.02;
-    must("bicycle: normal force in front", (found[4] - front).abs() / front, 1e-12);
+    let (_, found) = reactions("bicycle", &[("v", 0.0)]);
+    near("bicycle", &found[4..], &[9.81 * (85.0 * 0.3 + 4.0 * 0.9 + 3.0 * 1.02) / 1.02]);
     // a rattleback at rest in its equilibrium carries its weight
-    let at_rest = [("duration", 0.1), ("psi'", 0.0), ("alpha'", 0.0), ("beta'", 0.0)];
-    let found = reactions(&of("rattleback").unwrap_or_default(), &at_rest);
-    must("rattleback: normal force", (found[2] - 9.81).abs(), 1e-12);
+    let (_, found) = reactions("rattleback", &[("psi'", 0.0), ("alpha'", 0.0), ("beta'", 0.0)]);
+    near("rattleback", &found, &[0.0, 0.0, 9.81]);
+    // the centre of the upright disc runs on a circle: m v phi' across, along x and y
+    let (State { q, v, .. }, found) = reactions("disc", &[]);
+    let across = 0.5 * v[2] * v[3];
+    near("disc", &found, &[-across * q[3].sin(), across * q[3].cos()]);
+    // on an incline the pull across is held, and (m + I/R²) v' = m g s cos(phi) along
+    let (State { q, v, .. }, found) = reactions("coin-on-incline", &[]);
+    let pull = 9.81 * 0.6;
+    let (along, across) = (-pull * q[3].cos() / 3.0, 0.5 * v[2] * v[3] + pull * q[3].sin());
+    let (sin, cos) = q[3].sin_cos();
+    near("coin on incline", &found, &[along * cos - across * sin, along * sin + across * cos]);
+    let (State { q, v, .. }, found) = reactions("sledge", &[]);
+    near("sledge", &found, &[v[0].hypot(v[1]) * v[2] + 9.81 * 0.4_f64.sin() * q[2].sin()]);
+    // (I + m a²) phi'' = -m a v phi', and m (v phi' + a phi'') across
+    let (State { q, v, .. }, found) = reactions("sleigh", &[]);
+    let speed = v[0] * q[2].cos() + v[1] * q[2].sin();
+    near("sleigh", &found, &[speed * v[2] * (1.0 - 0.16 / 0.46)]);
+    let (State { q, v, .. }, found) = reactions("unicycle-in-potential", &[]);
+    let across = 0.9 * (q[1] * q[2].cos() - q[0] * q[2].sin());
+    near("unicycle", &found, &[v[0].hypot(v[1]) * v[2] + across]);
+    // a circle at 2/7 of the table's rate
+    let (_, found) = reactions("turntable", &[]);
+    near("turntable", &found, &[-(0.2_f64).powi(2) * 0.6, 0.0]);
 }
 
 /// What turns a vakonomic disc and sledge is `C μ`, and no contact has it; Chetaev's reactions are forces of
@@ -227,8 +234,7 @@ fn multipliers_are_the_forces_of_the_ground() {
 #[test]
 fn vakonomic_torques_are_none_of_contacts() {
     for (name, coordinate) in [("disc", "psi"), ("sledge", "phi")] {
-        let (_, bodies) = MACHINES.iter().find(|(known, _)| *known == name).expect("a machine");
-        let scene = Scene::parse_with("scene", &from_bodies(name, bodies), &[("duration".to_string(), 1.0)]);
+        let scene = Scene::parse_with("scene", &source(name), &[("duration".to_string(), 1.0)]);
         let scene = scene.unwrap_or_else(|e| panic!("{e}"));
         let h = scene.system.constraints.len();
         let motion = |formulation, constants| {
@@ -247,7 +253,11 @@ fn vakonomic_torques_are_none_of_contacts() {
             "disc" => 0.5 * now.velocities[3],
             _ => now.velocities[0].hypot(now.velocities[1]),
         };
-        let torque = (now.multipliers[h - 1] * rate).abs();
+        let across = match name {
+            "disc" => now.multipliers[1] * now.coordinates[3].cos() - now.multipliers[0] * now.coordinates[3].sin(),
+            _ => now.multipliers[0],
+        };
+        let torque = (across * rate).abs();
         must(&format!("{name}: torque of {torque:.3} at {t:.2}"), (force.abs() - torque).abs() / torque, 1e-8);
     }
 }

@@ -1,6 +1,7 @@
 //! Machines of bodies against what textbooks derive by hand.
 
 use super::machines::{parsed, same_system};
+use super::support::must;
 
 const HEAD: &str = "title = \"machine\"\n[run]\nduration = 1\n";
 
@@ -169,7 +170,6 @@ fn a_snake_of_five_driven_links_is_what_a_loop_writes() {
     as_by_hand("snake", &q, &bodies, &by_hand);
 }
 
-/// The misprint of the paper slips in its own picture, and nothing else is remarkable.
 #[test]
 fn loops_are_constraints_on_positions() {
     let bodies = r#"
@@ -277,4 +277,234 @@ fn a_wheel_with_a_tyre_and_a_leaning_wheel_roll_as_circle_and_ball() {
     same_system("torus without a circle", &ball, &thick);
     let round = parsed(&body("shape = \"ellipsoid\"\nsize = [0.3, 0.3, 0.3]"));
     same_system("round ellipsoid", &ball, &round);
+}
+
+/// Intersections of the circles about `p` and `q` with radii `r` and `s`.
+fn circles(p: [f64; 2], r: f64, q: [f64; 2], s: f64) -> [[f64; 2]; 2] {
+    let d = [q[0] - p[0], q[1] - p[1]];
+    let square = d[0] * d[0] + d[1] * d[1];
+    let along = (square + r * r - s * s) / (2.0 * square);
+    let across = (r * r / square - along * along).sqrt();
+    [1.0, -1.0].map(|k| [p[0] + along * d[0] - k * across * d[1], p[1] + along * d[1] + k * across * d[0]])
+}
+
+/// A loop leaves two configurations; both are named, and a guess chooses one.
+#[track_caller]
+fn configurations(title: &str, given: &str, names: [&str; 2], bodies: &str, expected: [[f64; 2]; 2]) {
+    let with = |guess: &dyn Fn(usize) -> String| {
+        let free: String = names.iter().enumerate().map(|(k, q)| format!("{q} = {{ {} }}\n", guess(k))).collect();
+        scene::Scene::parse(
+            title,
+            &format!("{HEAD}[coordinates]\n{given}{free}{bodies}[start.velocities]\n\"a'\" = 1\n"),
+        )
+    };
+    let error = match with(&|_| String::new()) {
+        Ok(_) => panic!("{title}: no choice"),
+        Err(error) => error.to_string(),
+    };
+    assert!(error.contains("constraints on positions leave 2 configurations"), "{error}");
+    for x in expected {
+        let named = format!("{} = {:.6}, {} = {:.6}", names[0], x[0], names[1], x[1]);
+        assert!(error.contains(&named), "{named}: {error}");
+        let scene = with(&|k| format!("guess = {}", x[k] + 0.1)).unwrap_or_else(|e| panic!("{e}"));
+        let off = scene.start.q[1..].iter().zip(x).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        must(&format!("{title}: configuration"), off, 1e-13);
+    }
+}
+
+#[test]
+fn closed_loops_find_their_start_and_name_all_configurations() {
+    let a = 0.7_f64;
+    let crank = [a.cos(), a.sin()];
+    // crank 1, coupler 2.2, rocker 1.6, frame 2
+    let four_bars = r#"
+[body.crank]
+joint = { hinge = "z", angle = "a" }
+mass = 1
+inertia = [0, 0, 0.1]
+[body.coupler]
+on = "crank"
+joint = { hinge = "z", angle = "b - a", at = [1, 0] }
+mass = 1
+inertia = [0, 0, 0.1]
+[body.rocker]
+joint = { hinge = "z", angle = "c", at = [2, 0] }
+inertia = [0, 0, 0.2]
+[loop.pin]
+between = { coupler = [2.2, 0], rocker = [1.6, 0] }
+"#;
+    let pins = circles(crank, 2.2, [2.0, 0.0], 1.6);
+    let angles = pins.map(|[x, y]| [(y - crank[1]).atan2(x - crank[0]), y.atan2(x - 2.0)]);
+    configurations("four bars", "a = { start = 0.7 }\n", ["b", "c"], four_bars, angles);
+    let slider = r#"
+[body.crank]
+joint = { hinge = "z", angle = "a" }
+mass = 1
+inertia = [0, 0, 0.1]
+[body.rod]
+on = "crank"
+joint = { hinge = "z", angle = "b - a", at = [1, 0] }
+mass = 1
+inertia = [0, 0, 0.1]
+[body.piston]
+joint = { slider = "x", shift = "s" }
+mass = 0.5
+[loop.pin]
+between = { rod = [2.5, 0], piston = [0, 0] }
+"#;
+    let (b, reach) = (-(crank[1] / 2.5).asin(), (2.5_f64 * 2.5 - crank[1] * crank[1]).sqrt());
+    let places = [[b, crank[0] + reach], [-std::f64::consts::PI - b, crank[0] - reach]];
+    configurations("slider-crank", "a = { start = 0.7 }\n", ["b", "s"], slider, places);
+    // two arms of 0.15 behind kingpins 1.2 apart, 0.3 inwards, and a tie rod; the left one is steered by 0.2
+    let rod = 1.2 - 2.0 * 0.15 * 0.3_f64.sin();
+    let ackermann = format!(
+        r#"
+[body.left]
+joint = {{ hinge = "z", angle = "a", at = [0, 0.6] }}
+inertia = [0, 0, 0.2]
+[body.right]
+joint = {{ hinge = "z", angle = "c", at = [0, -0.6] }}
+inertia = [0, 0, 0.2]
+[body.rod]
+on = "left"
+joint = {{ hinge = "z", angle = "b - a", at = "0.15*[-cos(0.3), -sin(0.3)]" }}
+mass = 0.1
+[loop.pin]
+between = {{ rod = [0, {}], right = "0.15*[-cos(0.3), sin(0.3)]" }}
+"#,
+        -rod
+    );
+    let end = [0.15 * -(0.5_f64.cos()), 0.6 + 0.15 * -(0.5_f64.sin())];
+    let pins = circles(end, rod, [0.0, -0.6], 0.15);
+    let angles = pins.map(|[x, y]| {
+        let turn = |angle: f64| angle - std::f64::consts::TAU * (angle / std::f64::consts::TAU).round();
+        // at 0 the rod points along -y, and the right arm at pi - 0.3
+        [
+            turn((y - end[1]).atan2(x - end[0]) + 0.5 * std::f64::consts::PI),
+            turn((y + 0.6).atan2(x) - (std::f64::consts::PI - 0.3)),
+        ]
+    });
+    configurations("Ackermann linkage", "a = { start = 0.2 }\n", ["b", "c"], &ackermann, angles);
+}
+
+/// Four wheels that roll, the front ones steered apart: two rows each, and those of the rear axle share one.
+#[test]
+fn an_ackermann_car_is_what_the_textbook_has() {
+    let wheel = |name: &str, on: &str, angle: &str, at: &str| {
+        format!(
+            "[body.{name}]\non = \"{on}\"\njoint = {{ hinge = \"y\", angle = \"{angle}\", at = {at} }}\nshape = \"wheel\"\nsize = [0.3]\nmass = 8\n"
+        )
+    };
+    let knuckle = |name: &str, angle: &str, at: &str| {
+        format!("[body.{name}]\non = \"car\"\njoint = {{ hinge = \"z\", angle = \"{angle}\", at = {at} }}\n")
+    };
+    let bodies = [
+        "\n[body.car]\njoint = { plane = [\"x\", \"y\", \"phi\"], at = [0, 0, 0.3] }\nmass = 900\nmass-centre = [1.2, 0, 0.2]\ninertia = [0, 0, 1100]\n".into(),
+        wheel("rr", "car", "a", "[0, -0.7, 0]"),
+        wheel("rl", "car", "b", "[0, 0.7, 0]"),
+        knuckle("kr", "d", "[2.6, -0.7, 0]"),
+        knuckle("kl", "e", "[2.6, 0.7, 0]"),
+        wheel("fr", "kr", "f", "[0, 0, 0]"),
+        wheel("fl", "kl", "g", "[0, 0, 0]"),
+        "[contact]\n".into(),
+        ["rr", "rl", "fr", "fl"].map(|name| format!("{name} = {{ of = \"{name}\", law = \"rolls\" }}\n")).concat(),
+    ]
+    .concat();
+    // moments of a disc of 8 kg: 0.36 about its axle, 0.18 about the vertical
+    let by_hand = r#"
+[definitions]
+u = "x'*cos(phi) + y'*sin(phi)"
+n = "y'*cos(phi) - x'*sin(phi)"
+w = "n + 2.6*phi'"
+T = "450*(u^2 + (n + 1.2*phi')^2) + 550*phi'^2"
+TR = "4*(2*u^2 + 2*n^2 + 2*0.49*phi'^2) + 0.18*phi'^2 + 0.18*(a'^2 + b'^2)"
+TF = "4*((u + 0.7*phi')^2 + (u - 0.7*phi')^2 + 2*w^2) + 0.09*((phi' + d')^2 + (phi' + e')^2) + 0.18*(f'^2 + g'^2)"
+[system]
+lagrangian = "T + TR + TF"
+constraints = [
+  "u + 0.7*phi' - 0.3*a'", "u - 0.7*phi' - 0.3*b'", "n",
+  "(u + 0.7*phi')*cos(d) + w*sin(d) - 0.3*f'", "w*cos(d) - (u + 0.7*phi')*sin(d)",
+  "(u - 0.7*phi')*cos(e) + w*sin(e) - 0.3*g'", "w*cos(e) - (u - 0.7*phi')*sin(e)",
+]
+"#;
+    let q = ["x", "y", "phi", "a", "b", "d", "e", "f", "g"].map(|q| (q, 0.2));
+    as_by_hand("Ackermann car", &q, &bodies, by_hand);
+}
+
+/// A body that stands on a ball, by a motor between both.
+#[test]
+fn a_robot_on_a_ball_is_what_the_textbook_derives() {
+    let bodies = r#"
+gravity = [0, 0, -9.81]
+
+[body.ball]
+at = "[x, y, 0.1]"
+rotation = "rotation(zxz, psi, theta, chi)"
+shape = "ball"
+size = [0.1]
+mass = 2
+[body.body]
+at = "[x, y, 0.1]"
+rotation = "rotation(xy, p, r)"
+mass = 8
+mass-centre = [0, 0, 0.4]
+inertia = [0.5, 0.4, 0.1]
+[contact.ball]
+of = "ball"
+law = "rolls"
+"#;
+    let by_hand = r#"
+[definitions]
+wx = "theta'*cos(psi) + chi'*sin(theta)*sin(psi)"
+wy = "theta'*sin(psi) - chi'*sin(theta)*cos(psi)"
+gx = "x' + 0.4*r'*cos(r)"
+gy = "y' + 0.4*(r'*sin(p)*sin(r) - p'*cos(p)*cos(r))"
+gz = "-0.4*(p'*sin(p)*cos(r) + r'*cos(p)*sin(r))"
+TB = "x'^2 + y'^2 + 0.004*(psi'^2 + theta'^2 + chi'^2 + 2*psi'*chi'*cos(theta))"
+[system]
+lagrangian = "TB + 4*(gx^2 + gy^2 + gz^2) + 0.25*p'^2*cos(r)^2 + 0.2*r'^2 + 0.05*p'^2*sin(r)^2 - 8*9.81*0.4*cos(p)*cos(r)"
+constraints = ["x' - 0.1*wy", "y' + 0.1*wx"]
+"#;
+    let q = [("x", 0.0), ("y", 0.0), ("psi", 0.3), ("theta", 1.1), ("chi", 0.2), ("p", 0.1), ("r", 0.2)];
+    as_by_hand("robot on a ball", &q, bodies, by_hand);
+}
+
+/// An arm of two links, driven at its elbow, each on a skate.
+#[test]
+fn an_arm_on_two_skates_is_what_the_textbook_has() {
+    let bodies = r#"
+[body.first]
+joint = { plane = ["x", "y", "a"] }
+mass = 3
+mass-centre = [0.5, 0]
+inertia = [0, 0, 0.3]
+[body.second]
+on = "first"
+joint = { hinge = "z", angle = "b - a", at = [1, 0] }
+mass = 2
+mass-centre = [0.4, 0]
+inertia = [0, 0, 0.2]
+[contact]
+first = { of = "first", law = "blade", at = [0.2, 0] }
+second = { of = "second", law = "blade", at = [0.9, 0] }
+[motor.elbow]
+joint = "second"
+force = "3*sin(t)"
+[spring.elbow]
+joint = "second"
+stiffness = 5
+rest = 0.2
+"#;
+    let by_hand = r#"
+[definitions]
+fx = "x' - 0.5*a'*sin(a)"
+fy = "y' + 0.5*a'*cos(a)"
+sx = "x' - a'*sin(a) - 0.4*b'*sin(b)"
+sy = "y' + a'*cos(a) + 0.4*b'*cos(b)"
+[system]
+lagrangian = "1.5*(fx^2 + fy^2) + 0.15*a'^2 + sx^2 + sy^2 + 0.1*b'^2 - 2.5*(b - a - 0.2)^2"
+constraints = ["y'*cos(a) - x'*sin(a) + 0.2*a'", "y'*cos(b) - x'*sin(b) + a'*cos(b - a) + 0.9*b'"]
+forces = { a = "-3*sin(t)", b = "3*sin(t)" }
+"#;
+    as_by_hand("arm on two skates", &[("x", 0.1), ("y", 0.2), ("a", 0.3), ("b", 0.7)], bodies, by_hand);
 }

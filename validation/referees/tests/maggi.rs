@@ -208,7 +208,12 @@ fn appell_hamel_runs_straight_and_slows() {
 
 #[test]
 fn without_constraints_it_is_lagrange() {
-    let text = SLEDGE.split("[removal").next().unwrap().replace("constraints", "# constraints") + "[run]\nduration = 1";
+    let text = SLEDGE
+        .split("[removal")
+        .next()
+        .unwrap()
+        .replace("[contact.blade]          # (5)\nof = \"sledge\"\non = \"slope\"\nlaw = \"blade\"\n", "")
+        + "[run]\nduration = 1";
     let scene = scene(&text.replace("\"x'\"   =", "\"y'\" = 0.2\n\"x'\" ="), &[]);
     let state = Maggi::new(&scene.system).unwrap().solve(&scene.start, 1.0, 1e-12).unwrap().state(1.0).unwrap();
     let expected = 0.5 * 0.3_f64.cos() + 9.81 * 0.4_f64.sin();

@@ -71,6 +71,7 @@ from ._results import Design, Estimate, Integrals
 from ._review import review
 from ._sweep import Sweep, ensemble, sweep
 from ._sympy import from_sympy
+from ._urdf import from_urdf
 
 __all__ = [
     "FORMULATIONS",
@@ -122,6 +123,7 @@ __all__ = [
     "designs",
     "ensemble",
     "from_sympy",
+    "from_urdf",
     "load",
     "parse",
     "review",
