@@ -22,7 +22,7 @@ fn counted<T>(work: impl FnOnce() -> T) -> (T, [usize; ROOMS.len()]) {
 }
 
 fn scene(name: &str) -> Scene {
-    catalogue::find(name, &[]).unwrap_or_else(|error| panic!("{error}"))
+    scene::catalogue::find(name, &[]).unwrap_or_else(|error| panic!("{error}"))
 }
 
 /// Choices of a scene by place, each with a scene of its own: a graph remembers what was asked of it.

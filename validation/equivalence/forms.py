@@ -16,7 +16,7 @@ import tomllib
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
-SCENES = Path(__file__).parents[2] / "crates/catalogue/scenes"
+SCENES = Path(__file__).parents[2] / "crates/scene/scenes"
 FORMS = [("chetaev", "multipliers"), ("chetaev", "quasi-velocities"), ("vakonomic", "multipliers"),
          ("vakonomic", "costates"), ("vakonomic", "quasi-velocities")]
 METHODS = ["auto", "dop853", "radau5"]
