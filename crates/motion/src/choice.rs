@@ -95,8 +95,8 @@ pub fn derive(system: &System, choice: &Choice) -> Result<Equations, SolveError>
 /// ```
 ///
 /// # Errors
-/// [`SolveError::Scene`] for a name that cannot be a coordinate's, [`SolveError::Formula`] with its place for a
-/// formula that cannot be read; as [`derive()`].
+/// [`SolveError::Scene`] for a name that cannot be a coordinate's, [`SolveError::Formula`] with its place for
+/// a formula that cannot be read; as [`derive()`].
 pub fn equations_of(lagrangian: &str, constraints: &[&str], coordinates: &[&str]) -> Result<Equations, SolveError> {
     let coordinate = |name: &&str| format!("{} = {{ unit = \"1\", start = 0 }}\n", quoted(name));
     let velocity = |name: &&str| format!("{} = 0\n", quoted(&format!("{name}'")));

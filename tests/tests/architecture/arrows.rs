@@ -30,7 +30,7 @@ const NEVER: [(&str, &str, &str); 17] = [
     ("decision", "motion reduction", "a decision reads equations and knows no formulation"),
     ("referees", "motion chetaev vakonomic removed-constraint kappa equations reduction", "a judge shares nothing"),
     ("reference", "integrate motion", "it measures the errors of `integrate`"),
-    ("motion comparison", "program pages bench", "the library knows no files, pictures or command line"),
+    ("motion comparison", "program pages", "the library knows no files, pictures or command line"),
     ("motion linear judge", "comparison", "one formulation has its motions before they are compared"),
     ("linear explore", "program pages", "the library knows no files, pictures or command line"),
     ("random", "validation", "claims know no pages"),
