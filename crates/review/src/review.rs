@@ -13,6 +13,7 @@ use crate::frame::{Frame, Point, Trouble};
 use crate::monomials::{Coefficient, differing};
 use crate::number::{Number, constants};
 use crate::reading::{Line, Reading, read};
+use crate::theirs::in_theirs;
 
 /// Whether equations are right.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -162,7 +163,12 @@ pub(crate) fn review(
         }
         Some(trouble) => review.notes.push(trouble.words()),
     }
-    for seed in 0..if review.verdict == Verdict::Wrong && explains { 10 } else { 0 } {
+    let wrong = review.verdict == Verdict::Wrong && explains;
+    if let Some(other) = in_theirs(scene, &reading).filter(|_| wrong && review.explanations.is_empty()) {
+        let to_be = Asked { wheres: Vec::new(), ..to_be.clone() };
+        review.explanations = self::review(&other, lines, None, &to_be, true)?.explanations;
+    }
+    for seed in 0..if wrong { 10 } else { 0 } {
         let drawn = frame.draw::<Bounded>(seed, u32::from(seed > 0), true).and_then(|inputs| frame.at(inputs));
         let points: Vec<Point<Bounded>> = drawn.into_iter().collect();
         review.differences = held.differences(&points, &mut review.state);
