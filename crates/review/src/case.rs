@@ -3,7 +3,7 @@
 use decision::exact::Exact;
 use symbolic::{Evaluator, Symbol};
 
-use crate::atoms::{Atom, Called};
+use crate::atoms::Called;
 use crate::base::{Base, Residuals};
 use crate::frame::{Frame, Point, Trouble};
 use crate::number::{Number, constants, eliminate, values};
@@ -221,9 +221,4 @@ fn explained<C: Number>(stack: &Stack<C>, called: &[&Called], pairs: bool) -> Ve
         }
     }
     found
-}
-
-/// Names and columns of mistakes.
-pub(crate) fn split(atoms: &[Atom]) -> (Vec<&Called>, Vec<Vec<symbolic::Expr>>) {
-    atoms.iter().map(|atom| (&atom.called, atom.column.clone())).unzip()
 }

@@ -42,6 +42,7 @@ mod review;
 pub mod substitution;
 mod table;
 mod text;
+mod theirs;
 mod value;
 
 use scene::Scene;

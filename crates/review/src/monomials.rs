@@ -25,11 +25,7 @@ type Both = Vec<Bounded>;
 
 /// The coefficients that differ; none where accelerations are not polynomials of degree 2 in the velocities
 /// that the constraints leave free.
-pub(crate) fn differing(frame: &Frame, base: &Base, position: &[At<Bounded>]) -> Vec<Coefficient> {
-    at(frame, base, position).unwrap_or_default()
-}
-
-fn at(frame: &Frame, base: &Base, position: &[At<Bounded>]) -> Option<Vec<Coefficient>> {
+pub(crate) fn differing(frame: &Frame, base: &Base, position: &[At<Bounded>]) -> Option<Vec<Coefficient>> {
     let n = frame.reading.coordinates.len();
     let signs = base.signs(frame).into_iter().next()?;
     let mut program = base.program(frame).ok()?;

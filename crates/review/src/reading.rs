@@ -85,7 +85,6 @@ struct Names<'a> {
     unknown: RefCell<Vec<(String, usize)>>,
     /// Whether names may be unknown.
     open: bool,
-    none: Vec<String>,
 }
 
 impl Names<'_> {
@@ -127,7 +126,7 @@ impl Scope for Names<'_> {
     }
 
     fn known(&self) -> &[String] {
-        &self.none
+        &[]
     }
 }
 
@@ -184,7 +183,6 @@ pub(crate) fn read(scene: &Scene, lines: &[Line], wheres: &[String]) -> Result<R
         definitions: RefCell::default(),
         unknown: RefCell::default(),
         open: false,
-        none: Vec::new(),
     };
     names.known.insert("t".into(), g.variable(system.time));
     names.known.extend(parameters.iter().map(|(s, _)| (g.name(*s), g.variable(*s))));

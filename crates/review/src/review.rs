@@ -1,18 +1,21 @@
 //! The verdict on somebody's equations, and what is wrong with them.
 
+use std::collections::BTreeSet;
+
 use decision::exact::{FIELDS, Modular, in_field};
 use equations::Formulation;
 use scene::Scene;
 use symbolic::{Bounded, Scalar, Symbol};
 
 use crate::ReviewError;
-use crate::atoms::{Atom, atoms, pieces, wrong_constraints};
+use crate::atoms::{Atom, Called, atoms, pieces, wrong_constraints};
 use crate::base::{Base, formulated, substituted, with_constraints};
-use crate::case::{Case, split};
+use crate::case::Case;
 use crate::frame::{Frame, Point, Trouble};
 use crate::monomials::{Coefficient, differing};
 use crate::number::{Number, constants};
 use crate::reading::{Line, Reading, read};
+use crate::theirs::in_theirs;
 
 /// Whether equations are right.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -154,22 +157,23 @@ pub(crate) fn review(
     if let Some(Trouble::NoPoint(_)) = trouble {
         trouble = held.decide_at_random::<Bounded>(&mut review).err();
     }
-    match trouble {
-        None => {}
-        Some(Trouble::Contradiction) => {
-            review.verdict = Verdict::Wrong;
-            review.notes.push(Trouble::Contradiction.words());
-        }
-        Some(trouble) => review.notes.push(trouble.words()),
+    if trouble == Some(Trouble::Contradiction) {
+        review.verdict = Verdict::Wrong;
     }
-    for seed in 0..if review.verdict == Verdict::Wrong && explains { 10 } else { 0 } {
+    review.notes.extend(trouble.map(|trouble| trouble.words()));
+    let wrong = review.verdict == Verdict::Wrong && explains;
+    if let Some(other) = in_theirs(scene, &reading).filter(|_| wrong && review.explanations.is_empty()) {
+        let to_be = Asked { wheres: Vec::new(), ..to_be.clone() };
+        review.explanations = self::review(&other, lines, None, &to_be, true)?.explanations;
+    }
+    for seed in 0..if wrong { 10 } else { 0 } {
         let drawn = frame.draw::<Bounded>(seed, u32::from(seed > 0), true).and_then(|inputs| frame.at(inputs));
         let points: Vec<Point<Bounded>> = drawn.into_iter().collect();
         review.differences = held.differences(&points, &mut review.state);
         if !review.differences.is_empty() {
             if review.explanations.is_empty() {
                 let found = asked.iter().zip(&points).map(|(base, point)| differing(&frame, base, &point.inputs));
-                review.coefficients = found.flatten().collect();
+                review.coefficients = found.flatten().flatten().collect();
             }
             review.at_start = seed == 0 && frame.reading.map.is_empty() && frame.on_leaf.is_empty();
             break;
@@ -317,7 +321,8 @@ fn explanations<C: Number>(
     };
     let mut found = exact(&mut substituted.iter().map(|(base, _)| base).chain(&others));
     let atoms: Vec<Atom> = atoms(reading);
-    let (called, columns) = split(&atoms);
+    let (called, columns): (Vec<&Called>, Vec<_>) =
+        atoms.iter().map(|atom| (&atom.called, atom.column.clone())).unzip();
     let columns = case.columns(&columns);
     let with = |bases: &mut dyn Iterator<Item = &Base>, pairs: bool, named: bool| -> Vec<Vec<String>> {
         let Some(columns) = &columns else { return Vec::new() };
@@ -352,12 +357,7 @@ fn explanations<C: Number>(
         found = with(&mut wrong.iter(), false, true);
     }
     // other removals may give the same
-    let mut told = Vec::new();
-    found.retain(|words| {
-        !told.contains(words) && {
-            told.push(words.clone());
-            true
-        }
-    });
+    let mut told = BTreeSet::new();
+    found.retain(|words| told.insert(words.clone()));
     found
 }

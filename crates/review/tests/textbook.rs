@@ -38,5 +38,5 @@ fn derivations_of_textbooks_are_judged() {
         let all = |words: &String| words.ends_with("is missing in L, wherever it stands in T");
         assert!(!found.explanations.iter().any(|words| words.iter().any(all)), "{scene}, {what}: {found:?}");
     }
-    assert_eq!((right, wrong, named), (63, 52, 38), "right, wrong, and wrong with a name");
+    assert_eq!((right, wrong, named), (63, 52, 46), "right, wrong, and wrong with a name");
 }

@@ -137,7 +137,7 @@ impl RealizationReport {
         let within = rates.iter().filter(|r| RATE.contains(r)).count();
         let (least, most) = rates.iter().fold((f64::INFINITY, 0.0_f64), |(a, b), &r| (a.min(r), b.max(r)));
         format!(
-            "Viscous friction converges to Chetaev's motion, added mass to a vakonomic one; added mass on the augmented system to a \
+            "Viscous friction converges to Chetaev's motion where A M⁻¹ Aᵀ is positive, added mass to a vakonomic one; added mass on the augmented system to a \
              removed-constraint one, and both together to the family `kappa`. In {within} of {} cases the distance falls as 1/N \
              (fitted exponents {} to {}).",
             rates.len(),

@@ -67,7 +67,11 @@ pub const CHECKS: &[Check] = &[
     check(5, "the leading divergence of vakonomic from Chetaev is the predicted one", growth::check),
     check(6, "energy is constant where it should be", invariants::energy),
     check(7, "vakonomic momenta of cyclic coordinates are constant", invariants::momentum),
-    thorough(8, "viscosity leads to Chetaev, added mass to vakonomic, both at rate 1/N or faster", realization::check),
+    thorough(
+        8,
+        "viscosity leads to Chetaev for definite M, added mass to vakonomic, both at rate 1/N or faster",
+        realization::check,
+    ),
     check(9, "decision, proof and fit agree on whether Chetaev's motion is vakonomic", fairness::check),
     thorough(9, "decision, proof and fit agree on whether Chetaev's motion is vakonomic", fairness::fit),
     check(10, "time reversal and units change nothing", invariance::reversal_and_units),
