@@ -109,7 +109,7 @@ fn an_integrable_constraint_beside_motions_that_differ_or_no_multipliers() {
     assert!(all.iter().any(|c| c.other == "no constants of vakonomic give the motion of Chetaev"), "{all:?}");
     let mut bowl = bowl();
     pair(&mut bowl, REMOVED_CONSTRAINT).gap.verdict = Verdict::Different;
-    assert!(found(&bowl).starts_with("the constraint is integrable"));
+    assert!(found(&bowl).starts_with("the constraint is holonomic"));
 }
 
 #[test]

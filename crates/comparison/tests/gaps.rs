@@ -52,7 +52,7 @@ fn light_coordinates_are_not_hidden_by_heavy_ones() {
     assert!(gap.certain_by_coordinate[2].is_some() && gap.certain_by_coordinate[3].is_some(), "{gap:?}");
     assert!(gap.certain_by_coordinate[0].is_none() && !gap.shows() && gap.proved);
     let verdict = words::Headline::of(&comparison).verdict;
-    assert!(verdict.contains("apart in z by up to 0.787 and w by up to 0.454"), "{verdict}");
+    assert!(verdict.contains("differ in z by up to 0.787 and w by up to 0.454"), "{verdict}");
 }
 
 #[test]
@@ -119,7 +119,7 @@ fn what_is_proved_to_differ_is_never_called_the_same() {
         assert!(!chetaev || pair.gap.bound() < 1e-11, "{:e}", pair.gap.bound());
     }
     let verdict = words::Headline::of(&comparison).verdict;
-    assert!(verdict.contains("different, which is proved; by less than"), "{verdict}");
+    assert!(verdict.contains("differ, which is proved; by less than"), "{verdict}");
     // the same at a shorter time, where built-in systems have not parted yet
     let sledge = include_str!("../../scene/scenes/sledge.toml");
     let sledge = Scene::parse_with("sledge", sledge, &[("duration".into(), 1e-4)]).expect("built in");

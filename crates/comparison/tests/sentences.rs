@@ -113,7 +113,7 @@ fn a_proved_difference_that_is_not_seen_is_under_gap_and_limit() {
     }
     let told = verdict(&three);
     assert!(told.starts_with("3 different motions: Chetaev; vakonomic; removed"), "{told}");
-    let unseen = "Chetaev and vakonomic: different, which is proved; by less than 5.0e-12 up to 8 s: measured.";
+    let unseen = "Chetaev and vakonomic differ, which is proved; by less than 5.0e-12 up to 8 s: measured.";
     assert!(told.contains(unseen), "{told}");
 }
 
