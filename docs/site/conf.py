@@ -12,7 +12,7 @@ myst_enable_extensions = ["dollarmath"]
 myst_fence_as_directive = ["math"]
 myst_heading_anchors = 6
 # links to folders and to headings of reports are held by the check of all links of the built site
-suppress_warnings = ["myst.header", "myst.xref_missing"]
+suppress_warnings = ["myst.header", "myst.xref_missing", "toc.not_included"]
 html_theme = "furo"
 html_static_path = ["static"]
 html_css_files = ["site.css"]

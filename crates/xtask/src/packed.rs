@@ -51,7 +51,8 @@ pub(crate) fn used() -> Result<Outcome> {
     timed("library, beside it", &mut || {
         succeed(build().args(["init", "--quiet", "--vcs", "none", "own"]))?;
         let own = folder.join("own");
-        succeed(build().args(["add", "--quiet", "deltaq"]).current_dir(&own))?;
+        // by its folder: only an index finds a name
+        succeed(build().args(["add", "--quiet", "--path", "../deltaq"]).current_dir(&own))?;
         fs::write(own.join("src/main.rs"), example.context("the readme shows no example")?)?;
         succeed(build().args(["build", "--quiet", "--release"]).current_dir(&own))?;
         let program = folder.join("target/release").join(format!("own{}", std::env::consts::EXE_SUFFIX));
