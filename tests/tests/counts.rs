@@ -1,5 +1,5 @@
-//! What is done twice is seen: operations on expressions, counted by the room that asks for them. Nobody waits for
-//! one motion that is derived twice; who compares, sweeps, or draws a thousand systems, does.
+//! What is done twice is seen: operations on expressions, counted by the room that asks for them. Nobody
+//! waits for one motion that is derived twice; who compares, sweeps, or draws a thousand systems, does.
 
 use comparison::{Comparison, Extent};
 use motion::{Ensemble, EnsembleOptions, Prepared, Settings, choices, derive_in_form, setting, solve_choice};

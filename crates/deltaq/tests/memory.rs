@@ -35,8 +35,8 @@ fn two_hundred_thousand_seconds_with_two_times_take_under_25_megabytes() {
     assert!((turned - 200_000.3).abs() < 1e-5 || (turned - 220_000.3).abs() < 1e-5, "{turned}");
 }
 
-/// What asks for more than memory holds is told its limit; the largest that is answered fits into 2 GB. Memory goes
-/// with rows and members, so a third of these fits into a third of it; `ROWS=1000000` takes all.
+/// What asks for more than memory holds is told its limit; the largest that is answered fits into 2 GB.
+/// Memory goes with rows and members, so a third of these fits into a third of it; `ROWS=1000000` takes all.
 #[cfg(target_os = "linux")]
 #[test]
 fn a_million_rows_are_answered_or_refused_in_two_gigabytes() {

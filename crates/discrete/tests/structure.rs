@@ -131,8 +131,8 @@ fn steps_of_stationary_action_are_symplectic() {
     assert!(count >= 16, "{count}");
 }
 
-/// Steps of a long run, unless `STEPS` says another number. Limits below are those of a million: of what grows
-/// with the steps, or with their root, fewer steps have to leave less.
+/// Steps of a long run, unless `STEPS` says another number. Limits below are those of a million: of what
+/// grows with the steps, or with their root, fewer steps have to leave less.
 const LONG: usize = 125_000;
 
 fn long() -> (usize, f64) {

@@ -76,8 +76,8 @@ const EXPLAINED: [[&str; 4]; 2] = [
     ],
 ];
 
-/// Number of faults per place that are tried on one derivation path; `FAULTS_A_PLACE=N` tries more, or all. Every
-/// path begins with another one, so the paths of fifteen systems try what six on each of them would.
+/// Number of faults per place that are tried on one derivation path; `FAULTS_A_PLACE=N` tries more, or all.
+/// Each path begins with another one, so that the paths of fifteen systems together try most of them.
 const A_PLACE: usize = 2;
 
 /// A derivation path that is still to be tried.

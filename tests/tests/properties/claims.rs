@@ -1,7 +1,8 @@
 //! One suite a theorem. What each claim says and assumes is at the check, in the crate `random`.
 //!
-//! The check `reports` puts the same claims to 1,000 systems. Here are as many of others as a fault in a derivation
-//! needs to be seen, and the fractions at the end of a test to be told from chance; `PROPTEST_CASES` takes more.
+//! The check `reports` puts the same claims to 1,000 systems. Here are as many of others as a fault in a
+//! derivation needs to be seen, and the fractions at the end of a test to be told from chance;
+//! `PROPTEST_CASES` takes more.
 
 use std::sync::LazyLock;
 
