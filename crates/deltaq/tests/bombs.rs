@@ -1,5 +1,5 @@
-//! Inputs that are huge or deep: each has an answer, stays open, or is refused with its limit, in 2 GB and in 60 s
-//! of processor time. `BOMBS=all` tries all of them, `BOMBS=NAME` those whose name has that word.
+//! Inputs that are huge or deep: each has an answer, stays open, or is refused with its limit, in 2 GB and in
+//! 60 s of processor time. `BOMBS=all` tries all of them, `BOMBS=NAME` those whose name has that word.
 
 use std::fmt::Write;
 use std::path::Path;
