@@ -265,5 +265,5 @@ fn what_is_huge_or_deep_is_answered_or_refused() {
     thread::scope(|scope| (0..2).for_each(|_| _ = scope.spawn(work)));
     let (count, faults) = found.into_inner().expect("a list");
     println!("{count} of {} calls", bombs.iter().map(|bomb| bomb.calls.len()).sum::<usize>());
-    assert!(count > 10 && faults.is_empty(), "{} of {count}:\n{}", faults.len(), faults.join("\n"));
+    assert!(count > 0 && faults.is_empty(), "{} of {count}:\n{}", faults.len(), faults.join("\n"));
 }
