@@ -1,5 +1,5 @@
-//! Inputs that are huge or deep: each has an answer, stays open, or is refused with its limit, in 2 GB and in 60 s
-//! of processor time. `BOMBS=all` tries all of them, `BOMBS=NAME` those whose name has that word.
+//! Inputs that are huge or deep: each has an answer, stays open, or is refused with its limit, in 2 GB and in
+//! 60 s of processor time. `BOMBS=all` tries all of them, `BOMBS=NAME` those whose name has that word.
 
 use std::fmt::Write;
 use std::path::Path;
@@ -10,8 +10,8 @@ use std::time::Instant;
 
 use crate::support::text;
 
-/// Every so many of them are in the check.
-const SAMPLED: usize = 12;
+/// Names of those in the check begin so: they take hundredths of a second.
+const QUICK: [&str; 9] = ["brackets", "minus", "powers", "lists", "sines 1", "keys", "power ", "number ", "digits"];
 /// What a bomb may take.
 const KILOBYTES: u32 = 2_000_000;
 const SECONDS: u32 = 60;
@@ -241,12 +241,12 @@ fn what_is_huge_or_deep_is_answered_or_refused() {
     let asked = std::env::var("BOMBS").ok();
     let bombs = bombs();
     let calls = bombs.iter().flat_map(|bomb| bomb.calls.iter().map(move |call| (bomb, *call))).enumerate();
-    let is_wanted = |at: usize, name: &str| match asked.as_deref() {
-        None => at.is_multiple_of(SAMPLED),
+    let is_wanted = |name: &str| match asked.as_deref() {
+        None => QUICK.iter().any(|word| name.starts_with(word)),
         Some("all") => true,
         Some(word) => name.contains(word),
     };
-    let wanted = Mutex::new(calls.filter(|(at, (bomb, _))| is_wanted(*at, &bomb.name)).collect::<Vec<_>>().into_iter());
+    let wanted = Mutex::new(calls.filter(|(_, (bomb, _))| is_wanted(&bomb.name)).collect::<Vec<_>>().into_iter());
     let (folder, found) = (tempfile::tempdir().expect("a folder"), Mutex::new((0, Vec::new())));
     let work = || {
         while let Some((at, (bomb, call))) = { wanted.lock().expect("a list").next() } {
@@ -265,5 +265,5 @@ fn what_is_huge_or_deep_is_answered_or_refused() {
     thread::scope(|scope| (0..2).for_each(|_| _ = scope.spawn(work)));
     let (count, faults) = found.into_inner().expect("a list");
     println!("{count} of {} calls", bombs.iter().map(|bomb| bomb.calls.len()).sum::<usize>());
-    assert!(count > 10 && faults.is_empty(), "{} of {count}:\n{}", faults.len(), faults.join("\n"));
+    assert!(count > 0 && faults.is_empty(), "{} of {count}:\n{}", faults.len(), faults.join("\n"));
 }

@@ -43,6 +43,8 @@ pub const WRITINGS: [Writing; 8] = [
 pub fn plain(scene: &Table) -> Table {
     let mut scene = scene.clone();
     ["view", "observables", "removal", "bodies"].into_iter().for_each(|key| _ = scene.remove(key));
+    let system = scene.get_mut("system").and_then(Value::as_table_mut);
+    system.into_iter().for_each(|system| _ = system.remove("virtual"));
     scene
 }
 
