@@ -5,7 +5,8 @@
 Each constraint is multiplied by -1, by 3 and by 1 + q0^2, given twice the other way round (row combinations:
 f1 + f2, f2), and expanded into `(f)*(1 + 1) - (f)`. `deltaq solve` is asked for the same formulation, form and
 method as for the scene as it is. Compared are exit code, status, the cause without numbers, and the coordinates
-at the end within ten times both error estimates. Lines are printed for what differs; the last one counts.
+at the end within ten times both error estimates. Vakonomic multipliers are zero at the start, as others belong
+to a writing. Lines are printed for what differs; the last one counts.
 """
 
 import json
@@ -21,6 +22,8 @@ FORMS = [("chetaev", "multipliers"), ("chetaev", "quasi-velocities"), ("vakonomi
          ("vakonomic", "costates"), ("vakonomic", "quasi-velocities")]
 METHODS = ["auto", "dop853", "radau5"]
 RELATIVE = 1e-9
+# it rides straight, which is unstable (2.7 per second, for 20 s): round-off decides where it falls
+UNSTABLE = {"bicycle"}
 
 
 def writings(constraints, coordinate):
@@ -48,6 +51,8 @@ def solved(program, text, formulation, form, method):
     """Exit code, status, cause without numbers, coordinates at the end, their estimates."""
     command = [program, "solve", "-f", formulation, "--form", form, "--method", method, "--format", "json",
                "--time-limit", "20", "--quiet", "-"]
+    if formulation == "vakonomic":
+        command += ["--mu0", ",".join("0" for _ in tomllib.loads(text)["system"]["constraints"])]
     done = subprocess.run(command, input=text, capture_output=True, text=True, timeout=120)
     numberless = lambda words: re.sub(r"[-+]?\d[\d.e+-]*", "#", words or "")
     if not done.stdout:
@@ -78,7 +83,7 @@ def main():
     for path in sorted(SCENES.glob("*.toml")):
         scene = tomllib.loads(path.read_text())
         constraints = scene.get("system", {}).get("constraints", [])
-        if not constraints or only and path.stem not in only:
+        if not constraints or path.stem in UNSTABLE or only and path.stem not in only:
             continue
         coordinate = next(iter(scene["coordinates"]))
         for formulation, form in FORMS:

@@ -6,14 +6,10 @@ use scene::Scene;
 
 use crate::fit::search::Found;
 use crate::fits::{Fit, Fits, Start, fit_run, fits};
-use crate::gap::{Verdict, compare_motions};
-use crate::growth::growth;
-use crate::runs::{Decided, Pair, Run, decide, predicted, questions};
+use crate::gap::Verdict;
+use crate::runs::{Decided, Extent, Pair, Run, compared, decide, questions};
 use crate::{Answer, Beyond, Membership, beyond_contacts, integrability};
-use motion::is_in_table;
-use motion::{
-    CHETAEV, Choice, Metric, Settings, SolveError, VAKONOMIC, VAKONOMIC_COSTATE, constant_names, solve_choice,
-};
+use motion::{CHETAEV, Choice, Metric, Settings, SolveError, VAKONOMIC, constant_names, solve_choice};
 
 /// A scene in every formulation.
 pub struct Comparison {
@@ -35,17 +31,6 @@ pub struct Comparison {
     /// What the vakonomic motion needs and contacts cannot exert; `None` inside if nothing, or outside where
     /// the scene has no bodies or there is no such motion.
     pub beyond: Option<Option<Beyond>>,
-}
-
-/// Results besides the gaps: how gaps begin, and which family contains which motion.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Extent {
-    /// Of none: gaps and the verdicts that follow from them.
-    Gaps,
-    /// For Chetaev's motion and the vakonomic family only, as the printed answer needs.
-    Answer,
-    /// Of all.
-    Everything,
 }
 
 impl Comparison {
@@ -77,42 +62,15 @@ impl Comparison {
     pub fn add(&mut self, mut run: Run) -> Result<(), SolveError> {
         let (mut metric, second) = (Metric::new(&self.scene.system)?, self.runs.len());
         run.outcome = run.outcome.and_then(|mut motion| motion.at(motion.start()).map(|_| motion));
-        if let (true, Ok(motion)) =
-            (run.choice.formulation == VAKONOMIC && self.scene.meant.is_some(), &mut run.outcome)
+        if run.choice.formulation == VAKONOMIC
+            && self.scene.meant.is_some()
+            && let Ok(motion) = &mut run.outcome
         {
             // where it cannot be read off, nothing is said
             self.beyond = beyond_contacts(&self.scene, motion).ok();
         }
-        for first in 0..second {
-            let before = &mut self.runs[first];
-            if !worth_comparing(before, &run) {
-                continue;
-            }
-            let (Ok(one), Ok(two)) = (&mut before.outcome, &mut run.outcome) else { continue };
-            let mut gap = compare_motions(one, two, &mut metric)?;
-            let limit = |t: f64| gap.limit_at(t);
-            let formulations = [before.choice.formulation, run.choice.formulation];
-            let asked = match self.extent {
-                Extent::Gaps => false,
-                Extent::Answer => formulations == [CHETAEV, VAKONOMIC],
-                Extent::Everything => true,
-            };
-            let growth = match gap.verdict {
-                // where it cannot be read off, nothing is fitted
-                Verdict::Different if asked => growth(two, one, &mut metric, &limit).unwrap_or(None),
-                _ => None,
-            };
-            let predicted = match gap.verdict {
-                _ if self.extent == Extent::Gaps => None,
-                Verdict::Different if growth.is_none() => None,
-                // what no gap shows may be proved, of all motions that Chetaev's is compared with
-                Verdict::Same | Verdict::Undecided { .. } if formulations[0] != CHETAEV => None,
-                _ => predicted(&self.scene, &before.choice, &run),
-            };
-            if predicted.as_ref().is_some_and(|term| term.proved) {
-                gap.prove();
-            }
-            self.pairs.push(Pair { first, second, gap, growth, predicted });
+        for before in self.runs.iter_mut().enumerate() {
+            self.pairs.extend(compared(&self.scene, self.extent, [before, (second, &mut run)], &mut metric)?);
         }
         self.runs.push(run);
         self.pairs.sort_by_key(|pair| (pair.first, pair.second));
@@ -135,11 +93,17 @@ impl Comparison {
     /// Decides whether the next motion is one of a family; `None` where nothing is left to be asked.
     pub fn decide_next(&mut self) -> Option<&Decided> {
         let asked = self.undecided()?;
-        let decided = decide(&self.scene, &self.runs, asked);
+        let mut decided = decide(&self.scene, &self.runs, asked);
         let none = |found: &Membership| matches!(found.answer(), Answer::NoneProved { .. });
         let is_asked = |p: &&mut Pair| [(p.first, p.second), (p.second, p.first)].contains(&asked);
         let proved = decided.outcome.as_ref().is_ok_and(none);
-        self.pairs.iter_mut().filter(|pair| proved && is_asked(pair)).for_each(|pair| pair.gap.prove());
+        for pair in self.pairs.iter_mut().filter(is_asked) {
+            match &mut decided.outcome {
+                _ if proved => pair.gap.prove(),
+                Ok(found) if pair.gap.verdict == Verdict::Same => found.decision.is_noise(),
+                _ => {}
+            }
+        }
         self.decided.push(decided);
         self.decided.last()
     }
@@ -264,13 +228,6 @@ pub fn compare_unfitted(
     extra.into_iter().try_for_each(|run| comparison.add(run))?;
     while comparison.decide_next().is_some() {}
     Ok(comparison)
-}
-
-/// The costate form is compared with the vakonomic one only, a run from outside the table with Chetaev only.
-fn worth_comparing(first: &Run, second: &Run) -> bool {
-    let both = [first.choice.formulation, second.choice.formulation];
-    let outside = both.iter().any(|own| !is_in_table(own));
-    (!both.contains(&VAKONOMIC_COSTATE) || both.contains(&VAKONOMIC)) && (!outside || both.contains(&CHETAEV))
 }
 
 impl std::fmt::Debug for Comparison {

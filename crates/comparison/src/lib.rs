@@ -68,7 +68,7 @@ mod sweep;
 pub mod words;
 
 pub use beyond::{Beyond, beyond_contacts};
-pub use comparison::{Comparison, Extent, compare, compare_unfitted};
+pub use comparison::{Comparison, compare, compare_unfitted};
 pub use contradiction::{Beside, Contradicted, Contradiction, hold, holds_beside_numbers};
 pub use decision::{Finding, PlainScene, Section};
 pub use first_trace::{FirstTrace, first_trace};
@@ -79,5 +79,5 @@ pub use growth::{Growth, LeadingTerm, growth};
 pub use integrability::{integrability, integrals_by_ranks};
 pub use membership::{Answer, Membership, Pairing, certificate, costates_of, membership, multipliers_of};
 pub use motion::band::SAME_ESTIMATE;
-pub use runs::{Decided, FittedMotion, Pair, Run};
+pub use runs::{Decided, Extent, FittedMotion, Pair, Run};
 pub use sweep::{Sweep, SweepPoint};

@@ -160,7 +160,7 @@ impl<'a> Pairing<'a> {
 
     fn decided(&self, end: f64) -> Result<Membership, SolveError> {
         let (system, start) = (&self.scene.system, &self.scene.start);
-        let question = Question::new(system, &self.curve, &self.constants, &self.family)?;
+        let question = self.question()?;
         let exact = self.exact_start()?;
         let proof = question.prove(&exact);
         let flow = question.flow(system, start, end);
@@ -202,8 +202,7 @@ impl<'a> Pairing<'a> {
     /// # Errors
     /// [`SolveError::Decision`] where the motion cannot be followed.
     pub fn nearest(&self, end: f64) -> Result<Vec<f64>, SolveError> {
-        let (system, start) = (&self.scene.system, &self.scene.start);
-        let flow = Question::new(system, &self.curve, &self.constants, &self.family)?.flow(system, start, end);
+        let flow = self.question()?.flow(&self.scene.system, &self.scene.start, end);
         let settings = DecisionSettings { refuted: true, ..DecisionSettings::default() };
         Ok(decide_flow(&self.family, &flow, &settings)?.set.point)
     }
@@ -214,7 +213,7 @@ impl<'a> Pairing<'a> {
     /// # Errors
     /// [`SolveError::Decision`] where an expression cannot be evaluated.
     pub fn certificate(&self, almost_every_start: bool) -> Result<Result<Certificate, String>, SolveError> {
-        let question = Question::new(&self.scene.system, &self.curve, &self.constants, &self.family)?;
+        let question = self.question()?;
         let start = self.exact_start()?;
         Ok(if almost_every_start { question.almost_every_certificate(&start) } else { question.certificate(&start) })
     }
@@ -225,7 +224,7 @@ impl<'a> Pairing<'a> {
     /// [`SolveError::Decision`] where an expression cannot be evaluated.
     pub fn leading_term(&self, constants: &[f64]) -> Result<Option<LeadingTerm>, SolveError> {
         let (system, start) = (&self.scene.system, &self.scene.start);
-        let question = Question::new(system, &self.curve, &self.constants, &self.family)?;
+        let question = self.question()?;
         let exact = self.exact_start()?;
         let Some(term) = question.leading_difference(system, start, Some(&exact), constants) else { return Ok(None) };
         let length = Metric::new(system)?.length(start.t, &start.q, &start.v, &term.coefficient);
@@ -241,13 +240,17 @@ impl<'a> Pairing<'a> {
     /// [`SolveError::Decision`] where an expression cannot be evaluated.
     pub fn least_by_series(&self, end: f64) -> Result<Option<f64>, SolveError> {
         let (system, start) = (&self.scene.system, &self.scene.start);
-        let question = Question::new(system, &self.curve, &self.constants, &self.family)?;
+        let question = self.question()?;
         Ok(question.least_by_series(system, start, end - start.t))
     }
 
     /// Names of the constants of the family.
     pub fn constants(&self) -> &[String] {
         self.family.constants()
+    }
+
+    fn question(&self) -> Result<Question<'_>, DecisionError> {
+        Question::new(&self.scene.system, &self.curve, &self.constants, &self.family)
     }
 
     fn exact_start(&self) -> Result<ExactStart, DecisionError> {

@@ -4,11 +4,12 @@ use equations::Formulation;
 use mechanics::ConstantsRule;
 use scene::Scene;
 
-use crate::gap::{Gap, Verdict};
-use crate::growth::{Growth, LeadingTerm};
+use crate::gap::{Gap, Verdict, compare_motions};
+use crate::growth::{Growth, LeadingTerm, growth};
 use crate::{Membership, Pairing, costates_of};
-use motion::is_in_table;
-use motion::{CHETAEV, Choice, KAPPA, Motion, SolveError, VAKONOMIC, constant_names};
+use motion::{
+    CHETAEV, Choice, KAPPA, Metric, Motion, SolveError, VAKONOMIC, VAKONOMIC_COSTATE, constant_names, is_in_table,
+};
 
 /// A choice and what became of it.
 pub struct Run {
@@ -66,8 +67,61 @@ pub struct Decided {
     pub witness: Option<Result<FittedMotion, String>>,
 }
 
+/// Results besides the gaps: how gaps begin, and which family contains which motion.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Extent {
+    /// Of none: gaps and the verdicts that follow from them.
+    Gaps,
+    /// For Chetaev's motion and the vakonomic family only, as the printed answer needs.
+    Answer,
+    /// Of all.
+    Everything,
+}
+
+/// Two runs with a motion compared, where that is worth it: the gap, and how it begins, as far as asked for.
+pub(crate) fn compared(
+    scene: &Scene,
+    extent: Extent,
+    [(first, before), (second, run)]: [(usize, &mut Run); 2],
+    metric: &mut Metric,
+) -> Result<Option<Pair>, SolveError> {
+    let is_worth_it = worth_comparing(before, run);
+    let (true, Ok(one), Ok(two)) = (is_worth_it, &mut before.outcome, &mut run.outcome) else { return Ok(None) };
+    let mut gap = compare_motions(one, two, metric)?;
+    let limit = |t: f64| gap.limit_at(t);
+    let formulations = [before.choice.formulation, run.choice.formulation];
+    let asked = match extent {
+        Extent::Gaps => false,
+        Extent::Answer => formulations == [CHETAEV, VAKONOMIC],
+        Extent::Everything => true,
+    };
+    let growth = match gap.verdict {
+        // where it cannot be read off, nothing is fitted
+        Verdict::Different if asked => growth(two, one, metric, &limit).unwrap_or(None),
+        _ => None,
+    };
+    let predicted = match gap.verdict {
+        _ if extent == Extent::Gaps => None,
+        Verdict::Different if growth.is_none() => None,
+        // what no gap shows may be proved, of all motions that Chetaev's is compared with
+        Verdict::Same | Verdict::Undecided { .. } if formulations[0] != CHETAEV => None,
+        _ => predicted(scene, &before.choice, run),
+    };
+    if predicted.as_ref().is_some_and(|term| term.proved) {
+        gap.prove();
+    }
+    Ok(Some(Pair { first, second, gap, growth, predicted }))
+}
+
+/// The costate form is compared with the vakonomic one only, a run from outside the table with Chetaev only.
+fn worth_comparing(first: &Run, second: &Run) -> bool {
+    let both = [first.choice.formulation, second.choice.formulation];
+    let outside = both.iter().any(|own| !is_in_table(own));
+    (!both.contains(&VAKONOMIC_COSTATE) || both.contains(&VAKONOMIC)) && (!outside || both.contains(&CHETAEV))
+}
+
 /// The leading term of the difference of two runs.
-pub(crate) fn predicted(scene: &Scene, curve: &Choice, run: &Run) -> Option<LeadingTerm> {
+fn predicted(scene: &Scene, curve: &Choice, run: &Run) -> Option<LeadingTerm> {
     let (Ok(motion), Ok(pairing)) = (&run.outcome, Pairing::new(scene, curve, &run.choice)) else { return None };
     if matches!(run.choice.constants, ConstantsRule::Natural { .. }) {
         return None;

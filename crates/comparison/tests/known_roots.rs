@@ -1,6 +1,6 @@
 //! Members whose equations of the instant have several roots: `p = v³ − v`, from v = 1.05 to about 3.
 
-use motion::{Settings, VAKONOMIC_COSTATE, solve_choice};
+use motion::{Settings, VAKONOMIC_COSTATE, error_estimate, setting, solve_choice};
 use scene::Scene;
 
 use crate::support::{choice, member, read};
@@ -44,4 +44,19 @@ fn round_off_is_told_on_the_root_of_the_motion() {
     let v = kept.velocities[0];
     let found = (v - looser.velocities[0]).abs() * (3.0 * v * v - 1.0);
     assert!((0.6 * known..1.1 * known).contains(&found), "{found:e}, {known:e}");
+}
+
+/// A factor of the constraint is another unit of its multiplier: between the ends of its one step the motion
+/// is read off all the same.
+#[test]
+fn a_factor_of_the_constraint_ends_no_motion() {
+    let f = "z'^2 - a^2*(x'^2 + y'^2)";
+    for factor in ["1", "3", "-7", "0.1"] {
+        let text = include_str!("../../catalogue/scenes/appell-hamel.toml");
+        let scene = read("appell-hamel", &text.replace(f, &format!("{factor}*({f})")));
+        let mut motion =
+            solve_choice(&scene, &choice(&scene, VAKONOMIC_COSTATE), &Settings::default()).expect("a motion");
+        error_estimate(&mut motion, setting(&scene)).expect("the start");
+        assert!(motion.is_complete(), "{factor}: {:?}", motion.ending);
+    }
 }

@@ -121,6 +121,16 @@ impl Decision {
         mismatch > CERTAINTY * self.noise
     }
 
+    /// The family's motion is the curve as far as both are known: a mismatch that moves nothing, as near a
+    /// kink, is noise.
+    pub fn is_noise(&mut self) {
+        if self.verdict == Verdict::NotContained {
+            let noise = self.noise.max(self.least / CERTAINTY);
+            self.sizes.noise = if self.noise > 0.0 { self.sizes.noise * (noise / self.noise) } else { noise };
+            (self.noise, self.verdict) = (noise, Verdict::Undecided);
+        }
+    }
+
     /// Constants in their scales.
     fn scaled(&self, constants: &[f64]) -> DVector<f64> {
         DVector::from_iterator(constants.len(), constants.iter().zip(&self.columns).map(|(c, column)| c / column.scale))
@@ -196,13 +206,17 @@ fn judged(fine: &mut Transport, coarse: &mut Transport, paths: &[Path; 2]) -> Re
             let root = (weight * width.abs()).sqrt();
             let here = fine.mismatch(own, t)?;
             triangle.rows_mut(above + i * n, n).copy_from(&(&here.rows * root));
-            let there = coarse.mismatch(other, t)?;
-            let squares =
-                |rows: DMatrix<f64>| DVector::from_iterator(rows.ncols(), rows.column_iter().map(|x| x.norm_squared()));
-            let terms = squares(fine.terms_of(&here));
-            sums.moves |= here.acceleration.hypot(here.speed / way) > CERTAINTY * LEAST_NOISE * terms.sum().sqrt();
-            sums.noise += squares(&here.rows - there.rows) * root.powi(2);
-            sums.terms += terms * root.powi(2);
+            if i == panel % NODES {
+                let there = coarse.mismatch(other, t)?;
+                let squares = |rows: DMatrix<f64>| {
+                    DVector::from_iterator(rows.ncols(), rows.column_iter().map(|x| x.norm_squared()))
+                };
+                let terms = squares(fine.terms_of(&here));
+                let all = terms.sum().sqrt();
+                sums.noise += squares(&here.rows - there.rows) * width.abs();
+                sums.terms += terms * width.abs();
+                sums.moves |= here.acceleration.hypot(here.speed / way) > CERTAINTY * LEAST_NOISE * all;
+            }
             sums.acceleration += (here.acceleration * root).powi(2);
             sums.speed += (here.speed * root).powi(2);
         }

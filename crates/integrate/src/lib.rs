@@ -98,7 +98,7 @@ pub use interrupt::Interrupt;
 pub use lanes::{LANES, Lane, LaneProblem, LaneRun, LaneStart, Left, Shortest, integrate_lanes};
 pub use options::{Dense, LinkedMethod, Method, Options, Projection};
 pub use problem::{EvaluationError, Gauge, Problem, Start};
-pub use rank::{may_lose as may_lose_rank, orthonormal};
+pub use rank::{cosine, may_lose as may_lose_rank, orthonormal};
 pub use root::find_root;
 pub use status::{Before, ProjectionReport, Solution, Status, StopCause, Work};
 pub use steep::{GAUGE_LIMIT, GAUGE_NODES, gauge_growth};

@@ -99,8 +99,8 @@ fn apart(p: &[f64], q: &[f64]) -> f64 {
     sum
 }
 
-/// `det(P Qᵀ)` of two matrices of `h` rows each.
-fn cosine(p: &[f64], q: &[f64], h: usize) -> f64 {
+/// `det(P Qᵀ)` of two matrices of `h` rows each: of orthonormal ones the cosine between their minors.
+pub fn cosine(p: &[f64], q: &[f64], h: usize) -> f64 {
     let n = p.len() / h;
     DMatrix::from_fn(h, h, |i, j| dot(&p[i * n..(i + 1) * n], &q[j * n..(j + 1) * n])).determinant()
 }

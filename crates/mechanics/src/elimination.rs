@@ -7,8 +7,8 @@
 //! a_ij ← a_ij − a_ic a_pj / a_pc .
 //! ```
 //!
-//! In expressions, the caller writes quotient and difference: at once, factored, by way of names, or as terms that are added
-//! up later. It also orders the pivots, except for the choice by size ([`choose_pivot`]).
+//! In expressions, the caller writes quotient and difference: at once, factored, by way of names, or as terms
+//! that are added up later. It also orders the pivots, except for the choice by size ([`choose_pivot`]).
 
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::ops::{Add, Mul, Neg, Sub};
@@ -71,14 +71,17 @@ impl Entry for Bounded {
 }
 
 /// Gauss–Jordan elimination of dense `rows`. `pick` is the policy: from the rows and the columns of pivots so
-/// far, whose rows come first, the place of the next pivot; `None` ends it. In the end each of these rows has 1
-/// in its column, which is returned, and all other rows have 0 there.
+/// far, whose rows come first, the place of the next pivot; `None` ends it. In the end each of these rows has
+/// 1 in its column, which is returned, and all other rows have 0 there.
 ///
 /// ```
 /// use mechanics::elimination::{eliminate, largest, open};
 /// let mut rows = vec![vec![1.0, 2.0, 5.0], vec![2.0, 4.0, 10.0], vec![0.0, 1.0, 2.0]];
-/// let pivots = eliminate(&mut rows, |rows, done| largest(rows, open(rows, done, 2).filter(|&(i, j)| rows[i][j] != 0.0)));
-/// assert_eq!((pivots, rows), (vec![1, 0], vec![vec![0.0, 1.0, 2.0], vec![1.0, 0.0, 1.0], vec![0.0, 0.0, 0.0]]));
+/// let pivots = eliminate(&mut rows, |rows, done| {
+///     largest(rows, open(rows, done, 2).filter(|&(i, j)| rows[i][j] != 0.0))
+/// });
+/// assert_eq!(pivots, [1, 0]);
+/// assert_eq!(rows, [[0.0, 1.0, 2.0], [1.0, 0.0, 1.0], [0.0, 0.0, 0.0]]);
 /// ```
 pub fn eliminate<E: Entry>(
     rows: &mut [Vec<E>],

@@ -4,9 +4,8 @@ use std::f64::consts::PI;
 
 use discrete::{DiscreteError, Trajectory};
 use equations::{Compiled, Equations};
-use integrate::{GAUGE_LIMIT, GAUGE_NODES, gauge_growth, may_lose_rank, orthonormal};
+use integrate::{GAUGE_LIMIT, GAUGE_NODES, cosine, gauge_growth, may_lose_rank, orthonormal};
 use mechanics::System;
-use nalgebra::DMatrix;
 use symbolic::Symbol;
 
 use crate::ending::in_own_names;
@@ -81,7 +80,7 @@ impl DiscreteRun {
                     minors.remove(0);
                 }
                 minors.push((orthonormal(&mut rows, h), rows));
-                let turns = minors.windows(2).any(|pair| turn(&pair[0].1, &pair[1].1, h) < TURNED);
+                let turns = minors.windows(2).any(|pair| cosine(&pair[0].1, &pair[1].1, h) < TURNED);
                 let falls = match &minors[..] {
                     [a, b, c] => may_lose_rank([a.0, b.0, c.0], [&a.1, &b.1, &c.1], h),
                     _ => false,
@@ -157,12 +156,6 @@ impl DiscreteRun {
 /// Minors that turn by more than this cosine within a step may have vanished in it: of branches that cross, a
 /// step may lead from one to the other, at a right angle.
 const TURNED: f64 = 0.5;
-
-/// The cosine between the minors of two sets of `h` orthonormal rows.
-fn turn(p: &[f64], q: &[f64], h: usize) -> f64 {
-    let [p, q] = [p, q].map(|rows| DMatrix::from_row_slice(h, rows.len() / h, rows));
-    (p * q.transpose()).determinant()
-}
 
 /// Time and state.
 type Node = (f64, Vec<f64>);

@@ -7,8 +7,7 @@ use integrate::{Method, ProjectionReport, Work};
 use mechanics::ConstantsRule;
 use scene::Scene;
 
-use crate::band::invariant_monitor::{Breach, InvariantMonitor};
-use crate::band::limits::LOOKS;
+use crate::band::Breach;
 use crate::charts::{self, ChartChange, Course, Runs};
 use crate::choice::removals;
 use crate::clock::Clock;
@@ -170,24 +169,8 @@ pub fn solve(
     let clock = Clock::start();
     resolve(&mut prepared, constants, settings, Some(setting), None)?;
     let (runs, chosen) = run(setting, &mut prepared, settings)?;
-    let Runs { trajectories, changes, ending, work, projection, fallbacks } = runs;
-    let seconds = Seconds { derive: 0.0, compile, integrate: clock.seconds() };
-    let motion = Motion::of(prepared, ending, trajectories, seconds);
-    let mut motion = Motion { work, projection, charts: changes, method: Some(chosen), ..motion };
-    motion.form.fallbacks = fallbacks;
-    let steps = [motion.kept.step_times(), motion.looser.step_times()];
-    let by = motion.method.as_ref().map(|chosen| chosen.method);
-    motion.doubt = Doubt::of([&steps[0], &steps[1]], motion.end, motion.is_complete(), by);
-    if motion.doubt.is_none() && !settings.plain {
-        let mut monitor = InvariantMonitor::new(setting.system, &motion.equations, &[])?;
-        let times = motion.grid(LOOKS);
-        let kept: Vec<(f64, Outputs)> = times.iter().map_while(|&t| Some((t, motion.at(t).ok()?))).collect();
-        motion.doubt = monitor.doubt(&mut motion, &kept, &[]);
-        motion.breaches = monitor.breaches;
-        if motion.doubt.is_none() {
-            motion.count_round_off(setting, &Settings { method: by, ..settings.clone() })?;
-        }
-    }
+    let mut motion = Motion::of(prepared, runs, Some(chosen), Seconds { compile, ..Seconds::default() });
+    motion.judge(setting, settings)?;
     motion.seconds.integrate = clock.seconds();
     Ok(motion)
 }
@@ -277,13 +260,9 @@ impl Motion {
         (self.end, self.ending) = (t, Ending::Stopped { t, cause });
     }
 
-    /// From the kept and the looser run, in this order; without work and projections.
-    pub(crate) fn of(
-        mut prepared: Prepared,
-        ending: Ending,
-        [mut kept, mut looser]: [Trajectory; 2],
-        seconds: Seconds,
-    ) -> Self {
+    /// From the kept and the looser run, in this order.
+    pub(crate) fn of(mut prepared: Prepared, runs: Runs, method: Option<Chosen>, seconds: Seconds) -> Self {
+        let Runs { trajectories: [mut kept, mut looser], changes, ending, work, projection, fallbacks } = runs;
         let wanted = kept.thinned_to().or(looser.thinned_to()).cloned();
         prepared.compiled.give_back();
         Motion {
@@ -291,16 +270,16 @@ impl Motion {
             wanted,
             ending,
             constants: prepared.constants,
-            method: None,
-            work: Work::default(),
-            projection: ProjectionReport::default(),
+            method,
+            work,
+            projection,
             seconds,
             form: FormReport {
                 chosen: ChosenForm { name: prepared.equations.formulation, why: "asked for".into() },
                 why: prepared.form.why,
-                fallbacks: 0,
+                fallbacks,
             },
-            charts: Vec::new(),
+            charts: changes,
             doubt: None,
             breaches: Vec::new(),
             kept,

@@ -265,6 +265,6 @@ impl Prepared {
         let [start, other] = [kept, looser].map(|run| run.solution.dense.end_state().to_vec());
         (self.t, self.start, self.other_start) = (kept.end(), start, Some(other));
         self.largest = self.largest.map(|largest| largest * GROWTH);
-        self.guess = kept.unknowns_near(self.t).map_or(Vec::new(), <[f64]>::to_vec);
+        self.guess = kept.unknowns_near(self.t).unwrap_or_default();
     }
 }

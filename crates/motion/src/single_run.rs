@@ -75,7 +75,7 @@ impl SingleRun {
     /// [`SolveError::Dense`] where the run was not kept there ([`Options::wanted`]).
     pub fn states_at(&self, compiled: &mut Compiled, t: f64, states: &mut [f64]) -> Result<(), SolveError> {
         if let Some(unknowns) = self.unknowns_near(t) {
-            compiled.set_guess(unknowns);
+            compiled.set_guess(&unknowns);
         }
         let dense = &self.solution.dense;
         if dense.thinned_to().is_some() {
@@ -96,10 +96,15 @@ impl SingleRun {
         outputs(compiled, t, &states)
     }
 
-    /// The unknowns of the instant near `t`, where its equations have several roots.
-    pub(crate) fn unknowns_near(&self, t: f64) -> Option<&[f64]> {
-        let nearest = self.anchors.iter().min_by(|a, b| (a.0 - t).abs().total_cmp(&(b.0 - t).abs()));
-        nearest.map(|(_, unknowns)| &unknowns[..])
+    /// The unknowns of the instant near `t`, between those before and behind it, where its equations have
+    /// several roots.
+    pub(crate) fn unknowns_near(&self, t: f64) -> Option<Vec<f64>> {
+        let forwards = self.end() >= self.solution.dense.start();
+        let behind = self.anchors.partition_point(|(at, _)| if forwards { *at < t } else { *at > t });
+        let (from, before) = self.anchors.get(behind.saturating_sub(1))?;
+        let (to, next) = self.anchors.get(behind).unwrap_or(self.anchors.last()?);
+        let share = if from == to { 0.0 } else { (t - from) / (to - from) };
+        Some(before.iter().zip(next).map(|(a, b)| a + share * (b - a)).collect())
     }
 }
 

@@ -1,9 +1,10 @@
 //! One motion by a discrete principle, in equal steps.
 
 use discrete::{Composition, Discrete, RemovedStart};
-use integrate::{Method, StopCause, Work};
+use integrate::{Method, ProjectionReport, StopCause, Work};
 use scene::Scene;
 
+use crate::charts::Runs;
 use crate::clock::Clock;
 use crate::constants::resolve;
 use crate::discrete_run::{DiscreteRun, PassedOver};
@@ -159,8 +160,9 @@ pub fn solve_by_steps(scene: &Scene, choice: &Choice, steps: Steps, settings: &S
     let passed_over = passed_over.min_by(|a, b| (direction * a.t).total_cmp(&(direction * b.t)));
     let runs = runs.map(|run| Trajectory::Discrete(Box::new(run)));
     let seconds = Seconds { derive, compile, integrate };
-    let mut motion = Motion::of(prepared, ending, runs, seconds);
-    motion.work = work;
+    let projection = ProjectionReport::default();
+    let runs = Runs { trajectories: runs, changes: Vec::new(), ending, work, projection, fallbacks: 0 };
+    let mut motion = Motion::of(prepared, runs, None, seconds);
     if let Some(PassedOver { t, cause }) = passed_over.filter(|found| direction * (found.t - motion.end()) < 0.0) {
         motion.stop_at(t, cause);
     }

@@ -3,11 +3,9 @@
 
 use std::sync::Arc;
 
-use crate::band::limits::STRETCHES;
+use crate::band::limits::{SAMPLES, STRETCHES};
 use crate::equidistant::equidistant;
 
-/// Number of times at unequal distances, which no period fits.
-const SCATTERED: usize = 200;
 /// A run may end early: number of stretches in its second half, in the second half of the rest, and so on,
 /// [`HALVES`] times.
 const OF_A_HALF: usize = 64;
@@ -17,7 +15,7 @@ pub const HALVES: i32 = 20;
 /// Times from `start` to `end` that no period fits: parts of the golden section.
 pub(crate) fn scattered([start, end]: [f64; 2]) -> impl Iterator<Item = f64> {
     const GOLDEN: f64 = 0.618_033_988_749_894_8;
-    (1..=SCATTERED).map(move |i| start + (end - start) * (i as f64 * GOLDEN).fract())
+    (1..=SAMPLES).map(move |i| start + (end - start) * (i as f64 * GOLDEN).fract())
 }
 
 /// The wanted times of a run between these ends, if outputs are asked for at `times`, ascending.

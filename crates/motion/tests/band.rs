@@ -26,6 +26,20 @@ fn a_difference_is_apart_from_ten_times_both_bounds_on() {
     assert_eq!(ask(f64::NAN, Some(1.0)), Answer::Undecided(NoInformation::NotFinite));
 }
 
+/// A quantity of terms 2 that is 1 at the start, in both runs of a motion.
+#[test]
+fn a_quantity_has_changed_where_neither_error_nor_round_off_explain_it() {
+    let change = |by: f64, error: f64| Known::change(&[[1.0, 1.0], [1.0 + by, 1.0 + by + error]], 2.0);
+    assert!(change(1.2e-11, 0.0).is_certain() && !change(1e-11, 0.0).is_certain());
+    assert!(change(1.1e-7, 1e-9).is_certain() && !change(0.9e-7, 1e-9).is_certain());
+    assert_eq!(change(0.5, 0.0).of_terms(), 0.25);
+    // a change under round-off has the digits of that
+    assert_eq!(change(0.0, 0.0).of_terms(), 0.0);
+    assert_eq!(change(0.0, 0.0).with_digits(), 256.0 * f64::EPSILON);
+    // nothing at all
+    assert_eq!(Known::change(&[[0.0, 0.0]], 0.0).of_terms(), 0.0);
+}
+
 /// `x = sin 3t`, by a loose method: the error of `x'` is seen, and is about three times that of `x`.
 #[test]
 fn velocities_have_estimates_of_their_own() {

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use anyhow::Result;
 use comparison::Comparison;
-use motion::{CHETAEV, Metric};
+use motion::{CERTAINTY, CHETAEV, Metric};
 use pages::{DataPackage, Table, fill};
 use program::File;
 
@@ -15,10 +15,8 @@ use referees::maggi::{Maggi, Motion};
 const TOLERANCES: [f64; 2] = [1e-11, 1e-13];
 /// Equidistant times at which the motions are compared, besides the start.
 const TIMES: usize = 100;
-/// Difference over the way that counts as none.
+/// Difference over the way that counts as none; so does one under [`CERTAINTY`] times the error estimates.
 const SAME: f64 = 1e-8;
-/// A difference counts as none, too, under this multiple of the error estimates.
-const CERTAINTY: f64 = 10.0;
 
 /// The page.
 pub const CASADI: &str = "evidence/referees.md";

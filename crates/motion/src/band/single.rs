@@ -1,10 +1,11 @@
-//! A single motion as two runs.
+//! A single motion as two runs, and whether their difference is an error.
 
 use equations::{Compiled, Outputs};
 
-use super::TwoRuns;
-use super::limits::{BEFORE_THE_END, ENDS};
-use crate::{Motion, SolveError};
+use super::invariant_monitor::InvariantMonitor;
+use super::limits::{BEFORE_THE_END, ENDS, LOOKS};
+use super::{Doubt, TwoRuns};
+use crate::{Motion, Setting, Settings, SolveError};
 
 impl TwoRuns for Motion {
     fn kept(&mut self, t: f64) -> Result<Outputs, SolveError> {
@@ -44,6 +45,29 @@ impl TwoRuns for Motion {
 }
 
 impl Motion {
+    /// Looks where the difference of its runs is not an error, what it changes of what the user expects to be
+    /// constant, and what round-off both runs share.
+    ///
+    /// # Errors
+    /// [`SolveError`] if what is looked at cannot be compiled.
+    pub(crate) fn judge(&mut self, setting: Setting, settings: &Settings) -> Result<(), SolveError> {
+        let method = self.method.as_ref().map(|chosen| chosen.method);
+        let steps = [self.kept.step_times(), self.looser.step_times()];
+        self.doubt = Doubt::of([&steps[0], &steps[1]], self.end(), self.is_complete(), method);
+        if self.doubt.is_some() || settings.plain {
+            return Ok(());
+        }
+        let mut monitor = InvariantMonitor::new(setting.system, &self.equations, &[])?;
+        let times = self.grid(LOOKS);
+        let kept: Vec<(f64, Outputs)> = times.iter().map_while(|&t| Some((t, self.at(t).ok()?))).collect();
+        self.doubt = monitor.doubt(self, &kept, &[]);
+        self.breaches = monitor.breaches;
+        if self.doubt.is_some() {
+            return Ok(());
+        }
+        self.count_round_off(setting, &Settings { method, ..settings.clone() })
+    }
+
     /// How much of the motion is judged.
     fn judged(&self) -> f64 {
         if self.is_complete() { 1.0 } else { BEFORE_THE_END }

@@ -338,7 +338,7 @@ impl Task<'_> {
         let words = self.words.lock().unwrap_or_else(PoisonError::into_inner);
         Ok(MemberRun {
             states: states.collect(),
-            unknowns: passed.filter_map(|&t| run.unknowns_near(t).map(<[f64]>::to_vec)).collect(),
+            unknowns: passed.filter_map(|&t| run.unknowns_near(t)).collect(),
             ending: Ending::of(&words, compiled, solution, &[]),
             work: solution.work,
             projection: solution.projection,
