@@ -124,7 +124,8 @@ impl Found<'_> {
                 let by_starts: Vec<String> =
                     point.by_starts.iter().map(|(starts, value)| format!("{value:.2} from {starts}")).collect();
                 format!(
-                    "where {truth} is right, {rival}: {tells} (chi squared {:.2} above that of noise, {minima}; by                      number of starts {})",
+                    "where {truth} is right, {rival}: {tells} (chi squared {:.2} above that of noise, {minima}; \
+                     by number of starts {})",
                     point.value,
                     by_starts.join(", ")
                 )
