@@ -367,10 +367,10 @@ joint = {{ hinge = "z", angle = "c", at = [0, -0.6] }}
 inertia = [0, 0, 0.2]
 [body.rod]
 on = "left"
-joint = {{ hinge = "z", angle = "b - a", at = "0.15*[-cos(0.3), -sin(0.3)]" }}
+joint = {{ hinge = "z", angle = "b - a", at = ["-0.15*cos(0.3)", "-0.15*sin(0.3)"] }}
 mass = 0.1
 [loop.pin]
-between = {{ rod = [0, {}], right = "0.15*[-cos(0.3), sin(0.3)]" }}
+between = {{ rod = [0, {}], right = ["-0.15*cos(0.3)", "0.15*sin(0.3)"] }}
 "#,
         -rod
     );
