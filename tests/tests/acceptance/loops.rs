@@ -1,7 +1,40 @@
 //! Starts of closed loops against intersections of circles.
 
 use super::support::must;
-use super::textbook_machines::HEAD;
+use super::textbook_machines::{HEAD, as_by_hand};
+
+#[test]
+fn loops_are_constraints_on_positions() {
+    let bodies = r#"
+gravity = [0, "-g", 0]
+[parameters]
+g = 9.81
+[body.crank]
+joint = { hinge = [0, 0, 1], angle = "a" }
+mass = 2
+mass-centre = [0.15, 0, 0]
+inertia = [0, 0, 0.02]
+[body.rod]
+on = "crank"
+joint = { hinge = [0, 0, 1], angle = "b - a", at = [0.3, 0, 0] }
+mass = 1
+mass-centre = [0.4, 0, 0]
+inertia = [0, 0, 0.05]
+[body.piston]
+joint = { slider = [1, 0, 0], shift = "s" }
+mass = 0.7
+[loop.pin]
+between = { rod = [0.8, 0, 0], piston = [0, 0, 0] }
+"#;
+    let by_hand = r#"
+[system]
+lagrangian = "0.0225*a'^2 + 0.01*a'^2 + 0.5*(0.09*a'^2 + 0.16*b'^2 + 0.24*a'*b'*cos(a - b)) + 0.025*b'^2 + 0.35*s'^2 - 9.81*(0.3*sin(a) + 0.3*sin(a) + 0.4*sin(b))"
+constraints = ["0.3*cos(a) + 0.8*cos(b) - s", "0.3*sin(a) + 0.8*sin(b)"]
+"#;
+    let (a, b) = (0.7_f64, -f64::asin(0.3 * f64::sin(0.7) / 0.8));
+    let s = 0.3 * a.cos() + 0.8 * b.cos();
+    as_by_hand("slider-crank", &[("a", a), ("b", b), ("s", s)], bodies, by_hand);
+}
 
 /// Intersections of the circles about `p` and `q` with radii `r` and `s`.
 fn circles(p: [f64; 2], r: f64, q: [f64; 2], s: f64) -> [[f64; 2]; 2] {

@@ -6,7 +6,7 @@ pub(super) const HEAD: &str = "title = \"machine\"\n[run]\nduration = 1\n";
 
 /// `same_system` of bodies and of formulas by hand, with the coordinates of both.
 #[track_caller]
-fn as_by_hand(title: &str, coordinates: &[(&str, f64)], bodies: &str, by_hand: &str) {
+pub(super) fn as_by_hand(title: &str, coordinates: &[(&str, f64)], bodies: &str, by_hand: &str) {
     let q: String = coordinates.iter().map(|(q, x)| format!("{q} = {{ start = {x} }}\n")).collect();
     let v: String = coordinates.iter().map(|(q, _)| format!("\"{q}'\" = 0\n")).collect();
     let (gravity, rest) = bodies.split_at(bodies.find("\n[").unwrap_or_default());
@@ -167,39 +167,6 @@ fn a_snake_of_five_driven_links_is_what_a_loop_writes() {
     let bodies = format!("\n{bodies}[contact]\n{contacts}[motor]\n{motors}");
     let q = [("x", 0.0), ("y", 0.0), ("a0", 0.1), ("a1", 0.4), ("a2", 0.2), ("a3", -0.2), ("a4", 0.3)];
     as_by_hand("snake", &q, &bodies, &by_hand);
-}
-
-#[test]
-fn loops_are_constraints_on_positions() {
-    let bodies = r#"
-gravity = [0, "-g", 0]
-[parameters]
-g = 9.81
-[body.crank]
-joint = { hinge = [0, 0, 1], angle = "a" }
-mass = 2
-mass-centre = [0.15, 0, 0]
-inertia = [0, 0, 0.02]
-[body.rod]
-on = "crank"
-joint = { hinge = [0, 0, 1], angle = "b - a", at = [0.3, 0, 0] }
-mass = 1
-mass-centre = [0.4, 0, 0]
-inertia = [0, 0, 0.05]
-[body.piston]
-joint = { slider = [1, 0, 0], shift = "s" }
-mass = 0.7
-[loop.pin]
-between = { rod = [0.8, 0, 0], piston = [0, 0, 0] }
-"#;
-    let by_hand = r#"
-[system]
-lagrangian = "0.0225*a'^2 + 0.01*a'^2 + 0.5*(0.09*a'^2 + 0.16*b'^2 + 0.24*a'*b'*cos(a - b)) + 0.025*b'^2 + 0.35*s'^2 - 9.81*(0.3*sin(a) + 0.3*sin(a) + 0.4*sin(b))"
-constraints = ["0.3*cos(a) + 0.8*cos(b) - s", "0.3*sin(a) + 0.8*sin(b)"]
-"#;
-    let (a, b) = (0.7_f64, -f64::asin(0.3 * f64::sin(0.7) / 0.8));
-    let s = 0.3 * a.cos() + 0.8 * b.cos();
-    as_by_hand("slider-crank", &[("a", a), ("b", b), ("s", s)], bodies, by_hand);
 }
 
 #[test]
