@@ -9,8 +9,7 @@ use motion::{
 use scene::Scene;
 
 use super::support::{
-    at, chetaev, complete, equations, falling_bicycle, gap, known_gap, largest_difference, motion_of, must, tight,
-    vakonomic,
+    at, chetaev, complete, equations, gap, known_gap, largest_difference, motion_of, must, tight, vakonomic,
 };
 
 fn parsed(coordinates: &str, lagrangian: &str, constraints: &str, velocities: &str, duration: f64) -> Scene {
