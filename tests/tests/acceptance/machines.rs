@@ -193,7 +193,7 @@ fn multipliers_are_the_forces_of_the_ground() {
         let size = expected.iter().fold(1.0_f64, |size, x| size.max(x.abs()));
         must(&format!("{what}: force of the contact"), off / size, 1e-12);
     };
-    // a homogeneous ball on an incline is held back by 2/7 of its weight's pull: the friction needed is 2/7 tan(alpha)
+    // a homogeneous ball on an incline is held back by 2/7 of its weight's pull
     let (_, found) = reactions("ball-on-incline", &[("m", 1.4)]);
     near("ball on incline", &found, &[-2.0 / 7.0 * 1.4 * 9.81 * 0.3, 0.0]);
     let (pull, normal) = (found[0].hypot(found[1]), 1.4 * 9.81 * 0.3_f64.asin().cos());
