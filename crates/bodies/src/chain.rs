@@ -248,7 +248,7 @@ impl Maker<'_> {
     /// The velocity of a place that is the sum of `parts`, along the axes that `frame` turns to.
     pub(crate) fn velocity(&self, parts: &[Part], frame: &[Turn]) -> String {
         let mut sum = String::new();
-        for Part { turns, vector } in parts {
+        for Part { turns, vector } in parts.iter().filter(|part| !is_zero_vector(&part.vector)) {
             let mut terms = Vec::new();
             terms.extend(self.machine.moves(vector).then(|| format!("({vector})'")));
             let rates = turns.iter().map(|turn| (turn, self.rate(&turn.angle))).collect::<Vec<_>>();

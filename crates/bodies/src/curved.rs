@@ -7,8 +7,8 @@ use crate::turn::{Turn, backwards, join, matrix, turned, written};
 use crate::{Body, Contact, Fault, FaultKind, Law, Motion, Written};
 
 impl Maker<'_> {
-    /// The middle of a body on a surface with parameters `(u, v)`, in axes that go with the contact: `u` along
-    /// the generator from the apex of a cone, or along the axis of a cylinder, `v` about the axis.
+    /// The middle of a body on a surface with parameters `(u, v)`, in axes that go with the contact: `u`
+    /// along the generator from the apex of a cone, or along the axis of a cylinder, `v` about the axis.
     pub(crate) fn on_surface(&self, body: &Body, [u, v]: &[Written; 2], under: &[Turn]) -> Result<Part, Fault> {
         let Some((letter, size, a)) = self.surface(body) else {
             let kind = FaultKind::Surface { name: body.name.text.clone() };

@@ -14,7 +14,7 @@ impl Maker<'_> {
             let mass = factor(&mass.text);
             let (centre, parts) = self.centre(i, &body);
             if !centre.is_empty() {
-                // along axes in which the first moving part is at rest, sines and cosines of their turn do not appear
+                // along axes that turn with the first moving part: no sines and cosines of their turn
                 let turns = |part: &Part| part.turns.iter().any(|turn| !self.rate(&turn.angle).is_empty());
                 let first = parts.iter().find(|part| turns(part) || self.machine.moves(&part.vector));
                 let rate = match first.filter(|part| turns(part)).map(|part| part.turns.clone()) {

@@ -1,7 +1,7 @@
 //! Springs, dampers, motors and loops.
 
 use crate::chain::Maker;
-use crate::text::{Sum, factor};
+use crate::text::{Sum, factor, is_zero};
 use crate::{Between, Fault, FaultKind, Link, LinkKind, Motion, Row, Work, Written};
 
 impl Maker<'_> {
@@ -21,7 +21,15 @@ impl Maker<'_> {
                     }));
                     return Ok(());
                 }
-                self.define(&link.name, "length", format!("sqrt(dot({gap}, {gap}))"))
+                let square = format!("dot({gap}, {gap})");
+                // without a rest length no root is needed, which would be singular where the points meet
+                if let LinkKind::Spring(stiffness, rest) = &link.kind
+                    && rest.as_ref().is_none_or(|rest| is_zero(&rest.text))
+                {
+                    self.made.energies.push(format!("-{}/2*{square}", factor(&stiffness.text)));
+                    return Ok(());
+                }
+                self.define(&link.name, "length", format!("sqrt({square})"))
             }
         };
         match &link.kind {

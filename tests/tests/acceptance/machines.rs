@@ -15,11 +15,11 @@ macro_rules! by_hand {
 }
 
 /// Built-in scenes of bodies, and their definitions and `[system]` by hand.
-const MACHINES: [(&str, &str); 31] = by_hand!(
+const MACHINES: [(&str, &str); 30] = by_hand!(
     "ball-in-cone" "ball-in-cylinder" "ball-on-incline" "bicycle" "bowl" "chaplygin-sphere" "coin-on-incline" "disc"
     "falling-disc" "mobile-robot" "one-motor-robot" "planar-body" "rattleback" "roller-racer" "routh-sphere"
     "rubber-ball" "rubber-chaplygin-sphere" "rudder-skate" "servo-pendulum" "sledge" "sledge-with-friction" "sleigh"
-    "snakeboard" "suslov" "trailer" "turning-knife-edge" "turntable" "two-wheeled-carriage" "unicycle-in-potential"
+    "snakeboard" "suslov" "trailer" "turning-knife-edge" "turntable" "unicycle-in-potential"
     "velocity-pendulum" "veselova"
 );
 
@@ -194,7 +194,7 @@ fn multipliers_are_the_forces_of_the_ground() {
         let size = expected.iter().fold(1.0_f64, |size, x| size.max(x.abs()));
         must(&format!("{what}: force of the contact"), off / size, 1e-12);
     };
-    // a homogeneous ball on an incline is held back by 2/7 of its weight's pull: the friction needed is 2/7 tan(alpha)
+    // a homogeneous ball on an incline is held back by 2/7 of its weight's pull
     let (_, found) = reactions("ball-on-incline", &[("m", 1.4)]);
     near("ball on incline", &found, &[-2.0 / 7.0 * 1.4 * 9.81 * 0.3, 0.0]);
     let (pull, normal) = (found[0].hypot(found[1]), 1.4 * 9.81 * 0.3_f64.asin().cos());

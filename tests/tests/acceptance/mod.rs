@@ -12,6 +12,7 @@ mod forces;
 mod frames;
 mod leading_term;
 mod linearization;
+mod loops;
 mod machines;
 mod matching;
 mod numerics;
