@@ -52,7 +52,7 @@ fn round_off_is_told_on_the_root_of_the_motion() {
 fn a_factor_of_the_constraint_ends_no_motion() {
     let f = "z'^2 - a^2*(x'^2 + y'^2)";
     for factor in ["1", "3", "-7", "0.1"] {
-        let text = include_str!("../../catalogue/scenes/appell-hamel.toml");
+        let text = include_str!("../../scene/scenes/appell-hamel.toml");
         let scene = read("appell-hamel", &text.replace(f, &format!("{factor}*({f})")));
         let mut motion =
             solve_choice(&scene, &choice(&scene, VAKONOMIC_COSTATE), &Settings::default()).expect("a motion");

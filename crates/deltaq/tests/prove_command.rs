@@ -57,7 +57,7 @@ fn without_a_certificate_there_is_a_reason() {
 fn a_projection_that_moves_nothing_leaves_numbers_exact() {
     let folder = tempfile::tempdir().expect("a folder");
     let file = folder.path().join("sledge.toml").display().to_string();
-    let sledge = include_str!("../../catalogue/scenes/sledge.toml");
+    let sledge = include_str!("../../scene/scenes/sledge.toml");
     let projected = |velocities: &str| {
         let start = format!("[start]\nproject = true\n[start.velocities]\n{velocities}");
         std::fs::write(&file, sledge.replacen("[start.velocities]\n", &start, 1)).expect("written");

@@ -5,7 +5,6 @@ use mechanics::{ConstantsRule, State};
 use motion::{CHETAEV, REMOVED_CONSTRAINT, Settings, VAKONOMIC, solve_choice};
 use nalgebra::{DMatrix, DVector};
 use scene::Scene;
-use scene::catalogue::find;
 use symbolic::SplitMix;
 
 use super::support::{choice, gap, must, tight, values};
