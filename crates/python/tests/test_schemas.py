@@ -113,7 +113,7 @@ BROKEN = {
     "format = 1": ["format = 2", "format = 0", "format = '1'"],
     "title = 'a'": ["title = 1", "tilte = 'a'", ""],
     "g = '2*pi'": ["g = true"],
-    "x = { unit = 'm', start = 0 }": ["x = 0", "x = { unit = 'm' }", "x = { unit = 1, start = 0 }", "x = { strt = 0 }"],
+    "x = { unit = 'm', start = 0 }": ["x = 0", "x = { unit = 'm', start = 0, begin = 1 }", "x = { unit = 1, start = 0 }", "x = { strt = 0 }"],
     "lagrangian = ": ["lagrangain = ", "lagrangian = 1\nforce = "],
     "constraints = []": ["constraints = 'x'", "constraints = [[]]"],
     "project = true": ["project = 0", "projects = true"],
