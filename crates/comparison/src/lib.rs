@@ -54,7 +54,7 @@
 mod beyond;
 mod comparison;
 mod contradiction;
-mod first_trace;
+mod epsilon_term;
 mod fit;
 mod fits;
 mod gap;
@@ -71,7 +71,7 @@ pub use beyond::{Beyond, beyond_contacts};
 pub use comparison::{Comparison, compare, compare_unfitted};
 pub use contradiction::{Beside, Contradicted, Contradiction, hold, holds_beside_numbers};
 pub use decision::{Finding, PlainScene, Section};
-pub use first_trace::{FirstTrace, first_trace};
+pub use epsilon_term::{EpsilonTerm, epsilon_term};
 pub use fit::best_fit;
 pub use fits::{Fit, Fits};
 pub use gap::{Gap, GapPoint, Sampling, THRESHOLDS, Verdict, compare_motions, compare_motions_by};

@@ -15,7 +15,7 @@ use crate::columns::MOST_NUMBERS;
 use crate::solve_command::{choice, settings, times};
 use members::Members;
 use output::{Answers, Outcome, Seconds};
-use program::{Answer, Lines, Sink, parallel};
+use program::{Answer, AtomicWriter, ResumableFile, parallel};
 use resume::resume;
 use scene::Scene;
 
@@ -66,12 +66,12 @@ pub(crate) fn run(arguments: &EnsembleArguments, quiet: bool) -> Result<Answer> 
     let chunk = CHUNK.min(most / times.len().max(1));
     // an answer in one piece begins anew
     let resume = (arguments.motion.format == Format::Csv).then_some(
-        |lines: &mut Lines, is_ours: &dyn Fn(bool) -> Result<()>| {
+        |lines: &mut ResumableFile, is_ours: &dyn Fn(bool) -> Result<()>| {
             let first = |answers: &Answers| outcomes(0..1).iter().map(|first| answers.rows(0, first)).collect();
             resume(&mut answers, lines, is_ours, first)
         },
     );
-    let (mut sink, mut reads_on) = Sink::open(arguments.out.as_deref(), &head, "ensemble", resume)?;
+    let (mut sink, mut reads_on) = AtomicWriter::open(arguments.out.as_deref(), &head, "ensemble", resume)?;
     let bar = parallel::progress(members.count(), quiet);
     while reads_on && answers.done < members.count() {
         bar.set_position(answers.done as u64);

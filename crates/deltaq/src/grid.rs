@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Result, bail, ensure};
 use pages::Swept;
-use program::{Lines, Sink, parallel};
+use program::{AtomicWriter, ResumableFile, parallel};
 use scene::Number;
 
 use crate::cli::{MOST_MEMBERS, Range};
@@ -64,11 +64,11 @@ impl<'a> Grid<'a> {
         let head = header(&self.names().chain(columns.iter().copied()).map(String::from).collect::<Vec<_>>())?;
         let computed = |index: usize| self.begin(index) + &row(&self.point(index));
         let mut done = 0;
-        let resume = |lines: &mut Lines, is_ours: &dyn Fn(bool) -> Result<()>| {
+        let resume = |lines: &mut ResumableFile, is_ours: &dyn Fn(bool) -> Result<()>| {
             done = whole_rows(lines, is_ours, self, &computed)?;
             Ok(())
         };
-        let (mut sink, mut reads_on) = Sink::open(path, &head, "sweep", Some(resume))?;
+        let (mut sink, mut reads_on) = AtomicWriter::open(path, &head, "sweep", Some(resume))?;
         let bar = parallel::progress(self.count, quiet);
         while reads_on && done < self.count {
             bar.set_position(done as u64);
@@ -90,7 +90,7 @@ impl<'a> Grid<'a> {
 
 /// The rows that a file has already, which are kept. The first one has to be what is computed now.
 fn whole_rows(
-    lines: &mut Lines,
+    lines: &mut ResumableFile,
     is_ours: &dyn Fn(bool) -> Result<()>,
     grid: &Grid,
     computed: &dyn Fn(usize) -> String,

@@ -3,7 +3,7 @@
 use scene::{Scene, SceneError};
 use serde_json::{Value, json};
 
-use crate::kept::Kept;
+use crate::cache::Cache;
 use crate::question::{Answer, Ask, Question, Refused};
 use crate::subject::Subject;
 use crate::{controls, further, motions, words};
@@ -12,7 +12,7 @@ use crate::{controls, further, motions, words};
 /// glance come.
 #[derive(Default)]
 pub struct Explorer {
-    kept: Kept,
+    kept: Cache,
 }
 
 impl Explorer {
@@ -28,7 +28,7 @@ impl Explorer {
     }
 }
 
-fn answered(question: &str, kept: &mut Kept, numbers: &mut Vec<f64>) -> Result<Value, Refused> {
+fn answered(question: &str, kept: &mut Cache, numbers: &mut Vec<f64>) -> Result<Value, Refused> {
     let question: Question = serde_json::from_str(question)?;
     let subject = Subject::of(&question)?;
     match question.ask {

@@ -39,12 +39,12 @@
 mod answering;
 mod arrows;
 mod bodies;
+mod cache;
 mod controls;
+mod drag_handles;
 #[cfg(target_family = "wasm")]
 mod exports;
 mod further;
-mod grips;
-mod kept;
 mod motions;
 mod question;
 mod run;

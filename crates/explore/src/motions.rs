@@ -8,8 +8,8 @@ use serde_json::{Value, json};
 
 use crate::arrows::Arrows;
 use crate::bodies::Bodies;
-use crate::grips;
-use crate::kept::Kept;
+use crate::cache::Cache;
+use crate::drag_handles;
 use crate::question::{Question, Refused};
 use crate::run::{Run, settings};
 use crate::subject::Subject;
@@ -25,7 +25,7 @@ use crate::subject::Subject;
 pub(crate) fn sampled(
     subject: &Subject,
     question: &Question,
-    kept: &mut Kept,
+    kept: &mut Cache,
     numbers: &mut Vec<f64>,
 ) -> Result<Value, Refused> {
     let Subject { scene, choices, .. } = subject;
@@ -58,7 +58,7 @@ pub(crate) fn sampled(
         answers.push(answer);
     }
     let gaps = gaps(scene, &answers, &mut runs, numbers)?;
-    let grips = if question.grips { grips::of(scene, question)? } else { None };
+    let grips = if question.grips { drag_handles::of(scene, question)? } else { None };
     runs.into_iter().for_each(|(i, run)| run.leave(&choices[i], kept));
     Ok(json!({
         "start": scene.start.t, "end": scene.start.t + scene.duration, "times": sampler.times.len(),

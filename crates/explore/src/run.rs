@@ -5,7 +5,7 @@ use integrate::{Options, Status};
 use motion::{Choice, Motion, Settings, SingleRun, SolveError, Varying, error_estimate, setting, solve_choice};
 use scene::Scene;
 
-use crate::kept::Kept;
+use crate::cache::Cache;
 use crate::question::Question;
 
 /// Steps of one run at most, and of one at a glance.
@@ -42,7 +42,7 @@ impl Run {
         scene: &Scene,
         choice: &Choice,
         settings: &Settings,
-        kept: &mut Kept,
+        kept: &mut Cache,
     ) -> Result<Run, SolveError> {
         let once = |mut varying: Varying, parameters: &[f64]| {
             varying.set(&scene.start, parameters, &choice.constants, true)?;
@@ -66,7 +66,7 @@ impl Run {
     }
 
     /// What it was made of stays for the next one of `choice`.
-    pub(crate) fn leave(self, choice: &Choice, kept: &mut Kept) {
+    pub(crate) fn leave(self, choice: &Choice, kept: &mut Cache) {
         if let Run::Glance(varying, _) = self {
             kept.keep(choice, *varying);
         }

@@ -7,9 +7,9 @@
 //! [`crate::integrate`] takes over, as every lane would wait, where the problem does not trust the rates, a
 //! coefficient is not finite, an event function may vanish, or steps get too short or too many: all rare.
 
+mod defect_check;
+mod divisor_zeros;
 mod events;
-mod inside;
-mod poles;
 mod problem;
 mod rank;
 
@@ -17,14 +17,14 @@ use std::array::from_fn;
 
 use crate::interrupt::Interrupt;
 use crate::options::{Options, Projection};
-use crate::pace::Pace;
+use crate::stall_detector::StallDetector;
 use crate::status::{ProjectionReport, Work};
 use crate::stepper::shortest_step;
 use crate::taylor_step::{Ends, longest_step, once, order};
 use crate::time_loop::HALVINGS;
+use defect_check::finite;
+use divisor_zeros::LaneDivisorZeros;
 use events::Events;
-use inside::finite;
-use poles::Poles;
 pub use problem::{LANES, Lane, LaneProblem, LaneRun, LaneStart, Left, Shortest};
 use rank::Ranks;
 
@@ -39,7 +39,7 @@ struct Rider {
     /// Its series starts a motion: no step leads to it.
     fresh: bool,
     failures: usize,
-    pace: Pace,
+    stall: StallDetector,
     /// Times that have been passed.
     read: usize,
     run: LaneRun,
@@ -73,7 +73,7 @@ struct Lanes<'a, P> {
     inner_slope: Vec<Lane>,
     inner_rates: Vec<Lane>,
     events: Events,
-    poles: Poles,
+    poles: LaneDivisorZeros,
     ranks: Ranks,
 }
 
@@ -109,7 +109,7 @@ pub fn integrate_lanes<P: LaneProblem>(
         }
         lanes.expand();
         lanes.look_at_events();
-        lanes.look_inside();
+        lanes.check_defects();
         lanes.look_at_rank();
         let adopted = from_fn(|lane| lanes.judge(lane, done));
         lanes.adopt(&adopted);
@@ -156,7 +156,7 @@ impl<'a, P: LaneProblem> Lanes<'a, P> {
             inner_slope: zeros(n),
             inner_rates: zeros(n),
             events: Events::new(events),
-            poles: Poles::new(divisors),
+            poles: LaneDivisorZeros::new(divisors),
             ranks: Ranks::new(rank),
         }
     }
@@ -177,8 +177,8 @@ impl<'a, P: LaneProblem> Lanes<'a, P> {
         let states = Vec::with_capacity(self.times.len() * start.y.len());
         let (work, projection, shortest) = (Work::default(), ProjectionReport::default(), Shortest::default());
         let run = LaneRun { states, work, projection, shortest };
-        let pace = Pace::new(start.t, start.end);
-        self.riders[lane] = Some(Rider { member, end: start.end, fresh: true, failures: 0, pace, read: 0, run });
+        let stall = StallDetector::new(start.t, start.end);
+        self.riders[lane] = Some(Rider { member, end: start.end, fresh: true, failures: 0, stall, read: 0, run });
     }
 
     /// The coefficients at the ends of the candidates, and all that tells whether these are to be kept.
@@ -318,7 +318,7 @@ impl<'a, P: LaneProblem> Lanes<'a, P> {
         let last = step >= remaining.abs();
         let (work, limit) = (&rider.run.work, self.options.max_steps);
         let attempts = work.steps + work.rejected;
-        let creeps = rider.pace.look(t, work.steps, attempts, limit).is_some();
+        let creeps = rider.stall.look(t, work.steps, attempts, limit).is_some();
         if attempts >= limit {
             self.leave(lane, Left::TooManySteps, done);
         } else if !last && (creeps || step <= shortest_step(t) || step.is_nan()) {

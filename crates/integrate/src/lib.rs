@@ -64,6 +64,8 @@
 mod boundary;
 #[doc(hidden)]
 pub mod dense;
+#[doc(hidden)]
+pub mod divisor_zeros;
 mod dop853;
 #[doc(hidden)]
 pub mod dop853_tableau;
@@ -72,18 +74,16 @@ mod events;
 mod interrupt;
 mod lanes;
 mod options;
-#[doc(hidden)]
-pub mod pace;
-#[doc(hidden)]
-pub mod poles;
 mod problem;
 mod radau5;
 #[doc(hidden)]
 pub mod radau5_tableau;
 mod rank;
 mod root;
+#[doc(hidden)]
+pub mod stall_detector;
 mod status;
-mod steep;
+mod step_resolution;
 mod stepper;
 pub mod stepping;
 mod system;
@@ -101,7 +101,7 @@ pub use problem::{EvaluationError, Gauge, Problem, Start};
 pub use rank::{cosine, may_lose as may_lose_rank, orthonormal};
 pub use root::find_root;
 pub use status::{Before, ProjectionReport, Solution, Status, StopCause, Work};
-pub use steep::{GAUGE_LIMIT, GAUGE_NODES, gauge_growth};
+pub use step_resolution::{GAUGE_LIMIT, GAUGE_NODES, gauge_growth};
 
 use stepper::shortest_step;
 use system::System;

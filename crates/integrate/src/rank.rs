@@ -21,9 +21,9 @@ use std::collections::VecDeque;
 
 use nalgebra::DMatrix;
 
+use crate::divisor_zeros::may_vanish;
 use crate::events::{PARTS, Segment};
 use crate::options::{Method, Options};
-use crate::poles::may_vanish;
 use crate::root::least as least_of;
 use crate::system::{Failure, System};
 use crate::taylor_step::LEAST_RELATIVE;

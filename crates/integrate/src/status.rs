@@ -3,8 +3,8 @@
 use thiserror::Error;
 
 use crate::dense::DenseOutput;
-use crate::pace::Pace;
 use crate::problem::Start;
+use crate::stall_detector::StallDetector;
 
 /// The result of an integration.
 #[derive(Clone, Debug)]
@@ -17,13 +17,13 @@ pub struct Solution {
     pub work: Work,
     /// Moves of the states by projections, including those of previous runs.
     pub projection: ProjectionReport,
-    pub(crate) pace: Pace,
+    pub(crate) stall: StallDetector,
 }
 
 impl Solution {
     /// Counters for a run that continues this one: [`crate::Options::before`].
     pub fn done(&self) -> Before {
-        Before { work: self.work, projection: self.projection, pace: self.pace.clone() }
+        Before { work: self.work, projection: self.projection, stall: self.stall.clone() }
     }
 
     /// Where it ended.
@@ -34,7 +34,7 @@ impl Solution {
     /// Goes on with what begins where this ended, after what was [`Solution::done`].
     pub(crate) fn append(&mut self, next: Solution) {
         self.dense.append(next.dense);
-        (self.status, self.work, self.projection, self.pace) = (next.status, next.work, next.projection, next.pace);
+        (self.status, self.work, self.projection, self.stall) = (next.status, next.work, next.projection, next.stall);
     }
 }
 
@@ -43,7 +43,7 @@ impl Solution {
 pub struct Before {
     pub(crate) work: Work,
     pub(crate) projection: ProjectionReport,
-    pub(crate) pace: Pace,
+    pub(crate) stall: StallDetector,
 }
 
 /// How an integration ended.
@@ -117,7 +117,7 @@ pub enum StopCause {
     /// The rest needs more attempts than [`crate::Options::patience`] allows.
     #[error("{ahead:.0e} steps are ahead, where the last ones moved time by {moved:.1e}")]
     Slow {
-        /// Their number, at the pace of the last ones.
+        /// Their number, at the stall of the last ones.
         ahead: f64,
         /// Time that the last stretch of attempts took.
         moved: f64,

@@ -1,14 +1,14 @@
 //! The one time loop: every method, forwards and backwards, with events, projection, checks and counters.
 
 use crate::dense::{Basis, DenseOutput, evaluate_segment};
+use crate::divisor_zeros::DivisorZeros;
 use crate::events::{EventWatch, Found, Segment};
 use crate::options::{Dense, Options, Projection};
-use crate::pace::Pace;
-use crate::poles::PoleWatch;
 use crate::problem::Start;
 use crate::rank::{Lost, RankWatch};
+use crate::stall_detector::StallDetector;
 use crate::status::{ProjectionReport, Solution, Status, StopCause};
-use crate::steep::SteepWatch;
+use crate::step_resolution::StepResolution;
 use crate::stepper::{Attempt, Stepper};
 use crate::system::{Failure, System, check_finite};
 use crate::taylor_step::{DEFECT, LEAST_RELATIVE};
@@ -48,7 +48,7 @@ pub fn run(
         system,
         dense: DenseOutput::new(start.t, &start.y, basis, degree, options.wanted.clone()),
         projection: options.before.as_ref().map_or(ProjectionReport::default(), |before| before.projection),
-        pace: options.before.clone().map_or(Pace::new(start.t, end), |before| before.pace.on_to(end)),
+        stall: options.before.clone().map_or(StallDetector::new(start.t, end), |before| before.stall.on_to(end)),
         absolute: options.absolute_tolerances(start.y.len()),
         before: Vec::new(),
         moves: Moves { allowed: 1.0, last: f64::INFINITY, shorter: 0 },
@@ -58,8 +58,8 @@ pub fn run(
         Ok(()) => Status::Completed,
         Err(cause) => Status::Stopped { t: record.dense.end(), cause },
     };
-    let Record { dense, projection, pace, .. } = record;
-    Solution { status, dense, work: system.work(), projection, pace }
+    let Record { dense, projection, stall, .. } = record;
+    Solution { status, dense, work: system.work(), projection, stall }
 }
 
 /// The solution so far, with its counters.
@@ -67,7 +67,7 @@ struct Record<'a, 'p> {
     system: &'a System<'p>,
     dense: DenseOutput,
     projection: ProjectionReport,
-    pace: Pace,
+    stall: StallDetector,
     absolute: Vec<f64>,
     /// The candidate before it was projected.
     before: Vec<f64>,
@@ -77,8 +77,8 @@ struct Record<'a, 'p> {
 
 /// Checks inside of steps.
 struct Inside {
-    steep: SteepWatch,
-    poles: PoleWatch,
+    steep: StepResolution,
+    poles: DivisorZeros,
     rank: RankWatch,
 }
 
@@ -95,8 +95,8 @@ impl Record<'_, '_> {
     fn begin(&mut self, stepper: &mut dyn Stepper, start: &Start, end: f64) -> Result<(), StopCause> {
         let system = self.system;
         let mut inside = Inside {
-            steep: SteepWatch::new(system, start.t, &start.y)?,
-            poles: PoleWatch::new(system, start.t, &start.y, self.options)?,
+            steep: StepResolution::new(system, start.t, &start.y)?,
+            poles: DivisorZeros::new(system, start.t, &start.y, self.options)?,
             rank: RankWatch::new(system, start.t, &start.y, self.options)?,
         };
         self.walk(stepper, start, end, &mut inside).map_err(|cause| match cause {
@@ -136,10 +136,10 @@ impl Record<'_, '_> {
             if attempts >= limit {
                 return Err(StopCause::TooManySteps { limit });
             }
-            if let Some((steps, moved)) = self.pace.look(t, work.steps, attempts, limit) {
+            if let Some((steps, moved)) = self.stall.look(t, work.steps, attempts, limit) {
                 return Err(StopCause::Creeping { steps, moved });
             }
-            if let Some((ahead, moved)) = self.pace.is_over(self.options.patience) {
+            if let Some((ahead, moved)) = self.stall.is_over(self.options.patience) {
                 return Err(StopCause::Slow { ahead, moved });
             }
             if self.options.dense == Dense::Everywhere {

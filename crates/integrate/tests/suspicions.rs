@@ -1,6 +1,6 @@
 //! What may have been passed over between two instants: zeros of divisors, and gauges that grow.
 
-use integrate::poles::may_vanish;
+use integrate::divisor_zeros::may_vanish;
 use integrate::{GAUGE_LIMIT, GAUGE_NODES, Gauge, gauge_growth};
 
 #[test]

@@ -16,12 +16,12 @@ use integrate::{Options, ProjectionReport, Solution, Work};
 use mechanics::{ConstantsRule, SingularValues, System};
 use nalgebra::{DMatrix, DVector};
 
+use crate::chart_transition::{Later, Names, Point, Quantity};
 use crate::choice::{derive_at, watch};
-use crate::later_chart::{Later, Names, Point, Quantity};
 use crate::lost_rank::watch_rank;
+use crate::stiffness_probe::{NotSuited, not_suited};
 use crate::table::as_derived;
 use crate::trajectory::{Legs, Trajectory, outputs_in};
-use crate::trial::{NotSuited, not_suited};
 use crate::wanted::wanted;
 use crate::{Choice, Ending, Prepared, Setting, Settings, SingleRun, SolveError, TIGHTER};
 

@@ -38,9 +38,9 @@ use integrate::{BoundaryError, Interrupt, ShootOptions, shoot};
 use mechanics::{ConstantsRule, State};
 use scene::Scene;
 
-use crate::carried::{Carried, Which};
 use crate::constants::constant_names;
 use crate::shooting::{Minimum, distinct};
+use crate::variational::{VariationalRun, Which};
 use crate::{Choice, Motion, Settings, SolveError, TIGHTER, VAKONOMIC, over_threads, solve_choice};
 use action::action;
 pub use conjugate::{ConjugateTime, samples, times};
@@ -325,7 +325,7 @@ fn complete(
     for (which, part) in [(Which::Kept, TIGHTER), (Which::Looser, 1.0)] {
         let options = problem.options(settings.tolerance * part);
         let prepared = problem.varying.prepared_mut();
-        let mut carried = Carried::run(prepared, &along, end, &options, which)?;
+        let mut carried = VariationalRun::run(prepared, &along, end, &options, which)?;
         let samples = conjugate::samples(start.t, end, &carried.step_times());
         let times = match several {
             true => None,

@@ -1,14 +1,14 @@
 //! Free constants: zero, given, or natural at a horizon.
 
-mod natural;
+mod transversality;
 
 use equations::Equations;
 use mechanics::ConstantsRule;
 
 use crate::{Prepared, Setting, Settings, SolveError};
-use natural::natural_constants;
-pub use natural::searched;
-pub(crate) use natural::{chord, places};
+use transversality::natural_constants;
+pub use transversality::searched;
+pub(crate) use transversality::{chord, places};
 
 /// Compiles `equations` and computes what they start from. Nothing is integrated, unless the constants are
 /// natural at a horizon; that is done as `settings` say.

@@ -5,9 +5,9 @@
 //! of both sides. Where a motion only crosses a kink, derivatives are continuous. A kink that lasts less than
 //! a two-hundredth of the time, and contains none of the times asked for, may be missed.
 
-use crate::carried::{Carried, Moves};
 use crate::differences::has_kink;
 use crate::method::expressions;
+use crate::variational::{Moves, VariationalRun};
 use crate::wanted::scattered;
 use crate::{Prepared, SolveError};
 
@@ -15,7 +15,7 @@ use crate::{Prepared, SolveError};
 /// between these ends.
 pub(crate) fn refuse_kinks(
     prepared: &mut Prepared,
-    carried: &Carried,
+    carried: &VariationalRun,
     names: &[&str],
     [start, end]: [f64; 2],
     times: &[f64],

@@ -48,7 +48,7 @@
 
 pub mod band;
 mod by_name;
-mod carried;
+mod chart_transition;
 mod charts;
 mod choice;
 mod clock;
@@ -67,7 +67,6 @@ mod error;
 mod form;
 mod grid;
 mod kinks;
-mod later_chart;
 mod lost_rank;
 mod method;
 mod metric;
@@ -85,16 +84,16 @@ mod single_run;
 mod start_values;
 mod state_scales;
 mod steps;
+mod stiffness_probe;
 mod table;
 mod trajectory;
-mod trial;
 mod variables;
+mod variational;
 mod varying;
 mod wanted;
 
 pub use band::{Breach, CERTAINTY, Doubt, ErrorEstimate, TRUSTED, error_estimate, error_estimates};
 pub use by_name::ByName;
-pub use carried::{Carried, Which};
 pub use charts::ChartChange;
 pub use choice::{
     Choice, choices, choices_among, constants_of, default_constants, derive, derive_at, equations_of, forms, removal,
@@ -127,4 +126,5 @@ pub use table::{
     CHETAEV, FIRST_ORDER, FORMS, FORMULATIONS, KAPPA, PRESCRIBED, REDUCED_CHETAEV, REDUCED_VAKONOMIC,
     REMOVED_CONSTRAINT, UnknownFormulation, VAKONOMIC, VAKONOMIC_COSTATE, formulation, is_in_table,
 };
+pub use variational::{VariationalRun, Which};
 pub use varying::Varying;

@@ -5,9 +5,9 @@ use integrate::Status;
 use mechanics::ConstantsRule;
 use scene::Scene;
 
-use crate::carried::{Carried, Which};
 use crate::differences::size;
 use crate::direction::Direction;
+use crate::variational::{VariationalRun, Which};
 use crate::wanted::wanted;
 use crate::{ByName, Choice, Settings, SolveError};
 
@@ -69,7 +69,7 @@ impl Model {
         }
         let by_name = ByName::new(scene, choice, names, settings)?;
         let method = by_name.varying().prepared().method.method;
-        Carried::check(method)?;
+        VariationalRun::check(method)?;
         let settings = Settings { method: Some(method), ..settings.clone() };
         Ok(Model { by_name, times: times.to_vec(), settings, start })
     }
@@ -161,7 +161,7 @@ impl Model {
         let along = self.directions(row).map_err(|error| error.to_string())?;
         let (end, options) = self.end();
         let prepared = self.by_name.varying_mut().prepared_mut();
-        let carried = Carried::run(prepared, &along, end, &options, Which::Kept);
+        let carried = VariationalRun::run(prepared, &along, end, &options, Which::Kept);
         let mut carried = carried.map_err(|error| error.to_string())?;
         let reached = carried.ends().fold(f64::INFINITY, f64::min);
         for t in self.times.iter().take_while(|t| **t <= reached) {

@@ -15,8 +15,8 @@ use crate::constants::resolve;
 use crate::form::derive_in_form;
 use crate::method::Chosen;
 use crate::metric::{larger, subtract};
+use crate::stiffness_probe::{FARTHER, NotSuited, TRIAL};
 use crate::trajectory::Trajectory;
-use crate::trial::{FARTHER, NotSuited, TRIAL};
 use crate::wanted::kept_before;
 use crate::{Choice, ChosenForm, Doubt, Ending, Prepared, Setting, Settings, SolveError, setting};
 

@@ -18,13 +18,13 @@ use mechanics::ConstantsRule;
 use scene::Scene;
 
 use crate::band::Errors;
-use crate::carried::{Carried, Which};
 use crate::clock::Clock;
 use crate::constants::places;
 use crate::direction::Direction;
 use crate::ending::vanishing_guard;
 use crate::kinks::refuse_kinks;
 use crate::sensitivity_start::{directions, kept_natural};
+use crate::variational::{VariationalRun, Which};
 use crate::wanted::wanted;
 use crate::{ByName, Choice, Ending, Prepared, Settings, SolveError, TIGHTER, setting};
 
@@ -86,7 +86,7 @@ pub fn sensitivities(
         let reason = "derivatives are asked for, and no number to derive by".into();
         return Err(SolveError::Member { reason });
     }
-    settings.method.map_or(Ok(()), Carried::check)?;
+    settings.method.map_or(Ok(()), VariationalRun::check)?;
     let mut by_name = ByName::new(scene, choice, names, settings)?;
     let [mut along, constants] = directions(&mut by_name, scene, choice)?;
     let (start, end) = (scene.start.t, setting(scene).end);
@@ -102,7 +102,7 @@ pub fn sensitivities(
     let options = Options { wanted: wanted.clone(), ..settings.options(settings.tolerance * TIGHTER) };
     let mut kept = kept_run(prepared, &along, end, settings, options)?;
     let options = Options { method: kept.method, wanted, ..settings.options(settings.tolerance) };
-    let mut looser = Carried::by(prepared, &along, end, &options, Which::Looser)?;
+    let mut looser = VariationalRun::by(prepared, &along, end, &options, Which::Looser)?;
     let seconds = clock.seconds();
     refuse_kinks(prepared, &kept, names, [start, end], times)?;
     let direction = (end - start).signum();
@@ -153,9 +153,9 @@ fn kept_run<'a>(
     end: f64,
     settings: &Settings,
     options: Options,
-) -> Result<Carried<'a>, SolveError> {
+) -> Result<VariationalRun<'a>, SolveError> {
     let options = Options { method: prepared.method.method, ..options };
-    let run = if settings.method.is_some() { Carried::by } else { Carried::run };
+    let run = if settings.method.is_some() { VariationalRun::by } else { VariationalRun::run };
     run(prepared, along, end, &options, Which::Kept)
 }
 

@@ -6,8 +6,8 @@ use std::sync::Arc;
 use equations::{Compiled, Outputs};
 
 use crate::SolveError;
+use crate::chart_transition::Later;
 use crate::discrete_run::DiscreteRun;
-use crate::later_chart::Later;
 use crate::single_run::{SingleRun, outputs};
 
 /// A run from chart to chart, those after the first with their own equations.

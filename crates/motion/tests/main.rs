@@ -1,5 +1,6 @@
 //! The library as its user meets it: one program, one module per subject.
 
+mod accumulated_round_off;
 mod band;
 mod collocation;
 mod cones;
@@ -11,13 +12,10 @@ mod ensembles;
 mod equations_of;
 mod equidistant;
 mod instants;
-mod last_digits;
 mod long;
-mod lost_digits;
 mod lost_rank;
 mod metric;
 mod model;
-mod natural;
 mod round_off;
 mod sensitivities;
 mod shared_round_off;
@@ -26,6 +24,8 @@ mod sizes;
 mod steep;
 mod support;
 mod switches;
+mod transversality;
 mod two_points;
+mod ulp_perturbation;
 mod walls;
 mod wanted;

@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use anyhow::{Context, Result};
 use comparison::words::{Headline, rows, short};
-use comparison::{Comparison, FirstTrace, Gap, Pair, Verdict};
+use comparison::{Comparison, EpsilonTerm, Gap, Pair, Verdict};
 use motion::{CHETAEV, REMOVED_CONSTRAINT, VAKONOMIC, VAKONOMIC_COSTATE};
 use program::File;
 
@@ -43,7 +43,7 @@ pub fn scene_files(comparison: &mut Comparison) -> Result<Vec<File>> {
 fn data(comparison: &mut Comparison) -> Result<DataPackage> {
     let mut data = DataPackage::new(format!("data/scenes/{}", comparison.scene.name), comparison.scene.title.clone());
     let [residuals, constant] = tables::invariants(comparison)?;
-    let trace = first_trace(comparison)?;
+    let trace = epsilon_term(comparison)?;
     let comparison = &*comparison;
     data.table("pairs", "All pairs of motions", &tables::pairs(comparison, &comparison.pairs, false));
     data.table("growth", "How the gaps begin, measured and predicted", &tables::growth(comparison));
@@ -155,13 +155,13 @@ fn differ(who: &str, gap: &Gap) -> String {
 const TRACED: usize = 64;
 
 /// Size of the first-order vakonomic term along Chetaev's motion.
-fn first_trace(comparison: &mut Comparison) -> Result<Table> {
+fn epsilon_term(comparison: &mut Comparison) -> Result<Table> {
     let columns = [">change of acceleration per ms of epsilon (m √kg/s²)", ">part of the largest acceleration (%)"];
     let mut table = Table::new(columns);
     let Some(run) = comparison.run(CHETAEV) else { return Ok(table) };
     let Comparison { scene, runs, .. } = comparison;
     let Ok(motion) = &mut runs[run].outcome else { return Ok(table) };
-    let Some(FirstTrace { slope, acceleration }) = comparison::first_trace(scene, motion, TRACED)? else {
+    let Some(EpsilonTerm { slope, acceleration }) = comparison::epsilon_term(scene, motion, TRACED)? else {
         return Ok(table);
     };
     let part = slope / acceleration;

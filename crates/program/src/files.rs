@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 
 use anyhow::Result;
 
-use crate::sink::{LIST, Sink, may_replace};
+use crate::atomic_writer::{AtomicWriter, LIST, may_replace};
 
 /// A file of a report.
 #[derive(Clone, Debug)]
@@ -62,7 +62,7 @@ pub fn write_own(folder: &Path, files: &[File]) -> Result<()> {
         }
         let is_page = path.extension().is_some_and(|extension| extension == "md");
         let text = if is_page { typeset(&file.text) } else { Cow::from(&file.text) };
-        let mut sink = Sink::over(&path)?;
+        let mut sink = AtomicWriter::over(&path)?;
         sink.write(&text)?;
         waiting.push(sink);
     }

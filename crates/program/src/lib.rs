@@ -6,17 +6,17 @@
 //! faults of the program.
 
 mod answer;
+mod atomic_writer;
 mod ending;
 mod files;
-mod lines;
 mod options;
 pub mod parallel;
-mod sink;
-pub mod turns;
+pub mod priority_queue;
+mod resumable_file;
 
 pub use answer::{Answer, Unwritten, complain, plain, pretty, print, sorted};
+pub use atomic_writer::{AtomicWriter, file, keep, may_replace};
 pub use ending::{exit_code, finish, parse};
 pub use files::{File, is_own, write_all, write_own};
-pub use lines::Lines;
 pub use options::{Common, Output, TextOrJson, by_name, folder};
-pub use sink::{Sink, file, keep, may_replace};
+pub use resumable_file::ResumableFile;

@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use indicatif::{MultiProgress, ProgressBar, ProgressStyle};
 
-use crate::turns;
+use crate::priority_queue;
 
 /// Where bars are drawn, each on a line of its own.
 static BARS: LazyLock<MultiProgress> = LazyLock::new(MultiProgress::new);
@@ -41,9 +41,9 @@ pub fn threads() -> usize {
 /// `work` of each item, over all processors, results in the order of the items. Within [`in_turn`] the items
 /// of several jobs share the threads.
 pub fn map<I: Sync, T: Send>(items: &[I], work: impl Fn(&I) -> T + Sync) -> Vec<T> {
-    turns::shared(|turn| {
+    priority_queue::shared(|turn| {
         motion::over_threads(threads(), items.len(), |index| {
-            let _taken = turn.map(|rank| turns::take(rank, threads()));
+            let _taken = turn.map(|rank| priority_queue::take(rank, threads()));
             work(&items[index])
         })
     })
@@ -52,7 +52,7 @@ pub fn map<I: Sync, T: Send>(items: &[I], work: impl Fn(&I) -> T + Sync) -> Vec<
 /// A job beside others, each on a thread of its own: no more of them work at once than there are threads,
 /// and where several wait for one, the least `rank` goes first. So no thread is idle while a job ends.
 pub fn in_turn<T>(rank: usize, job: impl FnOnce() -> T) -> T {
-    turns::job(rank, threads(), job)
+    priority_queue::job(rank, threads(), job)
 }
 
 /// `work` of each item as [`map`] does it, with a progress bar for the current ones; the first failure.

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use program::{File, Sink, is_own, keep, may_replace, write_all};
+use program::{AtomicWriter, File, is_own, keep, may_replace, write_all};
 
 fn write_one(path: &Path, text: &str) -> anyhow::Result<()> {
     let told = keep(Some(path), text.into(), |file| format!("in {file}"))?;
@@ -64,7 +64,7 @@ fn what_is_not_closed_leaves_nothing() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("page");
     for closed in [false, true] {
-        let mut sink = Sink::whole(&path).unwrap();
+        let mut sink = AtomicWriter::whole(&path).unwrap();
         assert!(sink.write("1").unwrap() && sink.write("2").unwrap() && !path.exists());
         if closed {
             assert_eq!(sink.close().unwrap().as_deref(), Some(&*path));

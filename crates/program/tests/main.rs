@@ -2,5 +2,5 @@
 
 mod answers;
 mod files;
-mod lines;
-mod turns;
+mod priority_queue;
+mod resumable_file;

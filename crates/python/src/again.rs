@@ -8,10 +8,10 @@ use crate::comparison::{Comparison, Growth, LeadingTerm, Pair, Run};
 use crate::connect::{Connection, Connections};
 use crate::ensemble::Ensemble;
 use crate::families::{Decided, Fit};
-use crate::kept::{Kept, field};
 use crate::linearization::{Linearization, LinearizationSweep, StabilityChange};
 use crate::motion::Motion;
 use crate::outputs::Outputs;
+use crate::pickled::{Pickled, field};
 use crate::state::State;
 use crate::trajectory::Trajectory;
 

@@ -11,8 +11,8 @@ use scene::Scene;
 use crate::arrays::fixed;
 use crate::errors;
 use crate::families::{Decided, Fit};
-use crate::kept::kept;
 use crate::motion::{Asked, Motion, Sampled};
+use crate::pickled::kept;
 use crate::system::System;
 
 /// How a gap grows near the start: gap = length * (t - t0)**exponent.

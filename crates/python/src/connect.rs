@@ -10,7 +10,7 @@ use scene::Scene;
 
 use crate::arguments::Numbers;
 use crate::arrays::{Floats, fixed};
-use crate::kept::kept;
+use crate::pickled::kept;
 use crate::system::{Overrides, System};
 use crate::{arguments, background, errors};
 

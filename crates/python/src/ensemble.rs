@@ -11,7 +11,7 @@ use pyo3::types::PyDict;
 use scene::Scene;
 
 use crate::arrays::{Floats, fixed, list, times, within};
-use crate::kept::kept;
+use crate::pickled::kept;
 use crate::system::System;
 
 /// What varies over the members of an ensemble: names, each with as many values as there are members.

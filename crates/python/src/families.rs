@@ -5,7 +5,7 @@ use comparison::{Answer, Membership};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-use crate::kept::kept;
+use crate::pickled::kept;
 
 /// The free constants with which one motion comes closest to another.
 #[pyclass(frozen, get_all, module = "deltaq")]

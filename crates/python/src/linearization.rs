@@ -9,7 +9,7 @@ use pyo3::types::{IntoPyDict, PyDict};
 use scene::Scene;
 
 use crate::arrays::{fixed, read_only};
-use crate::kept::kept;
+use crate::pickled::kept;
 use crate::system::System;
 use crate::{arguments, background, errors};
 

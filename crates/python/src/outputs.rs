@@ -6,7 +6,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use crate::arrays::{columns, fixed};
-use crate::kept::kept;
+use crate::pickled::kept;
 
 /// Coordinates, velocities, multipliers and invariants at one instant, or at k of them.
 #[pyclass(frozen, get_all, module = "deltaq")]

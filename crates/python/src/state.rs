@@ -3,7 +3,7 @@
 use numpy::PyArrayDyn;
 use pyo3::prelude::*;
 
-use crate::kept::kept;
+use crate::pickled::kept;
 
 /// A point of a motion: time, coordinates, velocities.
 #[pyclass(frozen, get_all, module = "deltaq")]

@@ -13,8 +13,8 @@ use crate::arguments::Numbers;
 use crate::arrays::{Floats, fixed, list, times, within};
 use crate::ensemble::Instants;
 use crate::equations::Equations;
-use crate::kept::kept;
 use crate::motion::work;
+use crate::pickled::kept;
 use crate::{arguments, background, errors};
 
 /// One run of the time loop, without a second one: only its tolerance tells anything of its error.

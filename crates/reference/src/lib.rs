@@ -9,21 +9,21 @@
 //!
 //! Runs in `f64` take the same series tape, extrapolation none: where both agree, that tape is right.
 
+mod cache;
 mod double_double;
 mod error;
 mod extrapolation;
 mod instant;
-mod kept;
 mod metric;
 mod reference;
 mod start;
 mod taylor;
 mod wide;
 
+pub use cache::{CachedReference, digest};
 pub use double_double::DoubleDouble;
 pub use error::ReferenceError;
 pub use instant::{Instant, Point};
-pub use kept::{Kept, digest};
 pub use mechanics::linear::Entry;
 pub use reference::{Agreement, Question, Reference, reference, reference_in};
 pub use wide::Wide;

@@ -16,7 +16,7 @@ use super::claims::{CHECKS, broken_null_test, make};
 use super::recipe::draw;
 use super::record::{Record, THOROUGH};
 use super::{Case, Fault, Finding, Kind, NullTest, Recipe};
-use program::{Lines, parallel};
+use program::{ResumableFile, parallel};
 
 /// Steps after which shrinking is content with what it has.
 const SHRINKING: usize = 600;
@@ -141,7 +141,7 @@ impl Batch {
             Ok(other) => self.is_of(&other, path).err().unwrap_or_else(|| anyhow!("{} is in other words", place())),
             Err(_) => Error::msg(format!("{}: not a log of random systems", place())),
         };
-        let mut lines = Lines::open(path, &(serde_json::to_string(self)? + "\n"), foreign)?;
+        let mut lines = ResumableFile::open(path, &(serde_json::to_string(self)? + "\n"), foreign)?;
         let mut records = Vec::new();
         while let Some(line) = lines.next_line()? {
             records.push(serde_json::from_str(&line).with_context(place)?);

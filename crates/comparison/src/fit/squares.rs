@@ -4,8 +4,8 @@ use integrate::{BoundaryError, Options, Residuals, ShootOptions, Shot, Status, f
 use nalgebra::DVector;
 
 use super::{CLOSE, Differences, INSTANTS};
-use motion::{Carried, Which};
 use motion::{Settings, TIGHTER};
+use motion::{VariationalRun, Which};
 
 /// Limit on the search.
 const ITERATIONS: usize = 30;
@@ -96,7 +96,7 @@ impl Residuals for Weighted<'_> {
         let Power { power, stride, part, .. } = *self.power;
         let end = *start + (*end - *start) * part;
         let method = prepared.method.method;
-        if !Carried::is_by(method) {
+        if !VariationalRun::is_by(method) {
             return Ok(false);
         }
         let broken = |error: motion::SolveError| BoundaryError::Residual { reason: error.to_string() };
@@ -104,7 +104,7 @@ impl Residuals for Weighted<'_> {
         let options = Settings { method: Some(method), ..self.limits.clone() }.options(self.tolerance);
         let along: Vec<_> = (0..constants.len()).map(|i| prepared.along_constant(i, 1.0)).collect();
         let options = Options { wanted: None, ..options };
-        let mut carried = Carried::run(prepared, &along, end, &options, Which::Kept).map_err(broken)?;
+        let mut carried = VariationalRun::run(prepared, &along, end, &options, Which::Kept).map_err(broken)?;
         if *carried.status() != Status::Completed {
             return Ok(false);
         }

@@ -1,7 +1,7 @@
 //! Continuation of an interrupted table of members.
 
 use anyhow::Result;
-use program::Lines;
+use program::ResumableFile;
 
 use super::output::Answers;
 
@@ -9,7 +9,7 @@ use super::output::Answers;
 /// `first` gives the rows of the first member.
 pub(super) fn resume(
     answers: &mut Answers,
-    lines: &mut Lines,
+    lines: &mut ResumableFile,
     is_ours: &dyn Fn(bool) -> Result<()>,
     first: impl FnOnce(&Answers) -> String,
 ) -> Result<()> {

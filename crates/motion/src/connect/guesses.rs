@@ -1,8 +1,8 @@
 //! Where searches start, and the units of the problem.
 
-use crate::carried::{Carried, Which};
 use crate::connect::two_point::TwoPoint;
 use crate::shooting::spread;
+use crate::variational::{VariationalRun, Which};
 use crate::{Metric, SolveError};
 
 /// Where searches start.
@@ -96,7 +96,7 @@ fn bends(problem: &mut TwoPoint, x: &[f64], after: f64) -> Result<Vec<Vec<f64>>,
     let options = problem.options(problem.settings.tolerance);
     let prepared = problem.varying.prepared_mut();
     let along: Vec<_> = (0..own).map(|i| prepared.along_constant(i, 1.0)).collect();
-    let mut carried = Carried::run(prepared, &along, end, &options, Which::Kept)?;
+    let mut carried = VariationalRun::run(prepared, &along, end, &options, Which::Kept)?;
     let t = carried.step_times().last().copied().unwrap_or(end);
     let (_, derivatives) = carried.at(prepared, t)?;
     Ok(derivatives.into_iter().map(|outputs| outputs.coordinates).collect())

@@ -6,10 +6,10 @@ use mechanics::{ConstantsRule, State, System};
 use nalgebra::{DMatrix, DVector};
 use scene::Scene;
 
-use crate::carried::{Carried, Which};
 use crate::connect::velocities::Velocities;
 use crate::connect::{Aim, own_constant_names};
 use crate::direction::Direction;
+use crate::variational::{VariationalRun, Which};
 use crate::{Choice, Metric, Settings, SolveError, VAKONOMIC, Varying};
 
 /// `r_i(x) = (q_i(t₁; x) − q₁_i)/size_i`, x in units of the problem.
@@ -211,7 +211,7 @@ impl TwoPoint {
         self.runs = self.runs.map(|runs| runs + 1);
         let options = Options { dense: Dense::EndOnly, ..self.options(self.settings.tolerance * crate::TIGHTER) };
         let prepared = self.varying.prepared_mut();
-        let mut carried = Carried::run(prepared, &along, self.aim.t, &options, Which::Kept)?;
+        let mut carried = VariationalRun::run(prepared, &along, self.aim.t, &options, Which::Kept)?;
         if *carried.status() != Status::Completed {
             return Ok(None);
         }
@@ -220,7 +220,7 @@ impl TwoPoint {
     }
 
     /// The same at `t`.
-    pub(super) fn matrix_at(&mut self, carried: &mut Carried, t: f64) -> Result<DMatrix<f64>, SolveError> {
+    pub(super) fn matrix_at(&mut self, carried: &mut VariationalRun, t: f64) -> Result<DMatrix<f64>, SolveError> {
         let (_, derivatives) = carried.at(self.varying.prepared_mut(), t)?;
         Ok(self.matrix(&derivatives))
     }

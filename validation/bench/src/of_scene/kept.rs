@@ -4,7 +4,7 @@ use std::collections::HashMap;
 use std::fmt::Write;
 
 use anyhow::{Context, Result, ensure};
-use reference::{Kept, digest};
+use reference::{CachedReference, digest};
 
 use super::Prepared;
 
@@ -24,7 +24,7 @@ pub struct KeptMotion {
     /// [`reference::Question::digests`]: formulas and numbers.
     pub digests: [u64; 2],
     /// Where the motion is.
-    pub reference: Kept,
+    pub reference: CachedReference,
 }
 
 /// What stands before each motion: its name, digests of formulas, of numbers and of the lines that follow,
@@ -50,7 +50,7 @@ impl KeptReferences {
             };
             let number = |word: &str| u64::from_str_radix(word, 16).with_context(|| format!("{name}: digest `{word}`"));
             ensure!(number(own)? == digest(lines), "{name}: not the numbers that were written");
-            let reference = dimension.parse().ok().and_then(|n| Kept::read(lines, n));
+            let reference = dimension.parse().ok().and_then(|n| CachedReference::read(lines, n));
             let reference = reference.with_context(|| format!("{name}: no reference"))?;
             Ok(KeptMotion { name: name.into(), digests: [number(formulas)?, number(numbers)?], reference })
         };
@@ -82,7 +82,7 @@ impl KeptReferences {
     }
 
     /// The reference with these digests.
-    pub fn find(&self, digests: [u64; 2]) -> Option<&Kept> {
+    pub fn find(&self, digests: [u64; 2]) -> Option<&CachedReference> {
         self.places.get(&digests).map(|&i| &self.motions[i].reference)
     }
 

@@ -4,7 +4,7 @@ use anyhow::Result;
 use integrate::{Options, Status};
 use mechanics::State;
 use motion::{Metric, Prepared};
-use reference::{Kept, Question, reference};
+use reference::{CachedReference, Question, reference};
 use scene::Scene;
 
 use super::KeptReferences;
@@ -26,7 +26,7 @@ pub struct Truth {
 
 enum Source {
     /// In double-double arithmetic.
-    Wide(Kept),
+    Wide(CachedReference),
     /// In `f64`, where the other failed: coordinates and velocities at each time.
     Narrow(Vec<(Vec<f64>, Vec<f64>)>, Box<Metric>),
 }
@@ -59,7 +59,7 @@ impl Truth {
         let question =
             Question { system: &scene.system, start: &start, equations: &ready.equations, constants: &ready.constants };
         let digests = question.digests(&times, ACCURACY);
-        let wide = |found: Kept, origin: &str| {
+        let wide = |found: CachedReference, origin: &str| {
             let (error, origin) = (found.error, origin.into());
             Truth { times: times.clone(), error, origin, shortened, digests, source: Source::Wide(found) }
         };
@@ -67,7 +67,7 @@ impl Truth {
             return Ok(wide(found.clone(), "double-double, two methods, kept"));
         }
         let refused = match reference(&question, &times, ACCURACY) {
-            Ok(found) => return Ok(wide(Kept::from(&found), "double-double, two methods")),
+            Ok(found) => return Ok(wide(CachedReference::from(&found), "double-double, two methods")),
             Err(error) => error,
         };
         let mut metric = Metric::new(&scene.system)?;
@@ -88,7 +88,7 @@ impl Truth {
     }
 
     /// What may be kept of it.
-    pub(super) fn wide(&self) -> Option<&Kept> {
+    pub(super) fn wide(&self) -> Option<&CachedReference> {
         match &self.source {
             Source::Wide(found) => Some(found),
             Source::Narrow(..) => None,

@@ -10,7 +10,7 @@ use crate::question::Question;
 
 /// Motions of one text, derived for all values of the parameters that are set.
 #[derive(Default)]
-pub(crate) struct Kept {
+pub(crate) struct Cache {
     text: String,
     /// Names of the parameters, in the order of the scene.
     parameters: Vec<String>,
@@ -20,13 +20,13 @@ pub(crate) struct Kept {
 /// What a derivation depends on besides: the label, and which constants are given that are not zero.
 type Key = (String, Option<Vec<bool>>);
 
-impl Kept {
+impl Cache {
     /// Forgets what does not belong to the text of the question and to the parameters that are set there.
     pub(crate) fn turn_to(&mut self, question: &Question, scene: &Scene) {
         let names = scene.system.parameters.iter().map(|p| scene.system.graph.name(p.symbol));
         let parameters: Vec<String> = names.filter(|name| question.set.contains_key(name)).collect();
         if self.text != question.text || self.parameters != parameters {
-            *self = Kept { text: question.text.clone(), parameters, motions: HashMap::new() };
+            *self = Cache { text: question.text.clone(), parameters, motions: HashMap::new() };
         }
     }
 

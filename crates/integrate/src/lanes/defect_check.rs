@@ -9,7 +9,7 @@ use crate::taylor_step::{DEFECT, LEAST_RELATIVE, MANY, UNLIMITED};
 impl<P: LaneProblem> Lanes<'_, P> {
     /// As for a single motion: at many places where terms do not limit the step, which depend on the motion's
     /// own attempts only. And at divisors in the middle of the step.
-    pub(super) fn look_inside(&mut self) {
+    pub(super) fn check_defects(&mut self) {
         let under_way: [bool; LANES] = from_fn(|l| self.riders[l].as_ref().is_some_and(|rider| !rider.fresh));
         let free: [bool; LANES] = from_fn(|l| under_way[l] && UNLIMITED * self.taken[l].abs() < self.step[l]);
         let mut place: Lane = from_fn(|l| {

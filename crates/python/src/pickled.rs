@@ -10,7 +10,7 @@ macro_rules! kept {
     ($class:ident: $($field:ident)* $(, $own:ident = $value:expr)*) => {
         #[pyo3::pymethods]
         impl $class {
-            fn __reduce__<'py>(slf: &pyo3::Bound<'py, Self>) -> pyo3::PyResult<$crate::kept::Reduced<'py>> {
+            fn __reduce__<'py>(slf: &pyo3::Bound<'py, Self>) -> pyo3::PyResult<$crate::pickled::Reduced<'py>> {
                 use pyo3::types::{PyAnyMethods, PyDictMethods};
                 let state = pyo3::types::PyDict::new(slf.py());
                 $( state.set_item(stringify!($field), slf.getattr(stringify!($field))?)?; )*
@@ -19,10 +19,10 @@ macro_rules! kept {
             }
         }
 
-        impl $crate::kept::Kept for $class {
+        impl $crate::pickled::Pickled for $class {
             fn again(state: &pyo3::Bound<'_, pyo3::types::PyDict>) -> pyo3::PyResult<Self> {
                 Ok($class {
-                    $($field: $crate::kept::field(state, stringify!($field))?,)*
+                    $($field: $crate::pickled::field(state, stringify!($field))?,)*
                     $($own: $value,)*
                 })
             }
@@ -35,7 +35,7 @@ pub(crate) use kept;
 pub(crate) type Reduced<'py> = (Bound<'py, PyAny>, (&'static str, Bound<'py, PyDict>));
 
 /// A class that is read again from its fields.
-pub(crate) trait Kept: Sized {
+pub(crate) trait Pickled: Sized {
     fn again(state: &Bound<'_, PyDict>) -> PyResult<Self>;
 }
 

@@ -5,9 +5,9 @@ use integrate::{BoundaryError, Dense, Interrupt, Options, Residuals, ShootOption
 
 use nalgebra::{DMatrix, DVector};
 
-use crate::carried::{Carried, PLAIN_RUNS, Which};
 use crate::charts::{self, Course};
 use crate::direction::Chord;
+use crate::variational::{PLAIN_RUNS, VariationalRun, Which};
 use crate::{Ending, Prepared, Setting, Settings, SolveError, TIGHTER};
 
 /// Residual at the horizon that is accepted, over the tolerance of the integration and the costate's size.
@@ -213,12 +213,12 @@ impl Residuals for Search<'_> {
     }
 
     fn jacobian(&mut self, constants: &[f64], jacobian: &mut [f64]) -> Result<bool, BoundaryError> {
-        if !self.carries || !Carried::is_by(self.of_all.method) {
+        if !self.carries || !VariationalRun::is_by(self.of_all.method) {
             return Ok(false);
         }
         let options = self.begin(constants)?;
         let along: Vec<_> = (0..constants.len()).map(|i| self.prepared.along_constant(i, self.sizes[i])).collect();
-        let carried = Carried::run(self.prepared, &along, self.horizon, &options, Which::Kept);
+        let carried = VariationalRun::run(self.prepared, &along, self.horizon, &options, Which::Kept);
         let carried = carried.map_err(|error| self.refuse(error))?;
         self.took(carried.steps());
         if *carried.status() != Status::Completed {

@@ -7,8 +7,8 @@ use std::path::Path;
 
 use anyhow::{Context, Error, Result, ensure};
 
-/// The file of an earlier, interrupted run, read line by line. It is not changed before [`Lines::go_on`].
-pub struct Lines {
+/// The file of an earlier, interrupted run, read line by line. It is not changed before [`ResumableFile::go_on`].
+pub struct ResumableFile {
     reader: BufReader<File>,
     told: String,
     head: String,
@@ -16,20 +16,20 @@ pub struct Lines {
     kept: u64,
 }
 
-impl Lines {
+impl ResumableFile {
     /// Opens or makes the file, for one run at a time. It begins with `head`, or with as much of it as was
     /// written before it was cut off.
     ///
     /// # Errors
     /// A file that cannot be read and written or that another run writes; `foreign`, of its first line, where
     /// it begins with something else.
-    pub fn open(path: &Path, head: &str, foreign: impl Fn(&str) -> Error) -> Result<Lines> {
+    pub fn open(path: &Path, head: &str, foreign: impl Fn(&str) -> Error) -> Result<ResumableFile> {
         let told = path.display().to_string();
         let file = OpenOptions::new().read(true).write(true).create(true).truncate(false).open(path);
         let file = file.with_context(|| format!("cannot write {told}"))?;
         ensure!(file.metadata().is_ok_and(|there| there.is_file()), "{told} is not a file, from which a run can go on");
         ensure!(file.try_lock().is_ok(), "{told} is being written by another run");
-        let mut lines = Lines { reader: BufReader::new(file), told, head: head.to_owned(), at: 0, kept: 0 };
+        let mut lines = ResumableFile { reader: BufReader::new(file), told, head: head.to_owned(), at: 0, kept: 0 };
         let mut there = Vec::new();
         while there.len() < head.len() && lines.line(&mut there)? > 0 {}
         if there == head.as_bytes() {

@@ -8,7 +8,7 @@ use motion::{Metric, Motion, SolveError};
 /// Change of the acceleration per unit of `ε`, and the acceleration itself: largest lengths in the kinetic
 /// metric along the motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct FirstTrace {
+pub struct EpsilonTerm {
     /// `|∂a/∂ε|` at `ε = 0`.
     pub slope: f64,
     /// `|a|`.
@@ -23,7 +23,7 @@ const STEP: f64 = 1e-4;
 ///
 /// # Errors
 /// [`SolveError`] where the motion cannot be read off.
-pub fn first_trace(scene: &Scene, chetaev: &mut Motion, count: usize) -> Result<Option<FirstTrace>, SolveError> {
+pub fn epsilon_term(scene: &Scene, chetaev: &mut Motion, count: usize) -> Result<Option<EpsilonTerm>, SolveError> {
     let system = &scene.system;
     if system.constraints.is_empty() {
         return Ok(None);
@@ -32,7 +32,7 @@ pub fn first_trace(scene: &Scene, chetaev: &mut Motion, count: usize) -> Result<
     let compiled = |epsilon: f64| Compiled::new(&first_order::law(system, g.number(epsilon), None));
     let mut laws = [compiled(-step)?, compiled(0.0)?, compiled(step)?];
     let mut metric = Metric::new(system)?;
-    let mut found = FirstTrace { slope: 0.0, acceleration: 0.0 };
+    let mut found = EpsilonTerm { slope: 0.0, acceleration: 0.0 };
     for t in chetaev.grid(count) {
         let now = chetaev.at(t)?;
         let (q, v) = (&now.coordinates, &now.velocities);

@@ -43,7 +43,7 @@ fn vertex([begin, middle, end]: [f64; 3]) -> Option<(f64, f64)> {
 }
 
 /// Divisors at the time reached and along the step.
-pub(crate) struct PoleWatch {
+pub(crate) struct DivisorZeros {
     reached: Vec<f64>,
     middle: Vec<f64>,
     end: Vec<f64>,
@@ -86,7 +86,7 @@ fn goes_left(values: [f64; 2], crosses: bool, differs: impl Fn(f64) -> bool) -> 
     if crosses { values.into_iter().any(differs) } else { values[0].abs() < values[1].abs() }
 }
 
-impl PoleWatch {
+impl DivisorZeros {
     pub(crate) fn new(system: &System, t: f64, y: &[f64], options: &Options) -> Result<Self, Failure> {
         let (n, count) = (y.len(), system.divisors());
         let zeros = |n: usize| vec![0.0; n];
@@ -98,7 +98,15 @@ impl PoleWatch {
         let place = Place { t, y: zeros(n), slope: zeros(n), rates: zeros(n), divisors: zeros(count) };
         let absolute = options.absolute_tolerances(n).iter().map(|x| factor * x).collect();
         let relative = factor * options.relative_tolerance.max(LEAST_RELATIVE);
-        Ok(PoleWatch { reached, middle: zeros(count), end: zeros(count), place, terms: zeros(n), absolute, relative })
+        Ok(DivisorZeros {
+            reached,
+            middle: zeros(count),
+            end: zeros(count),
+            place,
+            terms: zeros(n),
+            absolute,
+            relative,
+        })
     }
 
     pub(crate) fn is_on(&self) -> bool {

@@ -3,20 +3,20 @@
 use std::array::from_fn;
 
 use super::{LANES, Lane, LaneProblem, Lanes};
-use crate::poles::may_vanish;
+use crate::divisor_zeros::may_vanish;
 
 /// Divisors at the time reached and along the step, and the lanes in which one may vanish.
-pub(super) struct Poles {
+pub(super) struct LaneDivisorZeros {
     reached: Vec<Lane>,
     middle: Vec<Lane>,
     end: Vec<Lane>,
     pub(super) suspected: [bool; LANES],
 }
 
-impl Poles {
+impl LaneDivisorZeros {
     pub(super) fn new(count: usize) -> Self {
         let zeros = vec![[0.0; LANES]; count];
-        Poles { reached: zeros.clone(), middle: zeros.clone(), end: zeros, suspected: [false; LANES] }
+        LaneDivisorZeros { reached: zeros.clone(), middle: zeros.clone(), end: zeros, suspected: [false; LANES] }
     }
 
     /// Goes on from the ends of the steps of these lanes.
@@ -45,7 +45,7 @@ impl<P: LaneProblem> Lanes<'_, P> {
                 }
             },
         );
-        let Poles { reached, middle, end, suspected } = &mut self.poles;
+        let LaneDivisorZeros { reached, middle, end, suspected } = &mut self.poles;
         self.problem.divided(&t, &self.inner, middle);
         self.problem.divided(&self.taken_to, &self.candidate, end);
         for (l, suspected) in suspected.iter_mut().enumerate() {

@@ -31,7 +31,7 @@ struct Mark {
 
 /// How fast a run moves the time.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Pace {
+pub struct StallDetector {
     start: f64,
     end: f64,
     many: Mark,
@@ -47,16 +47,27 @@ pub struct Pace {
     ahead: f64,
 }
 
-impl Pace {
+impl StallDetector {
     pub fn new(start: f64, end: f64) -> Self {
         let mark = Mark { t: start, count: 0 };
         let (stretches, first, last) = (0, 0.0, 0.0);
-        Pace { start, end, many: mark, stretch: mark, long: mark, slow: mark, stretches, first, last, ahead: 0.0 }
+        StallDetector {
+            start,
+            end,
+            many: mark,
+            stretch: mark,
+            long: mark,
+            slow: mark,
+            stretches,
+            first,
+            last,
+            ahead: 0.0,
+        }
     }
 
     /// Of a run that goes on to `end`.
     pub(crate) fn on_to(self, end: f64) -> Self {
-        Pace { end, ..self }
+        StallDetector { end, ..self }
     }
 
     /// If the rest needs more than `patience` attempts: that number, and the time that the last window moved.

@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::thread;
 use std::time::{Duration, Instant};
 
-use program::turns::{Turn, at_the_desk, job, shared, take};
+use program::priority_queue::{Turn, at_the_desk, job, shared, take};
 
 const THREADS: usize = 3;
 /// Time limit for the pieces to reach that number.

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, Error, Result, ensure};
 use tempfile::NamedTempFile;
 
-use crate::{Lines, plain, print};
+use crate::{ResumableFile, plain, print};
 
 /// Names of the files that deltaq wrote to a folder that is not its own, one in a line.
 pub(crate) const LIST: &str = ".deltaq";
@@ -56,7 +56,7 @@ pub fn may_replace(path: &Path) -> Result<()> {
 
 /// Where the pieces of an answer go. What is not closed leaves nothing behind, but a part that a later call
 /// goes on with.
-pub enum Sink {
+pub enum AtomicWriter {
     /// Standard output.
     Terminal,
     /// A file beside its place, and its place.
@@ -74,29 +74,29 @@ pub fn file(out: Option<&Path>) -> Option<&Path> {
 /// An answer in one piece: written where `out` says, and told; or to be printed.
 ///
 /// # Errors
-/// As [`Sink::whole`].
+/// As [`AtomicWriter::whole`].
 pub fn keep(out: Option<&Path>, text: String, told: impl FnOnce(&str) -> String) -> Result<String> {
     let Some(path) = file(out) else { return Ok(text) };
-    let mut sink = Sink::whole(path)?;
+    let mut sink = AtomicWriter::whole(path)?;
     sink.write(&text)?;
     sink.close()?;
     Ok(told(&path.display().to_string()))
 }
 
-impl Sink {
+impl AtomicWriter {
     /// To a file that is written in this call, or to a device.
     ///
     /// # Errors
     /// [`may_replace`]; whatever the file system says, with the path.
-    pub fn whole(path: &Path) -> Result<Sink> {
+    pub fn whole(path: &Path) -> Result<AtomicWriter> {
         may_replace(path)?;
-        Sink::over(path)
+        AtomicWriter::over(path)
     }
 
     /// The same, whatever is there.
-    pub(crate) fn over(path: &Path) -> Result<Sink> {
+    pub(crate) fn over(path: &Path) -> Result<AtomicWriter> {
         let beside = |folder| NamedTempFile::new_in(folder).with_context(|| cannot_write(path));
-        place(path)?.or_else(|folder| Ok(Sink::Whole(beside(folder)?, path.into())))
+        place(path)?.or_else(|folder| Ok(AtomicWriter::Whole(beside(folder)?, path.into())))
     }
 
     /// To standard output or, with a name, to a file, behind the head of the answer; `false` where nobody
@@ -105,16 +105,16 @@ impl Sink {
     /// the file begins anew.
     ///
     /// # Errors
-    /// As [`Sink::whole`]; and where what is left is of another call.
+    /// As [`AtomicWriter::whole`]; and where what is left is of another call.
     pub fn open(
         out: Option<&Path>,
         head: &str,
         what: &str,
-        resume: Option<impl FnOnce(&mut Lines, &dyn Fn(bool) -> Result<()>) -> Result<()>>,
-    ) -> Result<(Sink, bool)> {
-        let begun = |mut sink: Sink| sink.write(head).map(|reads_on| (sink, reads_on));
-        let Some(path) = file(out) else { return begun(Sink::Terminal) };
-        let Some(resume) = resume else { return begun(Sink::whole(path)?) };
+        resume: Option<impl FnOnce(&mut ResumableFile, &dyn Fn(bool) -> Result<()>) -> Result<()>>,
+    ) -> Result<(AtomicWriter, bool)> {
+        let begun = |mut sink: AtomicWriter| sink.write(head).map(|reads_on| (sink, reads_on));
+        let Some(path) = file(out) else { return begun(AtomicWriter::Terminal) };
+        let Some(resume) = resume else { return begun(AtomicWriter::whole(path)?) };
         may_replace(path)?;
         let folder = match place(path)? {
             Ok(device) => return begun(device),
@@ -133,10 +133,10 @@ impl Sink {
             let told = part.display();
             Error::msg(format!("{told} is of another {what}, or of another version: remove it, or take another --out"))
         };
-        let mut lines = Lines::open(&part, head, foreign)?;
+        let mut lines = ResumableFile::open(&part, head, foreign)?;
         resume(&mut lines, &|ours| if ours { Ok(()) } else { Err(foreign("")) })?;
         let file = lines.go_on()?;
-        Ok((Sink::Part(file, part, path.into()), true))
+        Ok((AtomicWriter::Part(file, part, path.into()), true))
     }
 
     /// Writes a piece, as [`plain`] has it; `false` where nobody reads on.
@@ -146,9 +146,9 @@ impl Sink {
     pub fn write(&mut self, text: &str) -> Result<bool> {
         let text = plain(text);
         let (written, path) = match self {
-            Sink::Terminal => return print(&text),
-            Sink::Whole(file, path) => (file.write_all(text.as_bytes()), path),
-            Sink::Part(file, path, _) => (file.write_all(text.as_bytes()), path),
+            AtomicWriter::Terminal => return print(&text),
+            AtomicWriter::Whole(file, path) => (file.write_all(text.as_bytes()), path),
+            AtomicWriter::Part(file, path, _) => (file.write_all(text.as_bytes()), path),
         };
         written.with_context(|| cannot_write(path)).map(|()| true)
     }
@@ -159,12 +159,12 @@ impl Sink {
     /// Whatever the file system says, with the path.
     pub fn close(self) -> Result<Option<PathBuf>> {
         let (moved, path) = match self {
-            Sink::Terminal => return Ok(None),
-            Sink::Whole(temporary, path) => {
+            AtomicWriter::Terminal => return Ok(None),
+            AtomicWriter::Whole(temporary, path) => {
                 make_readable(temporary.as_file())?;
                 (temporary.persist(&path).map(drop).map_err(|error| error.error), path)
             }
-            Sink::Part(_, part, path) => (if part == path { Ok(()) } else { fs::rename(&part, &path) }, path),
+            AtomicWriter::Part(_, part, path) => (if part == path { Ok(()) } else { fs::rename(&part, &path) }, path),
         };
         moved.with_context(|| format!("cannot replace {}", path.display())).map(|()| Some(path))
     }
@@ -176,11 +176,11 @@ fn cannot_write(path: &Path) -> String {
 
 /// What is not a regular file, to be written to as it is; or the folder of a file, which is there from now
 /// on.
-fn place(path: &Path) -> Result<Result<Sink, &Path>> {
+fn place(path: &Path) -> Result<Result<AtomicWriter, &Path>> {
     ensure!(path.file_name().is_some(), "--out {} names no file", path.display());
     if fs::metadata(path).is_ok_and(|there| !there.is_file()) {
         let file = OpenOptions::new().write(true).open(path).with_context(|| cannot_write(path))?;
-        return Ok(Ok(Sink::Part(file, path.into(), path.into())));
+        return Ok(Ok(AtomicWriter::Part(file, path.into(), path.into())));
     }
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
     fs::create_dir_all(folder).with_context(|| format!("cannot create {}", folder.display()))?;

@@ -7,7 +7,7 @@ use crate::direction::Direction;
 use crate::{Prepared, SingleRun, SolveError};
 
 /// A motion with its derivatives along directions, eight to a run.
-pub struct Carried<'a> {
+pub struct VariationalRun<'a> {
     runs: Vec<(Tangents, SingleRun)>,
     along: &'a [Direction],
     states: usize,
@@ -35,7 +35,7 @@ pub enum Which {
     Looser,
 }
 
-impl<'a> Carried<'a> {
+impl<'a> VariationalRun<'a> {
     /// Whether a method carries derivatives.
     pub fn is_by(method: Method) -> bool {
         matches!(method, Method::Taylor | Method::Dop853)
@@ -43,7 +43,7 @@ impl<'a> Carried<'a> {
 
     /// Refuses the other methods.
     pub(crate) fn check(method: Method) -> Result<(), SolveError> {
-        if Carried::is_by(method) {
+        if VariationalRun::is_by(method) {
             return Ok(());
         }
         let reason = format!("derivatives are carried by taylor and dop853, not by {}", method.name());
@@ -59,11 +59,11 @@ impl<'a> Carried<'a> {
         options: &Options,
         which: Which,
     ) -> Result<Self, SolveError> {
-        let carried = Carried::by(prepared, along, end, options, which)?;
+        let carried = VariationalRun::by(prepared, along, end, options, which)?;
         let rough = |status: &Status| matches!(status, Status::Stopped { cause: StopCause::NotSmooth { .. }, .. });
         if options.method == Method::Taylor && carried.runs.iter().any(|(_, run)| rough(&run.solution.status)) {
             let options = Options { method: Method::Dop853, ..options.clone() };
-            return Carried::by(prepared, along, end, &options, which);
+            return VariationalRun::by(prepared, along, end, &options, which);
         }
         Ok(carried)
     }
@@ -87,7 +87,7 @@ impl<'a> Carried<'a> {
             let run = prepared.integrate_with(&mut tangents, &starts, end, options, which == Which::Looser)?;
             runs.push((tangents, run));
         }
-        Ok(Carried { runs, along, states: prepared.start.len(), method: options.method })
+        Ok(VariationalRun { runs, along, states: prepared.start.len(), method: options.method })
     }
 
     /// How the run ended; of several, the first that stopped.

@@ -1,11 +1,11 @@
 //! Which runs are found to stall.
 
-use integrate::pace::Pace;
+use integrate::stall_detector::StallDetector;
 
 /// Number of steps after which a run is found to stall, within a million; `step(n, t)` is the length of
 /// step n.
 fn creeps(end: f64, step: impl Fn(f64, f64) -> f64) -> Option<usize> {
-    let (mut pace, mut t) = (Pace::new(0.0, end), 0.0);
+    let (mut pace, mut t) = (StallDetector::new(0.0, end), 0.0);
     (1..1_000_000).find(|&n| {
         t += step(n as f64, t);
         // one attempt in four is rejected

@@ -10,7 +10,7 @@ use crate::{DoubleDouble, Question, Reference, Wide};
 
 /// Where a motion is at some times, without how that was found: what errors are taken against.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Kept {
+pub struct CachedReference {
     /// Largest of [`Reference::errors`].
     pub error: f64,
     places: Vec<Place>,
@@ -23,18 +23,18 @@ struct Place {
     metric: Vec<f64>,
 }
 
-impl From<&Reference> for Kept {
-    fn from(found: &Reference) -> Kept {
+impl From<&Reference> for CachedReference {
+    fn from(found: &Reference) -> CachedReference {
         let places = found.points.iter().zip(&found.metric);
         let place = |(point, metric): (&crate::Point<DoubleDouble>, &Vec<f64>)| Place {
             coordinates: point.coordinates.clone(),
             metric: metric.clone(),
         };
-        Kept { error: found.error(), places: places.map(place).collect() }
+        CachedReference { error: found.error(), places: places.map(place).collect() }
     }
 }
 
-impl Kept {
+impl CachedReference {
     /// Number of times.
     pub fn times(&self) -> usize {
         self.places.len()
@@ -61,7 +61,7 @@ impl Kept {
     ///
     /// # Panics
     /// If they have other times or coordinates.
-    pub fn gap(&self, other: &Kept) -> f64 {
+    pub fn gap(&self, other: &CachedReference) -> f64 {
         assert_eq!(self.times(), other.times(), "times");
         let apart = |(here, there): (&Place, &Place)| {
             assert_eq!(here.coordinates.len(), there.coordinates.len(), "coordinates");
@@ -73,7 +73,7 @@ impl Kept {
     }
 
     /// A line with the error, and one for each time: both parts of each coordinate, then the metric. All
-    /// digits: [`Kept::read`] has the same numbers.
+    /// digits: [`CachedReference::read`] has the same numbers.
     pub fn text(&self) -> String {
         let mut text = format!("{:?}\n", self.error);
         for Place { coordinates, metric } in &self.places {
@@ -84,8 +84,8 @@ impl Kept {
         text
     }
 
-    /// What [`Kept::text`] wrote of a motion of `dimension` coordinates; `None` if it did not.
-    pub fn read(text: &str, dimension: usize) -> Option<Kept> {
+    /// What [`CachedReference::text`] wrote of a motion of `dimension` coordinates; `None` if it did not.
+    pub fn read(text: &str, dimension: usize) -> Option<CachedReference> {
         let mut lines = text.lines();
         let error = lines.next()?.parse().ok()?;
         let place = |line: &str| {
@@ -96,7 +96,7 @@ impl Kept {
                 metric: metric.to_vec(),
             })
         };
-        Some(Kept { error, places: lines.map(place).collect::<Option<_>>()? })
+        Some(CachedReference { error, places: lines.map(place).collect::<Option<_>>()? })
     }
 }
 

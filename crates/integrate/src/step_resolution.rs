@@ -25,7 +25,7 @@ const BLUR: f64 = 16.0 * f64::EPSILON;
 const HUGE: f64 = 1e100;
 
 /// Arguments of gauges, at the time reached and along the step.
-pub(crate) struct SteepWatch {
+pub(crate) struct StepResolution {
     gauges: Vec<Gauge>,
     along: [Vec<f64>; GAUGE_NODES],
     state: Vec<f64>,
@@ -34,7 +34,7 @@ pub(crate) struct SteepWatch {
     most: Vec<f64>,
 }
 
-impl SteepWatch {
+impl StepResolution {
     pub(crate) fn new(system: &System, t: f64, y: &[f64]) -> Result<Self, Failure> {
         let gauges = system.gauges();
         let mut along = std::array::from_fn(|_| vec![0.0; gauges.len()]);
@@ -42,7 +42,7 @@ impl SteepWatch {
             system.gauged(t, y, &mut along[0])?;
         }
         let (terms, most) = (vec![0.0; gauges.len()], vec![0.0; gauges.len()]);
-        Ok(SteepWatch { gauges, along, state: vec![0.0; y.len()], terms, most })
+        Ok(StepResolution { gauges, along, state: vec![0.0; y.len()], terms, most })
     }
 
     pub(crate) fn is_on(&self) -> bool {
