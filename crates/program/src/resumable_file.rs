@@ -7,7 +7,8 @@ use std::path::Path;
 
 use anyhow::{Context, Error, Result, ensure};
 
-/// The file of an earlier, interrupted run, read line by line. It is not changed before [`ResumableFile::go_on`].
+/// The file of an earlier, interrupted run, read line by line. Nothing changes it before
+/// [`ResumableFile::go_on`].
 pub struct ResumableFile {
     reader: BufReader<File>,
     told: String,
