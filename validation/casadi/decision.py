@@ -69,6 +69,16 @@ class Series:
             c.append(sum(j * self.c[j] * c[k - j] for j in range(1, k + 1)) / k)
         return self.chain(c, c)
 
+    def integrated(self, first, slope):
+        """y(x) with y = `first` at the start and dy/dx = `slope`, a series."""
+        c = [first]
+        for k in range(1, len(self.c)):
+            c.append(sum(j * self.c[j] * slope.c[k - j] for j in range(1, k + 1)) / k)
+        return self.chain(c, slope.c)
+
+    def log(self):
+        return self.integrated(self.c[0].ln(), self.inverse())
+
     __radd__, __rmul__ = __add__, __mul__
     __neg__, __sub__, __rsub__ = lambda self: self * -1, lambda self, x: self + -x, lambda self, x: -self + x
     __truediv__ = lambda self, x: self * (x.inverse() if isinstance(x, Series) else 1 / x)
@@ -111,15 +121,35 @@ class Algebra:
     def exp(self, x):
         return x.exp()
 
+    def log(self, x):
+        return x.log() if isinstance(x, Series) else x.ln()
+
+    def sinh(self, x):
+        return (self.exp(x) - self.exp(-x)) / 2
+
     def tanh(self, x):
         twice = self.exp(2 * x)
         return (twice - 1) / (twice + 1)
 
+    def asin(self, x):
+        return self.inverse_function("asin", x, lambda x: 1 / self.sqrt(1 - x * x))
+
+    def acosh(self, x):
+        return self.inverse_function("acosh", x, lambda x: 1 / self.sqrt(x * x - 1))
+
+    def atan2(self, y, x):
+        if (x.c[0] if isinstance(x, Series) else x) <= 0:
+            raise ValueError("atan2 beyond a quarter turn")
+        return self.inverse_function("atan", y / x, lambda z: 1 / (1 + z * z))
+
+    def inverse_function(self, name, x, slope):
+        return x.integrated(at(name, x.c[0]), slope(x)) if isinstance(x, Series) else at(name, x)
+
     def power(self, x, n):
-        if not isinstance(x, Series):
+        if not isinstance(x, Series) and not isinstance(n, Series):
             return x**n
-        if n != int(n):
-            raise ValueError(f"a series to the power {n}")
+        if isinstance(n, Series) or n != int(n):
+            return self.exp(n * self.log(x))
         return math.prod([x if n > 0 else 1 / x] * abs(int(n)), start=1)
 
 

@@ -59,7 +59,7 @@ fn the_referee_agrees_where_forces_act_in_every_formulation() {
 fn a_force_that_does_no_virtual_work_is_found() {
     let (name, text) = forced().swap_remove(0);
     let scene = Scene::parse(&name, &text).expect("a scene");
-    let mut question = Question::new(&scene, &text, FEW).expect("questions");
+    let mut question = Question::new(&scene, &scene.without_bodies(&text), FEW).expect("questions");
     let forgotten = |equations: &mut equations::Equations| {
         for (residual, &force) in equations.blocks[0].residuals.iter_mut().zip(&scene.system.forces) {
             *residual = equations.graph.add(*residual, force);
@@ -77,7 +77,7 @@ fn a_wrong_sign_is_found() {
     let scene = Scene::parse(name, text).expect("a scene");
     let mut questions = Vec::new();
     for flip in [true, false] {
-        let mut question = Question::new(&scene, text, FEW).expect("questions");
+        let mut question = Question::new(&scene, &scene.without_bodies(text), FEW).expect("questions");
         let change = |equations: &mut equations::Equations| {
             let g = &equations.graph;
             for (residual, q) in equations.blocks[0].residuals.iter_mut().zip(scene.system.positions()) {

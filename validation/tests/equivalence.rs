@@ -18,8 +18,9 @@ fn every_start_is_what_the_page_says_and_the_headline_counts_its_tables() {
     let begins = format!("For {none} of {} classic systems and variants no initial multipliers", systems.len());
     assert!(headline.starts_with(&begins), "{begins}: {headline}");
     assert_eq!(none + one + more + every + count("open"), systems.len());
-    let some =
-        format!("for {one} one $\\mu_0$ does, for {more} a set of dimension 1 or more, for {every} every $\\mu_0$");
+    let some = format!(
+        "For {one} systems one $\\mu_0$ does, for {more} a set of dimension 1 or more, for {every} every $\\mu_0$"
+    );
     assert!(headline.contains(&some) && headline.contains(&format!(" {starts} starts on ")), "{headline}");
 }
 

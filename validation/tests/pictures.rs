@@ -16,7 +16,7 @@ fn picture(scene: &str, kind: &str) -> Option<String> {
 #[test]
 fn the_decided_member_of_the_family_lies_on_chetaevs_path() {
     let svg = picture("heisenberg", "path").expect("a path");
-    for words in ["a dot every 1 s", "vakonomic, μ₀ from 0.8 to -0.4", "vakonomic, μ₀ = 0 is Chetaev's"] {
+    for words in ["a dot every 1 s", "vakonomic, μ₀ from 0.8 to -0.4", "vakonomic, equal to Chetaev's: μ₀ = 0"] {
         assert!(svg.contains(words), "{words}");
     }
     // the second of its width is the curve, the first one its entry in the legend

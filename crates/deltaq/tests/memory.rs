@@ -63,7 +63,7 @@ fn a_million_rows_are_answered_or_refused_in_two_gigabytes() {
         "{stderr}"
     );
     let (code, _, stderr) = limited("fit sledge motion.csv --free x,y --sigma 1e-3");
-    let said = format!("the films have {} numbers, and at most 300000 are fitted", 6 * rows);
+    let said = format!("the films have {} numbers; deltaq fits at most 300000", 6 * rows);
     assert!(code == Some(2) && stderr.contains(&said), "{stderr}");
     let ensemble = "ensemble sledge -f chetaev --quiet --set duration=0.01 --times 0:0.01:1000 --vary g=1:2:";
     let (code, written, stderr) = limited(&format!("{ensemble}{members} > members.csv"));

@@ -40,14 +40,16 @@ fn a_bicycle_that_falls_flat_stops_soon_and_in_its_own_names() {
     }
 }
 
-/// As the vakonomic motion: until its error is as large as it is.
+/// Wheels on the ground are a constraint on positions: the pitch of a steered start follows from it.
 #[test]
-fn a_removal_by_coordinates_goes_on_where_the_front_wheel_is_flat() {
+fn a_removal_by_coordinates_stops_where_the_front_wheel_is_flat() {
     let removed = ["--times", "0", "-f", "removed-constraint", "--removal", "coordinates"];
     let by = [&["solve"], &BICYCLE[..], &removed].concat();
     for steered in [vec![], vec!["--set", "lean=0.05", "--set", "steer=0.1"]] {
         let value = json(&[&by[..], &steered].concat(), 3);
-        assert_eq!((&value["status"], &value["end"]), (&"untrusted".into(), &20.0.into()));
+        let cause = value["cause"].as_str().expect("a cause");
+        assert!(cause.contains("the rank of ∂f/∂v falls there") && value["end"].as_f64().is_some_and(|t| t > 2.0));
+        has_names(cause);
         assert_eq!(value["charts"].as_array().map(Vec::len), Some(1));
         assert!(value["work"]["steps"].as_u64().is_some_and(|steps| steps < SOON));
     }

@@ -19,7 +19,8 @@ const SIGMA: f64 = 0.5e-3;
 /// The built-in table as in a laboratory: a ball of 2 cm whose centre runs on a circle of [`RADIUS`].
 pub fn laboratory() -> Scene {
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../scene/scenes/turntable.toml");
-    let forces = "forces = { x = \"m*tilt_x - drag*m*x'\", y = \"m*tilt_y - drag*m*y'\" }\n\n[start.velocities]";
+    let forces =
+        "[system]\nforces = { x = \"m*tilt_x - drag*m*x'\", y = \"m*tilt_y - drag*m*y'\" }\n\n[start.velocities]";
     let text = std::fs::read_to_string(path).unwrap();
     let text = text.replace("[coordinates]", "drag = 0\ntilt_x = 0\ntilt_y = 0\nepsilon = 0\n[coordinates]");
     let text = text.replace("[start.velocities]", forces);

@@ -84,9 +84,9 @@ pub use removal_error::RemovalError;
 pub use shape::{Kind, Place, Shape};
 pub use singular_values::SingularValues;
 pub use start::{
-    Completion, Quantity, Recombination, RemovalProgram, RemovalStart, StartData, StartError, StartNumbers,
-    StartProgram, StartShape, check_reactions, check_regularity, complete_removal_start, complete_start,
-    configurations, project_velocity,
+    Completion, Configurations, Quantity, Recombination, RemovalProgram, RemovalStart, StartData, StartError,
+    StartNumbers, StartProgram, StartShape, check_reactions, check_regularity, complete_removal_start, complete_start,
+    project_velocity,
 };
 pub use system::{Constancy, Coordinate, Parameter, State, System, Watched, fresh_symbol};
 pub use view::{Body, Pose, Poses, Touch, View};

@@ -15,7 +15,7 @@ mod removal_start;
 mod velocities;
 
 pub use complete::{StartProgram, complete_start};
-pub use configurations::configurations;
+pub use configurations::Configurations;
 pub use data::{Completion, StartData, StartNumbers, StartShape};
 pub use error::{Quantity, StartError};
 pub use project::project_velocity;

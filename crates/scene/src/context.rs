@@ -23,6 +23,8 @@ pub(super) struct Context<'a> {
     /// `q₀`, and the same as written.
     pub(super) positions: Vec<f64>,
     pub(super) written: Vec<(Symbol, Expr)>,
+    /// Places of the coordinates that constraints on positions supplied.
+    pub(super) configured: Vec<usize>,
     /// `t₀`.
     pub(super) time: f64,
     /// Where each constraint stands.

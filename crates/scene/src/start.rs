@@ -66,23 +66,30 @@ pub(super) fn complete(context: &Context, removals: &[Removal]) -> Result<(State
         .unwrap_or(place);
         context.source.error(&place, SceneErrorKind::Start(error))
     });
-    completed.map(|(state, completion)| (state, Completion { written, guessed, ..completion }))
+    completed.map(|(state, completion)| {
+        (state, Completion { written, guessed, configured: context.configured.clone(), ..completion })
+    })
 }
 
 /// Constraints on positions must hold at the start, within `1e-9` of the size of the coordinates.
 pub(super) fn check_positions(context: &Context) -> Result<(), SceneError> {
     let values = context.values_at_rest();
-    let size = context.positions.iter().fold(1.0_f64, |size, x| size.max(x.abs()));
     for (number, place, g) in &context.on_positions {
-        let residual = context.system.graph.evaluate(*g, &values).unwrap_or(f64::NAN).abs();
-        let limit = 1e-9 * size;
-        // NaN is off, too
-        if !matches!(residual.partial_cmp(&limit), Some(Ordering::Less | Ordering::Equal)) {
-            let kind = SceneErrorKind::OffPosition { number: *number, residual, limit };
-            context.source.note::<()>(Err(context.source.error(place, kind)));
-        }
+        let residual = context.system.graph.evaluate(*g, &values).unwrap_or(f64::NAN);
+        let on = on_position(*number, residual, &context.positions);
+        context.source.note(on.map_err(|kind| context.source.error(place, kind)));
     }
     context.source.no_fault()
+}
+
+/// Whether positions are on the constraint of this number.
+pub(super) fn on_position(number: usize, residual: f64, positions: &[f64]) -> Result<(), SceneErrorKind> {
+    let limit = 1e-9 * positions.iter().fold(1.0_f64, |size, x| size.max(x.abs()));
+    match residual.abs().partial_cmp(&limit) {
+        Some(Ordering::Less | Ordering::Equal) => Ok(()),
+        // NaN is off, too
+        _ => Err(SceneErrorKind::OffPosition { number, residual: residual.abs(), limit }),
+    }
 }
 
 /// Velocities of the coordinates, and rates of the first removal's own parameters.

@@ -1,10 +1,10 @@
 //! Starts of a scene with other numbers: its own expressions, compiled once.
 
-use mechanics::{Completion, StartError, StartNumbers, StartProgram, StartShape, State, System};
+use mechanics::{Completion, Configurations, StartError, StartNumbers, StartProgram, StartShape, State, System};
 use symbolic::{Evaluator, Expr, Symbol};
 
 use super::section::suggestion;
-use super::start::rate_names;
+use super::start::{on_position, rate_names};
 use crate::{Scene, SceneError, SceneErrorKind};
 
 /// Starts of a scene with some numbers replaced.
@@ -35,6 +35,10 @@ pub struct Starts {
     /// Parameters that vary, and where their values are in a row.
     parameters: Vec<(Symbol, usize)>,
     positions: Vec<Quantity>,
+    /// Constraints on positions, by their numbers.
+    on_positions: Vec<(usize, Evaluator<f64>)>,
+    /// Coordinates that they supply.
+    configured: Option<Configurations>,
     given: Vec<Quantity>,
     guess: Vec<Quantity>,
     /// The scene's multipliers, and which of them a row has, and where.
@@ -101,7 +105,7 @@ impl Starts {
         let general = System { parameters: fixed, ..system.clone() };
         scene.removals.iter().try_for_each(|r| r.verify(&general).map(|_| ())).map_err(SceneErrorKind::Removal)?;
 
-        let Completion { written, guessed, equations, projected, .. } = &scene.completion;
+        let Completion { written, guessed, equations, projected, configured, .. } = &scene.completion;
         let inputs = [&varied[..], &[system.time], &system.positions()].concat();
         let compiled = |(s, e): (Symbol, Expr)| -> Result<Quantity, StartError> {
             let source = match place(s) {
@@ -119,13 +123,23 @@ impl Starts {
         };
         let all = [numbers(system.positions(), &scene.start.q), numbers(system.velocities(), &scene.start.v)].concat();
         let written = if written.is_empty() { &all } else { written };
-        let (positions, mut given): (Vec<_>, Vec<_>) =
-            written.iter().copied().partition(|(s, _)| system.positions().contains(s));
+        let coordinate = |s: Symbol| system.positions().iter().position(|q| *q == s);
+        let (mut positions, mut given): (Vec<_>, Vec<_>) =
+            written.iter().copied().partition(|(s, _)| coordinate(*s).is_some());
+        // a coordinate that constraints supply was written last
+        positions.sort_by_key(|(s, _)| coordinate(*s));
         for (_, s) in rates.into_iter().filter(|(_, s)| place(*s).is_some()) {
             given.retain(|(known, _)| *known != s);
             given.push((s, g.zero()));
         }
         let (positions, given, guess) = (compile(positions)?, compile(given)?, compile(guessed.clone())?);
+        // what is given is not supplied
+        let free: Vec<usize> = configured.iter().copied().filter(|&i| place(system.positions()[i]).is_none()).collect();
+        let configured = (!free.is_empty()).then(|| Configurations::new(system, &varied, &free)).transpose();
+        let configured = configured.map_err(|fault| SceneErrorKind::Start(fault.into()))?;
+        let numbers_of = system.constraint_numbers();
+        let constraint = |&(row, g): &(usize, Expr)| Ok((numbers_of[row], system.evaluator(&inputs, &[g])?));
+        let on_positions: Result<Vec<_>, StartError> = system.on_positions.iter().map(constraint).collect();
         let symbols = |list: &[Quantity]| list.iter().map(|quantity| quantity.symbol).collect::<Vec<_>>();
         let shape = StartShape {
             given: &symbols(&given),
@@ -143,6 +157,8 @@ impl Starts {
             multipliers: scene.multipliers.clone(),
             parameters,
             positions,
+            on_positions: on_positions.map_err(SceneErrorKind::Start)?,
+            configured,
             given,
             guess,
             varied_multipliers,
@@ -174,6 +190,13 @@ impl Starts {
             let x = quantity.value(row, values)?;
             values[first + 1 + i] = x;
             numbers.positions.push(x);
+        }
+        if let Some(configured) = &mut self.configured {
+            configured.supply(&values[..=first], &mut numbers.positions);
+            values[first + 1..].copy_from_slice(&numbers.positions);
+        }
+        for (number, constraint) in &mut self.on_positions {
+            on_position(*number, constraint.evaluate(values)[0], &numbers.positions)?;
         }
         for (list, into) in [(&mut self.given, &mut numbers.given), (&mut self.guess, &mut numbers.guess)] {
             into.clear();

@@ -14,7 +14,7 @@ use super::order::in_order;
 use super::overrides::Overrides;
 use super::section::{Entry, Section, Source, Value};
 use crate::{NameFault, SceneError, SceneErrorKind, format};
-use mechanics::{Constancy, Parameter, System, Watched};
+use mechanics::{Configurations, Constancy, Parameter, System, Watched};
 
 /// Reads everything that makes the system, and the positions at the start.
 pub(super) fn build<'a>(
@@ -56,6 +56,7 @@ pub(super) fn build<'a>(
         system,
         positions: Vec::new(),
         written: Vec::new(),
+        configured: Vec::new(),
         time: 0.0,
         places: Vec::new(),
         on_positions: Vec::new(),
@@ -356,8 +357,9 @@ fn supply_positions(
     guesses: &[(usize, f64)],
 ) -> Result<(), SceneError> {
     guesses.iter().for_each(|&(i, x)| context.positions[i] = x);
-    let found = mechanics::configurations(&context.system, context.time, &context.positions, places);
-    let found = found.map_err(|error| entry.error(SceneErrorKind::Start(error.into())))?;
+    let configurations = Configurations::new(&context.system, &[], places);
+    let configurations = configurations.map_err(|error| entry.error(SceneErrorKind::Start(error.into())));
+    let found = configurations?.all(context.time, &context.positions);
     let chosen = match &found[..] {
         [one] => one,
         [nearest, ..] if !guesses.is_empty() => nearest,
@@ -370,5 +372,6 @@ fn supply_positions(
         context.positions[i] = x;
         context.written.push((context.system.positions()[i], context.system.graph.number(x)));
     }
+    context.configured = places.to_vec();
     Ok(())
 }

@@ -64,6 +64,8 @@ pub struct Completion {
     pub given: Vec<String>,
     /// Names of the velocities that constraints and start equations supplied.
     pub supplied: Vec<String>,
+    /// Places of the coordinates that constraints on positions supplied.
+    pub configured: Vec<usize>,
     /// [`StartData::equations`].
     pub equations: Vec<Expr>,
     /// Largest residual of a constraint or start equation, relative to the size of its terms.
