@@ -80,6 +80,8 @@ pub(super) struct Found {
     pub(super) says: Vec<String>,
     /// Constraints that say the same as others.
     pub(super) left_out: Vec<String>,
+    /// Coordinates that constraints on positions supply.
+    pub(super) starts: Vec<(String, f64)>,
 }
 
 /// The text of the scene without its bodies: `table` is that of [`with`].
@@ -97,6 +99,13 @@ pub(super) fn written(table: &DeTable, found: &Found) -> String {
         for (coordinate, force) in &found.forces {
             set(section(system, "forces"), coordinate, text(force, &(0..0)));
         }
+    }
+    // rows are rates, which supply no coordinate
+    for (coordinate, start) in &found.starts {
+        let Some(coordinates) = section(&mut table, "coordinates") else { continue };
+        let Some(section) = section(coordinates, coordinate) else { continue };
+        section.remove("guess");
+        set(Some(section), "start", text(&format!("{start:?}"), &(0..0)));
     }
     let mut out = String::new();
     print(&table, "", &mut out);

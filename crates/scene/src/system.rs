@@ -371,6 +371,7 @@ fn supply_positions(
     for (&i, &x) in places.iter().zip(chosen) {
         context.positions[i] = x;
         context.written.push((context.system.positions()[i], context.system.graph.number(x)));
+        context.found.starts.push((context.system.coordinates[i].name.clone(), x));
     }
     context.configured = places.to_vec();
     Ok(())

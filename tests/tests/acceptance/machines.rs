@@ -32,7 +32,8 @@ pub(crate) fn with_formulas(name: &str, by_hand: &str) -> String {
             skips = BODIES.iter().any(|section| header.starts_with(section));
         }
         if !skips && !line.starts_with("gravity") {
-            kept += &format!("{line}\n");
+            // formulas by hand have rates of what bodies constrain, and supply no coordinate
+            kept += &format!("{}\n", line.replace("guess = 0 }", "start = 0 }"));
         }
     }
     format!("{kept}{by_hand}")
