@@ -81,7 +81,7 @@ class Series:
 
     __radd__, __rmul__ = __add__, __mul__
     __neg__, __sub__, __rsub__ = lambda self: self * -1, lambda self, x: self + -x, lambda self, x: -self + x
-    __truediv__ = lambda self, x: self * (x.inverse() if isinstance(x, Series) else 1 / x)
+    __truediv__ = lambda self, x: self * (x.inverse() if isinstance(x, Series) else Decimal(1) / x)
     __rtruediv__ = lambda self, x: self.inverse() * x
 
 
