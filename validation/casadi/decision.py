@@ -127,6 +127,9 @@ class Algebra:
     def sinh(self, x):
         return (self.exp(x) - self.exp(-x)) / 2
 
+    def cosh(self, x):
+        return (self.exp(x) + self.exp(-x)) / 2
+
     def tanh(self, x):
         twice = self.exp(2 * x)
         return (twice - 1) / (twice + 1)
