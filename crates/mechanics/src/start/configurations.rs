@@ -14,8 +14,8 @@ const APART: f64 = 1e-6;
 /// Values of the coordinates `free` with which the constraints on positions hold, the others being given.
 #[derive(Clone)]
 pub struct Configurations {
-    /// Constraints on positions, then their derivatives by `free` row by row; from numbers that vary, time and
-    /// positions.
+    /// Constraints on positions, then their derivatives by `free` row by row; of numbers that vary, time and
+    /// all positions.
     program: Evaluator<f64>,
     constraints: usize,
     free: Vec<usize>,
@@ -60,8 +60,7 @@ impl Configurations {
         (root.rank == self.free.len()).then_some(root.x)
     }
 
-    /// Moves the free coordinates of `q` to the root to which Newton's method leads from them; without one they
-    /// stay.
+    /// Moves the free coordinates of `q` to the root to which Newton's method leads; without one they stay.
     pub fn supply(&mut self, before: &[f64], q: &mut [f64]) {
         let from = DVector::from_iterator(self.free.len(), self.free.iter().map(|&i| q[i]));
         if let Some(root) = self.root(before, q, from) {
