@@ -109,8 +109,9 @@ pub fn equations_of(lagrangian: &str, constraints: &[&str], coordinates: &[&str]
     );
     let mut scene = Scene::parse("coordinates", &text).map_err(|fault| SolveError::Scene(Box::new(fault)))?;
     let system = &mut scene.system;
-    system.lagrangian = system.expression(lagrangian)?;
-    system.constraints = constraints.iter().map(|f| system.expression(f)).collect::<Result<_, _>>()?;
+    let read = |text: &str| system.expression(text).map_err(|fault| SolveError::Formula(Box::new(fault)));
+    let (lagrangian, constraints) = (read(lagrangian)?, constraints.iter().map(|f| read(f)).collect::<Result<_, _>>()?);
+    (system.lagrangian, system.constraints) = (lagrangian, constraints);
     derive(&scene.system, &without_removal(CHETAEV, &scene))
 }
 

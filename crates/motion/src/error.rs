@@ -99,7 +99,7 @@ pub enum SolveError {
     Scene(Box<SceneError>),
     /// A formula cannot be read.
     #[error(transparent)]
-    Formula(#[from] ParseError),
+    Formula(Box<ParseError>),
     /// A number cannot vary in an ensemble or a sweep, or a motion cannot be a member.
     #[error("{reason}")]
     Member { reason: String },
