@@ -8,8 +8,9 @@
 //! ```
 //!
 //! which says what text of a source or test contains the number, or several numbers as they stand on the
-//! page. Not asked are whole numbers of one digit,
-//! years, numbers of statements, and formulas up to two digits.
+//! page. A linked page is a source where one of its lines has the number beside a word of the paragraph. Not
+//! asked are whole numbers of one digit, years, and formulas up to two digits. A theorem that is cited exists
+//! under this number, which is also that of the place it links to.
 
 use std::path::{Component, Path, PathBuf};
 
@@ -39,7 +40,8 @@ impl Listed<'_> {
 pub(crate) fn check(pages: &[Page], names: &[String], faults: &mut Vec<String>) -> Result<usize> {
     let list = std::fs::read_to_string(LIST).context(LIST)?;
     let listed: Vec<Listed> = list.lines().filter_map(read).collect();
-    let is_source = |name: &&String| [".rs", ".toml", ".py", "theory.md"].iter().any(|end| name.ends_with(end));
+    let is_source =
+        |name: &&String| [".rs", ".toml", ".py", "theory.md"].iter().any(|end| name.ends_with(end)) || is_written(name);
     let sources: Vec<String> =
         names.iter().filter(is_source).filter_map(|name| std::fs::read_to_string(name).ok()).collect();
     for Listed { page, numbers, text } in &listed {
@@ -72,7 +74,8 @@ fn each(page: &Page, listed: &[Listed], faults: &mut Vec<String>) -> usize {
         for number in numbers(part) {
             counted += 1;
             let is_listed = listed.iter().any(|own| own.is_of(&page.name, part, &number));
-            let known = is_listed || holds(&page.fenced, &number) || linked.iter().any(|text| holds(text, &number));
+            let known =
+                is_listed || holds(&page.fenced, &number) || linked.iter().any(|text| says(text, &number, part));
             if !known {
                 faults.push(format!("{}:{line} {number} has no source: link it, or list it in {LIST}", page.name));
             }
@@ -149,6 +152,18 @@ fn scan(text: &str, least: usize) -> Vec<String> {
         }
     }
     found
+}
+
+/// Whether a line of this text has the number and a word of the paragraph.
+fn says(text: &str, number: &str, part: &str) -> bool {
+    let own = words(&prose(part));
+    text.lines().any(|line| holds(line, number) && words(line).iter().any(|word| own.contains(word)))
+}
+
+/// Words of at least four letters, without endings of plurals.
+fn words(text: &str) -> Vec<String> {
+    let words = text.split(|c: char| !c.is_alphabetic()).filter(|word| word.len() > 3);
+    words.map(|word| word.to_lowercase().trim_end_matches('s').to_owned()).collect()
 }
 
 fn plain(number: &str) -> String {

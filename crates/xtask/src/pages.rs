@@ -8,7 +8,7 @@ const OTHERS: [&str; 5] = ["README.md", "NOTATION.md", "ARCHITECTURE.md", "CONTR
 
 pub(crate) fn is_page(name: &str) -> bool {
     let is_in_folder = name.ends_with(".md") && FOLDERS.iter().any(|folder| name.starts_with(folder));
-    OTHERS.contains(&name) || is_in_folder && !name.starts_with("docs/paper/")
+    OTHERS.contains(&name) || is_in_folder
 }
 
 /// Whether a program writes the page, so that nobody types its numbers.
@@ -17,6 +17,7 @@ pub(crate) fn is_written(name: &str) -> bool {
 }
 
 /// A page in its parts.
+#[derive(Clone)]
 pub(crate) struct Page {
     pub(crate) name: String,
     /// Paragraphs, items of lists, rows of tables, headings: their line and their Markdown.

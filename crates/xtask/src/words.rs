@@ -36,10 +36,12 @@ pub(crate) fn check() -> Result<Outcome> {
     }
     let counted = numbers::check(&pages, &names, &mut faults)?;
     let entries = references::check(&names, &mut faults)?;
+    let statements = references::statements(&pages, &names, &mut faults)?;
     if !faults.is_empty() {
         bail!("{}", faults.join("; "));
     }
-    Ok(Outcome::Passed(format!(", {} pages, {counted} numbers with their source, {entries} references", pages.len())))
+    let found = format!("{counted} numbers with their source, {entries} references, {statements} citations of theory");
+    Ok(Outcome::Passed(format!(", {} pages, {found}", pages.len())))
 }
 
 impl Page {
