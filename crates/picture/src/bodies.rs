@@ -63,8 +63,8 @@ const OBLIQUE: [f64; 2] = [0.4, 0.5];
 const STRIP: f64 = 30.0;
 const ARROW: f64 = 24.0;
 
-/// Names of paths stand at least so far apart.
-const APART: f64 = 44.0;
+/// Between a name and the path that it names, in pixels.
+const BESIDE: f64 = 10.0;
 
 const MARGIN: f64 = 16.0;
 /// Within the frame, for the widths of lines.
@@ -228,8 +228,7 @@ impl MovingPicture {
                 "<path d=\"{path}\" stroke=\"{colour}\" stroke-width=\"{}\" stroke-linecap=\"round\" stroke-dasharray=\"{dash}\"/>\n",
                 px(PATH * width)
             );
-            let at = motion.path.get(still * (motion.path.len().max(1) - 1) / (steps - 1));
-            named.extend(at.map(|&p| (motion, sheet.pixels(sheet.camera.project(p)))));
+            named.push((motion, runs.concat()));
         }
         sheet.names(&mut out, &named);
         for motion in &self.motions {
@@ -344,24 +343,35 @@ impl Sheet {
         Trace { lines, dots: Vec::new() }.path() + &circles
     }
 
-    /// Names beside the places of motions, where they do not meet.
-    fn names(&self, out: &mut String, named: &[(&Bodies, Place)]) {
-        let apart = |i: usize, j: usize| {
-            let ((ax, ay), (bx, by)) = (named[i].1, named[j].1);
-            (ax - bx).hypot(ay - by) >= APART
-        };
-        let Extent { width, height } = self.extent;
-        let seen = |(x, y): Place| (0.0..=width).contains(&x) && (0.0..=height).contains(&y);
-        if named.len() < 2 || !(0..named.len()).all(|i| (0..i).all(|j| apart(i, j)) && seen(named[i].1)) {
-            return;
-        }
-        for (motion, (x, y)) in named {
+    /// Each name beside its path, where it covers the least of all paths and names and is far from other paths.
+    fn names(&self, out: &mut String, named: &[(&Bodies, Vec<Place>)]) {
+        let Extent { width: right, height } = self.extent;
+        let mut covered: Vec<Place> = named.iter().flat_map(|(_, path)| path).copied().collect();
+        for (i, (motion, path)) in named.iter().enumerate() {
             let name = motion.label.split([';', '(']).next().unwrap_or_default().trim();
-            let (anchor, x) = if *x > 0.75 * width { ("end", x - 18.0) } else { ("start", x + 18.0) };
+            let wide = BOLD * width(name, LABEL_SIZE);
+            let beside = |(x, y): Place| {
+                let heights = [-BESIDE, LABEL_SIZE / 3.0, LABEL_SIZE + BESIDE];
+                [-wide - BESIDE, -wide / 2.0, BESIDE].map(|dx| heights.map(|dy| (x + dx, y + dy))).concat()
+            };
+            let inside = |(x, y): &Place| *x >= 0.0 && x + wide <= right && *y >= LABEL_SIZE && *y <= height;
+            let cost = |(x, y): Place| {
+                let margin = BESIDE / 2.0;
+                let under = |(px, py): &Place| {
+                    (x - margin..=x + wide + margin).contains(px) && (y - LABEL_SIZE..=y + margin).contains(py)
+                };
+                let others = named.iter().enumerate().filter(|(j, _)| *j != i).flat_map(|(_, (_, path))| path);
+                let apart = |(px, py): &Place| (px - x - wide / 2.0).hypot(py - y);
+                covered.iter().filter(|place| under(place)).count() as f64
+                    - others.map(apart).fold(WIDTH, f64::min) / WIDTH
+            };
+            let places = path.iter().step_by(path.len() / 64 + 1).flat_map(|&place| beside(place)).filter(inside);
+            let Some((x, y)) = places.min_by(|&a, &b| cost(a).total_cmp(&cost(b))) else { continue };
+            covered.extend((0..=8).map(|k| (x + wide * f64::from(k) / 8.0, y - LABEL_SIZE / 2.0)));
             *out += &format!(
-                "<text x=\"{}\" y=\"{}\" text-anchor=\"{anchor}\" font-size=\"{LABEL_SIZE}\" font-weight=\"600\" fill=\"{}\">{name}</text>\n",
+                "<text x=\"{}\" y=\"{}\" font-size=\"{LABEL_SIZE}\" font-weight=\"600\" fill=\"{}\">{name}</text>\n",
                 px(x),
-                px((y - 12.0).max(12.0)),
+                px(y),
                 motion.style.outline().0
             );
         }
