@@ -3,7 +3,7 @@
 Certificates that the program writes are altered in their bytes, numbers, names and structure. Each has to end with 0, 1 or 2 and a line,
 in 30 s and 2 GB; an exception or a line without words is a failure. What still verifies is counted."""
 
-import contextlib, io, json, pathlib, random, resource, signal, subprocess, sys, tempfile, time
+import contextlib, copy, io, json, pathlib, random, resource, signal, subprocess, sys, tempfile, time
 
 sys.path.insert(0, str(pathlib.Path(__file__).parents[1] / "proof"))
 import verify
@@ -36,7 +36,7 @@ def altered(draw, text):
         if kind < 0.15:
             del holder[key]
         elif kind < 0.35:
-            holder[key] = draw.choice(THINGS)
+            holder[key] = copy.deepcopy(draw.choice(THINGS))
         elif kind < 0.55:
             holder[key] = draw.choice(ODD)
         elif isinstance(old, int):
@@ -45,7 +45,8 @@ def altered(draw, text):
             at = draw.randrange(len(old) + 1)
             holder[key] = old[:at] + draw.choice("0123456789+-*/^().'xyt ") + old[at + draw.randrange(2) :]
         else:
-            holder[key] = draw.choice([held[k] for held, k in places(value)])
+            # a copy: a value put into itself would have no end
+            holder[key] = copy.deepcopy(draw.choice([held[k] for held, k in places(value)]))
         if not list(places(value)):
             break
     return json.dumps(value)
