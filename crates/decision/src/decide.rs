@@ -131,6 +131,12 @@ impl Decision {
         }
     }
 
+    /// Noise as a part of what a mismatch is compared with.
+    fn loudness(&self) -> f64 {
+        let reach = (1.0 + self.scaled(&self.set.point).norm_squared()).sqrt();
+        self.noise / self.sizes.scale(reach)
+    }
+
     /// Constants in their scales.
     fn scaled(&self, constants: &[f64]) -> DVector<f64> {
         DVector::from_iterator(constants.len(), constants.iter().zip(&self.columns).map(|(c, column)| c / column.scale))
@@ -244,7 +250,8 @@ fn judged(fine: &mut Transport, coarse: &mut Transport, paths: &[Path; 2]) -> Re
     // what no constants can do up to some time they cannot do at all
     let longest = |verdict: Verdict| found.iter().rposition(|decision| decision.verdict == verdict);
     let longest = longest(Verdict::NotContained).or_else(|| longest(Verdict::Contained));
-    match longest.or(found.len().checked_sub(1)) {
+    let quietest = || (0..found.len()).min_by(|&i, &j| found[i].loudness().total_cmp(&found[j].loudness()));
+    match longest.or_else(quietest) {
         Some(i) => Ok(found.swap_remove(i)),
         None => Err(own.stop.clone().or(stopped).unwrap_or(DecisionError::Curve { reason: "it has no part".into() })),
     }
@@ -300,11 +307,11 @@ fn judge(
     }
     let free: Vec<DVector<f64>> =
         (0..last).filter(|&k| svd.values[k] <= limit).map(|k| svd.right.row(k).transpose()).collect();
-    // without effect, or with one that is lost in noise?
-    let length = |c: &DVector<f64>, of: fn(&Column) -> f64| {
-        c.iter().zip(&known).map(|(c, column)| (c * of(column)).powi(2)).sum::<f64>().sqrt()
-    };
-    let loud = free.iter().any(|c| CERTAINTY * length(c, |k| k.noise) > TOO_LOUD * length(c, |k| k.size));
+    // is there one whose effect would be lost in noise? Whatever its part among quiet ones: these are orthonormal,
+    // and known to half of their digits
+    let quiet = |k: &Column| (TOO_LOUD * k.size / (CERTAINTY * k.noise)).min(f64::EPSILON.sqrt().recip());
+    let heard = DMatrix::from_fn(last, free.len(), |i, j| quiet(&known[i]) * free[j][i]);
+    let loud = SingularValues::of(&heard).values.iter().any(|part| *part < 1.0);
     // as many derivatives of the mismatch may be zero by choice: early on, the rest is smaller
     let loudest = TOO_LOUD * part.powi((last - free.len()) as i32);
     let own = |c: DVector<f64>| DVector::from_iterator(last, c.iter().zip(&known).map(|(c, k)| c * k.scale));

@@ -27,24 +27,26 @@ fn is_every(membership: &Membership) -> bool {
     membership.decision.set.dimension() == membership.decision.constants.len()
 }
 
-/// For which `μ₀` two motions are different, and for which the same, in a few words.
-pub(super) fn in_brief(comparison: &Comparison) -> (String, String) {
-    let own = "with the scene's μ₀".to_string();
-    let Some(Ok(membership)) = comparison.membership() else { return (own.clone(), own) };
+/// For which `μ₀` two motions are different, and for which the same, in a few words after a comma; none without
+/// constraints, which have no `μ₀`.
+pub(super) fn in_brief(comparison: &Comparison) -> [String; 2] {
+    let own = match comparison.scene.system.constraints.len() {
+        0 => String::new(),
+        _ => ", with the scene's μ₀".into(),
+    };
+    let Some(Ok(membership)) = comparison.membership() else { return [own.clone(), own] };
     let (some, proved) = match membership.answer() {
         Answer::NoneProved { .. } => (false, "proved"),
         Answer::None { .. } => (false, "computed, not proved"),
         Answer::SomeProved => (true, "proved"),
         Answer::Some { .. } => (true, "computed, not proved"),
-        Answer::Undecided => {
-            return (format!("{own}; whether another μ₀ makes them the same is undecided"), own);
-        }
+        Answer::Undecided => return [format!("{own}; whether another μ₀ makes them the same is undecided"), own],
     };
     let constants = constants(membership, "μ₀");
     match some {
-        false => (format!("for every μ₀ ({proved})"), own),
-        true if is_every(membership) => (own, format!("for {constants} ({proved})")),
-        true => (format!("{own}; the same with {constants} ({proved})"), own),
+        false => [format!(", for every μ₀ ({proved})"), own],
+        true if is_every(membership) => [own, format!(", for {constants} ({proved})")],
+        true => [format!("{own}; the same with {constants} ({proved})"), own],
     }
 }
 

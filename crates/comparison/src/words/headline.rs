@@ -26,17 +26,17 @@ pub fn answer(comparison: &Comparison) -> Option<String> {
     }
     let chetaev = comparison.run(CHETAEV)?;
     let pair = comparison.pair(chetaev, comparison.run(VAKONOMIC)?)?;
-    let constants = decision::in_brief(comparison);
+    let [different, same] = decision::in_brief(comparison);
     Some(match &pair.gap.verdict {
-        Verdict::Different => format!("Different: Chetaev and vakonomic, {}. {MINE}", constants.0),
+        Verdict::Different => format!("Different: Chetaev and vakonomic{different}. {MINE}"),
         Verdict::Undecided { because } if decision::proved_same(comparison) => {
-            format!("Same: Chetaev and vakonomic, {}. Not seen in numbers: {because}.", constants.1)
+            format!("Same: Chetaev and vakonomic{same}. Not seen in numbers: {because}.")
         }
-        Verdict::Undecided { .. } => format!("Undecided: Chetaev and vakonomic, {}. {MINE}", constants.1),
+        Verdict::Undecided { .. } => format!("Undecided: Chetaev and vakonomic{same}. {MINE}"),
         Verdict::Same => {
             let other = |p: &&Pair| p.gap.verdict == Verdict::Different && [p.first, p.second].contains(&chetaev);
             let rest = if rows(comparison).any(|p| other(&p)) { " Other formulations differ." } else { "" };
-            format!("Same: Chetaev and vakonomic, {}, within the error estimates.{rest}", constants.1)
+            format!("Same: Chetaev and vakonomic{same}, within the error estimates.{rest}")
         }
     })
 }
