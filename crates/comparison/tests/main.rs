@@ -11,6 +11,7 @@ mod fits;
 mod fitted;
 mod gaps;
 mod known_gaps;
+mod known_growth;
 mod known_members;
 mod known_roots;
 mod known_round_off;

@@ -226,7 +226,9 @@ fn without_motion(comparison: &Comparison) -> Vec<String> {
 fn why(comparison: &Comparison) -> Vec<String> {
     let mut sentences = vec![format!("Constraint: {}.", comparison.integrability)];
     let pair = comparison.run(CHETAEV).zip(comparison.run(VAKONOMIC)).and_then(|(a, b)| comparison.pair(a, b));
-    if let Some((predicted, measured)) = pair.and_then(|p| p.predicted.as_ref().zip(p.growth.as_ref())) {
+    let growth = pair.and_then(|p| p.predicted.as_ref().zip(p.growth.as_ref()));
+    // what is seen where another term is the larger one is not fitted to this one
+    if let Some((predicted, measured)) = growth.filter(|(predicted, measured)| measured.is_of(predicted)) {
         sentences.push(format!(
             "Predicted growth of the gap between Chetaev and vakonomic: {} t^{}; fitted: {} t^{:.2}.",
             precise(predicted.length),
