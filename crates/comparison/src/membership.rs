@@ -177,8 +177,8 @@ impl<'a> Pairing<'a> {
         };
         let theorem = if all && section.is_none() { self.theorem(&exact) } else { None };
         let unseen = refuted && decision.verdict == Verdict::Contained;
-        let least = |until| question.least_by_series(system, start, until - start.t);
-        let implied = unseen.then(|| least(decision.until.unwrap_or(end))).flatten();
+        let least = |time| question.least_by_series(system, start, time);
+        let implied = unseen.then(|| least(decision.until.unwrap_or(end - start.t))).flatten();
         Ok(Membership { decision, proof, section, implied, theorem, where_regular: self.family.may_be_singular() })
     }
 

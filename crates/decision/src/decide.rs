@@ -98,7 +98,8 @@ pub struct Decision {
     pub acceleration: f64,
     /// Names of the constants.
     pub constants: Vec<String>,
-    /// Time up to which this was decided, if not the end: later the noise is too large, or integration fails.
+    /// Time since the start up to which this was decided, if not the end: later the noise is too large, or
+    /// integration fails.
     pub until: Option<f64>,
     triangle: DMatrix<f64>,
     columns: Vec<Column>,
@@ -241,7 +242,7 @@ fn judged(fine: &mut Transport, coarse: &mut Transport, paths: &[Path; 2]) -> Re
             scaled.column_iter_mut().zip(&columns).for_each(|(mut column, known)| column *= known.scale);
             columns.iter_mut().zip(&scales).for_each(|(column, scale)| column.scale *= scale);
             let whole = panel + 1 == panels && way == (end - start).abs();
-            let until = (!whole).then_some(bounds[panel + 1]);
+            let until = (!whole).then_some(past.abs());
             found.push(judge(scaled, sizes, (until, past / (end - start)), constants.to_vec(), columns));
         }
         Ok(())

@@ -140,7 +140,7 @@ fn identity(membership: &Membership) -> String {
 
 /// Up to when the numbers were judged, where that is not the end.
 fn up_to(until: Option<f64>) -> String {
-    until.map_or(String::new(), |t| format!(" up to t = {}, after which round-off is too large", precise(t)))
+    until.map_or(String::new(), |time| format!(" up to {} s, after which round-off is too large", short(time)))
 }
 
 /// The best that a search over `μ₀` has found, where none leaves nothing: smaller gaps may exist.
