@@ -17,6 +17,7 @@ mod known_roots;
 mod known_round_off;
 mod known_stops;
 mod known_values;
+mod one_scene;
 mod sentences;
 #[path = "../../motion/tests/support.rs"]
 mod support;

@@ -16,10 +16,12 @@ pub(super) fn sentences(comparison: &Comparison) -> Vec<String> {
     sentences
 }
 
-/// Whether the vakonomic motion is proved to be Chetaev's for every `μ₀` with regular equations.
+/// Whether the vakonomic motion is proved to be Chetaev's for every `μ₀` with regular equations; without
+/// constraints there is one equation of motion.
 pub(super) fn proved_same(comparison: &Comparison) -> bool {
     let membership = comparison.membership().and_then(|found| found.as_ref().ok());
-    membership.is_some_and(|found| is_every(found) && found.answer() == Answer::SomeProved)
+    comparison.scene.system.constraints.is_empty()
+        || membership.is_some_and(|found| is_every(found) && found.answer() == Answer::SomeProved)
 }
 
 /// Whether the set that was found is that of all constants.
