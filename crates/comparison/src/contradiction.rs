@@ -251,7 +251,7 @@ impl Comparison {
             return Some(contradiction(one, format!("no constants of {family} give the motion of {curve}")));
         }
         let gap = &self.pair(decided.family, decided.curve)?.gap;
-        let every = membership.decision.set.dimension() == membership.decision.constants.len();
+        let every = membership.dimension() == membership.decision.constants.len();
         match (answer, &gap.verdict) {
             (Answer::SomeProved, Verdict::Different) if every => Some(contradiction(
                 format!("every choice of constants gives {family} the motion of {curve}"),

@@ -143,7 +143,8 @@ fn what_is_said_of_a_mismatch_and_of_constants_has_its_numbers() {
     for (set, which) in [
         (fixed, "μ₀ = (0.25000, 0)"),
         (along, "every μ₀ of a set of dimension 1 through (0.25000, 0)"),
-        (all, "every μ₀"),
+        // a rank that does not grow any more leaves no more than that
+        (all, "μ₀ of a set of dimension 1 by ranks, 2 in numbers, through (0.25000, 0)"),
     ] {
         found.decision.set = set;
         let said = sentence(found);

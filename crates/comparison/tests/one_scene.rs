@@ -70,3 +70,22 @@ fn an_estimate_that_has_grown_is_not_rest() {
     let first = answer(&pendulum).expect("an answer");
     assert_eq!(first, format!("Same: Chetaev and vakonomic. Not seen in numbers: {because}."));
 }
+
+/// A pulse of e^{-30·25/9} at w = 1/3 turns y' into a force on w for every μ₀ but 0, under all digits: ranks see it.
+#[test]
+fn a_multiplier_that_round_off_frees_is_not_free() {
+    let of = |factor: &str| {
+        let scene = format!(
+            "title = 'pulse'\n[coordinates]\ny = {{ start = 0 }}\nw = {{ start = \"1/3\" }}\ns = {{ start = 0 }}\n[system]\n\
+             lagrangian = \"(y'^2 + w'^2 + s'^2)/2\"\nconstraints = [\"{factor}*(s' - exp(-30*(w - 2)^2)*y')\"]\n\
+             [start.velocities]\n\"y'\" = 1\n\"w'\" = 0\n[run]\nduration = 1\n"
+        );
+        let pulse = compared("pulse", &scene);
+        let found = pulse.membership().expect("asked").as_ref().expect("a decision");
+        (found.dimension(), answer(&pulse).expect("an answer"))
+    };
+    for factor in ["1", "(2 + sin(y))"] {
+        let (dimension, first) = of(factor);
+        assert!(dimension == 0 && !first.contains("every μ₀"), "{factor}: {dimension}, {first}");
+    }
+}

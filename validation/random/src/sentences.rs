@@ -82,7 +82,7 @@ pub fn sentences(scene: &Scene, with_integrals: bool) -> Result<BTreeMap<String,
             "multipliers".into(),
             match found.answer() {
                 Answer::NoneProved { .. } | Answer::None { .. } => Said::Dimension(None),
-                Answer::SomeProved | Answer::Some { .. } => Said::Dimension(Some(found.decision.set.dimension())),
+                Answer::SomeProved | Answer::Some { .. } => Said::Dimension(Some(found.dimension())),
                 Answer::Undecided => Said::Open,
             },
         );

@@ -26,7 +26,7 @@ pub(super) fn proved_same(comparison: &Comparison) -> bool {
 
 /// Whether the set that was found is that of all constants.
 fn is_every(membership: &Membership) -> bool {
-    membership.decision.set.dimension() == membership.decision.constants.len()
+    membership.dimension() == membership.decision.constants.len()
 }
 
 /// For which `μ₀` two motions are different, and for which the same, in a few words after a comma; none without
@@ -132,7 +132,7 @@ fn identity(membership: &Membership) -> String {
     }
     let Some(section) = &membership.section else { return String::new() };
     let which = if section.every { String::new() } else { format!(", ({}),", section.expressions.join(", ")) };
-    let dimension = match membership.decision.set.dimension() {
+    let dimension = match membership.dimension() {
         0 => "",
         _ if section.every => "",
         _ => "; the dimension by ranks modulo two primes",
