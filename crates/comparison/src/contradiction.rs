@@ -11,6 +11,7 @@ use mechanics::{Domain, Integrability};
 use scene::Scene;
 
 use crate::fits::Fit;
+use crate::growth::LEADS;
 use crate::runs::{Decided, Pair};
 use crate::{Answer, Comparison, Growth, LeadingTerm, Membership, Run, Verdict, membership};
 use motion::band::{Answer as Asked, Known, ask};
@@ -127,10 +128,6 @@ impl Beside<'_> {
 fn contradiction(one: impl Into<String>, other: impl Into<String>) -> Contradiction {
     Contradiction { one: one.into(), other: other.into() }
 }
-
-/// The growth of a gap is compared with its prediction if it was measured within this part of the time in
-/// which the predicted term leads.
-const LEADS: f64 = 0.3;
 
 impl Membership {
     /// The decision in floating point and the proof, where they exclude each other.
@@ -254,7 +251,7 @@ impl Comparison {
             return Some(contradiction(one, format!("no constants of {family} give the motion of {curve}")));
         }
         let gap = &self.pair(decided.family, decided.curve)?.gap;
-        let every = membership.decision.set.dimension() == membership.decision.constants.len();
+        let every = membership.dimension() == membership.decision.constants.len();
         match (answer, &gap.verdict) {
             (Answer::SomeProved, Verdict::Different) if every => Some(contradiction(
                 format!("every choice of constants gives {family} the motion of {curve}"),
@@ -321,6 +318,5 @@ fn is_another(growth: &Growth, predicted: &LeadingTerm) -> bool {
     let exponent = f64::from(predicted.exponent);
     growth.exponent.round() != exponent
         && ask(growth.exponent - exponent, Some(growth.uncertainty)) == Asked::Apart
-        && predicted.from < LEADS * growth.from
-        && growth.to < LEADS * predicted.reach
+        && growth.is_of(predicted)
 }

@@ -47,7 +47,17 @@ pub struct LeadingTerm {
     pub proved: bool,
 }
 
+/// A growth is compared with its prediction if it was measured within this part of the time in which the
+/// predicted term leads.
+pub(crate) const LEADS: f64 = 0.3;
+
 impl Growth {
+    /// Whether it is that of this term, as far as one was measured where the term leads.
+    pub fn is_of(&self, predicted: &LeadingTerm) -> bool {
+        self.exponent.round() == f64::from(predicted.exponent)
+            || predicted.from < LEADS * self.from && self.to < LEADS * predicted.reach
+    }
+
     /// `|measured − predicted| / |predicted|` of leading coefficients, Euclidean over the coordinates.
     pub fn deviation_from(&self, predicted: &LeadingTerm) -> f64 {
         norm(&subtract(&self.coefficient, &predicted.coefficient)) / norm(&predicted.coefficient)

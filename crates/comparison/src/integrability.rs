@@ -3,20 +3,19 @@
 
 use decision::{ExactStart, Family, Finding, Question};
 use equations::Derivation;
-use mechanics::{Completion, Domain, Integrability, State, System};
+use mechanics::{Completion, Domain, Integrability, State, System, integrability_with};
 use scene::Scene;
+use symbolic::{Expr, Graph};
 
 use motion::SolveError;
 
-/// [`mechanics::integrability`], with [`integrals_by_ranks`] where brackets cannot tell: of what
+/// Frobenius' test ([`integrability_by_brackets`]), with [`integrals_by_ranks`] where brackets cannot tell: of what
 /// [`System::without_exact_constraints`] leaves.
 ///
 /// # Errors
 /// [`SolveError`] for dependent constraints.
 pub fn integrability(scene: &Scene) -> Result<Integrability, SolveError> {
-    // in a graph of its own: brackets are long
-    let (system, state) = (&scene.system.clone(), &scene.start);
-    let verdict = mechanics::integrability(system, state, state.t + scene.duration)?;
+    let (system, state, verdict) = (&scene.system, &scene.start, integrability_by_brackets(scene)?);
     let Integrability::Undecided { at_most, constraints, .. } = verdict else { return Ok(verdict) };
     // what ranks find on the branch of the start, a motion may leave
     if Domain::of(system).branch {
@@ -31,6 +30,22 @@ pub fn integrability(scene: &Scene) -> Result<Integrability, SolveError> {
         all if all == constraints => Integrability::Integrable { exact: false },
         integrals => Integrability::PartlyIntegrable { integrals, constraints, exact: false },
     })
+}
+
+/// [`mechanics::integrability`], with growth vectors at the start in exact numbers.
+///
+/// # Errors
+/// [`SolveError`] for dependent constraints.
+pub fn integrability_by_brackets(scene: &Scene) -> Result<Integrability, SolveError> {
+    // in a graph of its own: brackets are long
+    let (system, state) = (&scene.system.clone(), &scene.start);
+    let rank = |g: &Graph, rows: &[Vec<Expr>]| {
+        // positions that were found are rounded
+        let is_written = scene.completion.configured.is_empty();
+        let start = is_written.then(|| ExactStart::new(system, state, &scene.completion, None).ok()).flatten()?;
+        start.rank(g, rows)
+    };
+    Ok(integrability_with(system, state, state.t + scene.duration, &rank)?)
 }
 
 /// The number of integrable combinations of the constraints, and how deep brackets nest to reach all other

@@ -76,7 +76,7 @@ pub use fit::best_fit;
 pub use fits::{Fit, Fits};
 pub use gap::{Gap, GapPoint, Sampling, THRESHOLDS, Verdict, compare_motions, compare_motions_by};
 pub use growth::{Growth, LeadingTerm, growth};
-pub use integrability::{integrability, integrals_by_ranks};
+pub use integrability::{integrability, integrability_by_brackets, integrals_by_ranks};
 pub use membership::{Answer, Membership, Pairing, certificate, costates_of, membership, multipliers_of};
 pub use motion::band::SAME_ESTIMATE;
 pub use runs::{Decided, Extent, FittedMotion, Pair, Run};

@@ -65,12 +65,20 @@ impl Membership {
         self.theorem.is_some() || self.section.as_ref().is_some_and(|section| section.proved)
     }
 
-    /// The dimension of the set by ranks modulo two primes, where these grow no more.
+    /// The dimension of the set by ranks modulo two primes, where these grow no more, or leave less than numbers
+    /// tell.
     pub(crate) fn ranked(&self) -> Option<usize> {
+        let (all, in_numbers) = (self.decision.constants.len(), self.decision.set.dimension());
         match self.proof.this_start {
-            Finding::Contained { rank, .. } => Some(self.decision.constants.len() - rank),
+            Finding::Contained { rank, .. } => Some(all - rank),
+            Finding::ThroughOrder { rank, .. } => Some(all - rank).filter(|left| *left < in_numbers),
             _ => None,
         }
+    }
+
+    /// The dimension of the set: what fixes a constant may be less than round-off, and ranks see it.
+    pub fn dimension(&self) -> usize {
+        self.ranked().unwrap_or(self.decision.set.dimension())
     }
 
     /// Whether what holds on the branch of the start does not hold up to the end.
@@ -177,8 +185,8 @@ impl<'a> Pairing<'a> {
         };
         let theorem = if all && section.is_none() { self.theorem(&exact) } else { None };
         let unseen = refuted && decision.verdict == Verdict::Contained;
-        let least = |until| question.least_by_series(system, start, until - start.t);
-        let implied = unseen.then(|| least(decision.until.unwrap_or(end))).flatten();
+        let least = |time| question.least_by_series(system, start, time);
+        let implied = unseen.then(|| least(decision.until.unwrap_or(end - start.t))).flatten();
         Ok(Membership { decision, proof, section, implied, theorem, where_regular: self.family.may_be_singular() })
     }
 

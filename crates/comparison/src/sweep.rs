@@ -211,6 +211,6 @@ fn decided(point: &mut SweepPoint, membership: &Membership) {
         Answer::Some { .. } => "some",
         Answer::Undecided => "undecided",
     };
-    point.dimension = point.answer.starts_with("some").then(|| decision.set.dimension());
+    point.dimension = point.answer.starts_with("some").then(|| membership.dimension());
     point.mismatch = Some(decision.least / decision.acceleration).filter(|mismatch| mismatch.is_finite());
 }

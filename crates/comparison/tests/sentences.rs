@@ -206,3 +206,24 @@ fn every_multiplier_is_one_with_regular_equations() {
     let answer = comparison::words::answer(&crate::compared::compared("speed", text)).expect("an answer");
     assert!(answer.contains("Same: Chetaev and vakonomic, for every μ₀ with regular equations (proved)"), "{answer}");
 }
+
+#[test]
+fn a_system_without_constraints_has_no_multipliers() {
+    let scene = "title = 'free'\n[coordinates]\nx = { start = 0 }\n[system]\nlagrangian = \"x'^2/2 - x^2\"\n\
+                 [start]\nvelocities = { \"x'\" = 1 }\n[run]\nduration = 1\n";
+    let free = crate::compared::compared("free", scene);
+    let first = comparison::words::answer(&free).expect("an answer");
+    assert_eq!(first, "Same: Chetaev and vakonomic, within the error estimates.");
+}
+
+/// Far from the start a later term is the larger one: its growth is not held against the first.
+#[test]
+fn a_growth_is_fitted_where_its_term_leads() {
+    let mut sledge = crate::compared::compared("sledge", include_str!("../../scene/sledge.toml"));
+    let pair = sledge.pairs.iter_mut().find(|pair| pair.growth.is_some() && pair.predicted.is_some());
+    let pair = pair.expect("a pair");
+    let (growth, predicted) = (pair.growth.as_mut().expect("one"), pair.predicted.as_ref().expect("one"));
+    (growth.exponent, growth.to) = (growth.exponent + 1.0, 2.0 * predicted.reach);
+    assert!(!growth.is_of(predicted));
+    assert!(!Headline::of(&sledge).why.contains("fitted"), "{}", Headline::of(&sledge).why);
+}

@@ -98,7 +98,8 @@ pub struct Decision {
     pub acceleration: f64,
     /// Names of the constants.
     pub constants: Vec<String>,
-    /// Time up to which this was decided, if not the end: later the noise is too large, or integration fails.
+    /// Time since the start up to which this was decided, if not the end: later the noise is too large, or
+    /// integration fails.
     pub until: Option<f64>,
     triangle: DMatrix<f64>,
     columns: Vec<Column>,
@@ -129,6 +130,12 @@ impl Decision {
             self.sizes.noise = if self.noise > 0.0 { self.sizes.noise * (noise / self.noise) } else { noise };
             (self.noise, self.verdict) = (noise, Verdict::Undecided);
         }
+    }
+
+    /// Noise as a part of what a mismatch is compared with.
+    fn loudness(&self) -> f64 {
+        let reach = (1.0 + self.scaled(&self.set.point).norm_squared()).sqrt();
+        self.noise / self.sizes.scale(reach)
     }
 
     /// Constants in their scales.
@@ -235,7 +242,7 @@ fn judged(fine: &mut Transport, coarse: &mut Transport, paths: &[Path; 2]) -> Re
             scaled.column_iter_mut().zip(&columns).for_each(|(mut column, known)| column *= known.scale);
             columns.iter_mut().zip(&scales).for_each(|(column, scale)| column.scale *= scale);
             let whole = panel + 1 == panels && way == (end - start).abs();
-            let until = (!whole).then_some(bounds[panel + 1]);
+            let until = (!whole).then_some(past.abs());
             found.push(judge(scaled, sizes, (until, past / (end - start)), constants.to_vec(), columns));
         }
         Ok(())
@@ -244,7 +251,8 @@ fn judged(fine: &mut Transport, coarse: &mut Transport, paths: &[Path; 2]) -> Re
     // what no constants can do up to some time they cannot do at all
     let longest = |verdict: Verdict| found.iter().rposition(|decision| decision.verdict == verdict);
     let longest = longest(Verdict::NotContained).or_else(|| longest(Verdict::Contained));
-    match longest.or(found.len().checked_sub(1)) {
+    let quietest = || (0..found.len()).min_by(|&i, &j| found[i].loudness().total_cmp(&found[j].loudness()));
+    match longest.or_else(quietest) {
         Some(i) => Ok(found.swap_remove(i)),
         None => Err(own.stop.clone().or(stopped).unwrap_or(DecisionError::Curve { reason: "it has no part".into() })),
     }
@@ -300,11 +308,11 @@ fn judge(
     }
     let free: Vec<DVector<f64>> =
         (0..last).filter(|&k| svd.values[k] <= limit).map(|k| svd.right.row(k).transpose()).collect();
-    // without effect, or with one that is lost in noise?
-    let length = |c: &DVector<f64>, of: fn(&Column) -> f64| {
-        c.iter().zip(&known).map(|(c, column)| (c * of(column)).powi(2)).sum::<f64>().sqrt()
-    };
-    let loud = free.iter().any(|c| CERTAINTY * length(c, |k| k.noise) > TOO_LOUD * length(c, |k| k.size));
+    // is there one whose effect would be lost in noise? Whatever its part among quiet ones: these are orthonormal,
+    // and known to half of their digits
+    let quiet = |k: &Column| (TOO_LOUD * k.size / (CERTAINTY * k.noise)).min(f64::EPSILON.sqrt().recip());
+    let heard = DMatrix::from_fn(last, free.len(), |i, j| quiet(&known[i]) * free[j][i]);
+    let loud = SingularValues::of(&heard).values.iter().any(|part| *part < 1.0);
     // as many derivatives of the mismatch may be zero by choice: early on, the rest is smaller
     let loudest = TOO_LOUD * part.powi((last - free.len()) as i32);
     let own = |c: DVector<f64>| DVector::from_iterator(last, c.iter().zip(&known).map(|(c, k)| c * k.scale));

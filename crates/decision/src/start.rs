@@ -9,7 +9,7 @@ use mechanics::{Completion, Domain, Integrability, Removal, State, System, integ
 use symbolic::{Evaluator, Expr, Graph, Scalar, Symbol, Tape};
 
 use crate::DecisionError;
-use crate::exact::{Coefficient, Exact, Flaw, Jet, Modular, inverse, subtract_product};
+use crate::exact::{Coefficient, Echelon, Exact, Flaw, Jet, Modular, agreed, inverse, subtract_product};
 use crate::leaf::Leaf;
 use crate::series::SeriesStart;
 
@@ -162,6 +162,27 @@ impl ExactStart {
                 _ => system.integrable_constraints(state),
             }
         })
+    }
+
+    /// How many rows of expressions of `g` in parameters, time and positions are independent at the start: the
+    /// rank in two fields; `None` where they do not agree, or a number has no image.
+    pub fn rank(&self, g: &Graph, rows: &[Vec<Expr>]) -> Option<usize> {
+        let parameters = self.system.parameters.iter().map(|p| p.symbol);
+        let inputs: Vec<Symbol> = parameters.chain([self.system.time]).chain(self.system.positions()).collect();
+        let (program, width) = (g.tape(&inputs, &rows.concat()).ok()?, rows.first()?.len());
+        let count = |_| -> Result<usize, NoExactStart> {
+            let (parameters, time) = self.given();
+            let [q, _] = self.written_state(&parameters, time, &[])?;
+            let mut program = Evaluator::<Jet<Modular>>::new(program.clone());
+            let values = program.evaluate(&[&parameters[..], &[time], &q].concat());
+            if let Some(flaw) = values.iter().find_map(Jet::flaw) {
+                return Err(flaw.into());
+            }
+            let mut found = Echelon::default();
+            let row = |row: &[Jet<Modular>]| row.iter().map(|x| x.coefficient(0)).collect();
+            Ok(values.chunks(width).filter(|own| found.add(row(own))).count())
+        };
+        agreed(Default::default(), count, |_| false).ok()
     }
 
     /// Names of given velocities solved from the constraints, which their decimals miss by round-off.

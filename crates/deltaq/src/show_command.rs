@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use anyhow::{Result, bail};
-use comparison::integrability;
+use comparison::{integrability, integrability_by_brackets};
 use equations::{Cost, Equations, Formulation};
 use integrate::Method;
 use mechanics::{ConstantsRule, Integrability};
@@ -148,7 +148,7 @@ fn about_integrability(scene: &Scene, by_ranks: bool) -> Result<String> {
     if by_ranks {
         return Ok(integrability(scene)?.to_string());
     }
-    let verdict = mechanics::integrability(&scene.system.clone(), &scene.start, scene.start.t + scene.duration)?;
+    let verdict = integrability_by_brackets(scene)?;
     let hint =
         if matches!(verdict, Integrability::Undecided { .. }) { "; without --formulation ranks decide" } else { "" };
     Ok(format!("{verdict}{hint}"))

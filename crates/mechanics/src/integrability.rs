@@ -58,6 +58,8 @@ pub struct Growth {
     /// At the start, as long as brackets are short: all directions are reached at its end, if that of the
     /// generic one is there.
     pub start: Vec<usize>,
+    /// Whether these are as many as there can be, or are counted in exact numbers; else round-off may hide more.
+    pub exact: bool,
 }
 
 impl std::fmt::Display for Growth {
@@ -65,10 +67,11 @@ impl std::fmt::Display for Growth {
         let vector = |ranks: &[usize]| ranks.iter().map(usize::to_string).collect::<Vec<_>>().join(", ");
         let place = self.domain.almost_every("place");
         write!(f, "at {place}, growth vector ({}); ", vector(&self.generic))?;
+        let start = format!("at this start{}", if self.exact { "" } else { ", as far as round-off tells" });
         match (self.start == self.generic, self.start.last() == self.generic.last()) {
             (true, _) => write!(f, "the same at this start"),
-            (_, true) => write!(f, "step {} at this start, ({})", self.start.len(), vector(&self.start)),
-            _ => write!(f, "a step above {} at this start, ({}, ...)", self.start.len(), vector(&self.start)),
+            (_, true) => write!(f, "step {} {start}, ({})", self.start.len(), vector(&self.start)),
+            _ => write!(f, "a step above {} {start}, ({}, ...)", self.start.len(), vector(&self.start)),
         }
     }
 }
@@ -91,6 +94,10 @@ const LONGEST: usize = 10_000;
 
 /// Brackets of which ranks at the start are looked at.
 const MANY: usize = 500;
+
+/// How many rows of expressions in parameters, time and positions are independent at the start, in exact
+/// numbers; `None` where that is not known.
+pub type ExactRank<'a> = &'a dyn Fn(&Graph, &[Vec<Expr>]) -> Option<usize>;
 
 impl Integrability {
     /// Whether the verdict predicts that all formulations agree (T1).
@@ -164,13 +171,26 @@ impl std::fmt::Display for Integrability {
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn integrability(system: &System, state: &State, end: f64) -> Result<Integrability, RemovalError> {
-    question(|| by_brackets(system, state, end)).unwrap_or_else(|stopped| {
+    integrability_with(system, state, end, &|_, _| None)
+}
+
+/// [`integrability`] where ranks at the start that are smaller than elsewhere are counted by `exact`.
+///
+/// # Errors
+/// As [`integrability`].
+pub fn integrability_with(
+    system: &System,
+    state: &State,
+    end: f64,
+    exact: ExactRank,
+) -> Result<Integrability, RemovalError> {
+    question(|| by_brackets(system, state, end, exact)).unwrap_or_else(|stopped| {
         let constraints = system.constraints.len();
         Ok(Integrability::Undecided { why: Undecided::Stopped(stopped), depth: 0, at_most: constraints, constraints })
     })
 }
 
-fn by_brackets(system: &System, state: &State, end: f64) -> Result<Integrability, RemovalError> {
+fn by_brackets(system: &System, state: &State, end: f64, ranks: ExactRank) -> Result<Integrability, RemovalError> {
     let (h, domain) = (system.constraints.len(), Domain::of_constraints(system));
     if h == 0 {
         return Ok(Integrability::Unconstrained);
@@ -210,7 +230,12 @@ fn by_brackets(system: &System, state: &State, end: f64) -> Result<Integrability
     let rank_of =
         |fields: &[Vec<Expr>]| generic_rank(g, &Matrix::new(fields.len(), space.len(), fields.concat()), &surroundings);
     let mut fields = admissible.clone();
-    let (mut generic, mut at_start) = (vec![fields.len()], vec![surroundings.rank_at_centre(g, &fields)]);
+    // what is certain in rounded numbers is no more than there is
+    let rank_at_start = |fields: &[Vec<Expr>], most: usize| match surroundings.rank_at_centre(g, fields) {
+        all if all == most => (all, true),
+        some => ranks(g, fields).map_or((some, false), |exact| (exact, true)),
+    };
+    let (mut generic, mut at_start) = (vec![fields.len()], vec![rank_at_start(&fields, fields.len())]);
     let mut newest = admissible.clone();
     let mut rank = fields.len();
     // rounded numbers may cancel, and differ in digits that they have not got
@@ -250,18 +275,19 @@ fn by_brackets(system: &System, state: &State, end: f64) -> Result<Integrability
         depth += 1;
         newest = added;
         generic.push(rank);
-        at_start.push(surroundings.rank_at_centre(g, &fields));
+        at_start.push(rank_at_start(&fields, rank));
     }
     let left = space.len() - rank;
     let integrals = exact + left;
     Ok(match open {
         _ if integrals == 0 => {
             // fields that add a direction at almost every place need not be those that do at the start
-            let start = match at_start == generic {
-                true => at_start,
-                false => growth_at_start(g, &space, &admissible, &surroundings),
-            };
-            Integrability::Nonintegrable { depth, growth: Some(Growth { domain, generic, start }) }
+            if at_start.iter().map(|(rank, _)| rank).ne(&generic) {
+                at_start = growth_at_start(g, &space, &admissible, &rank_at_start);
+            }
+            let (start, certain): (Vec<usize>, Vec<bool>) = at_start.into_iter().unzip();
+            let exact = certain.into_iter().all(|certain| certain);
+            Integrability::Nonintegrable { depth, growth: Some(Growth { domain, generic, start, exact }) }
         }
         Some(why) if left > 0 => return undecided(why, depth, left),
         _ if integrals == h => Integrability::Integrable { exact: true },
@@ -285,17 +311,22 @@ fn brackets(
 
 /// Ranks at the start of the fields and of all their brackets, until all directions are reached or there are
 /// too many.
-fn growth_at_start(g: &Graph, space: &[Symbol], admissible: &[Vec<Expr>], surroundings: &Surroundings) -> Vec<usize> {
-    let mut ranks = vec![surroundings.rank_at_centre(g, admissible)];
+fn growth_at_start(
+    g: &Graph,
+    space: &[Symbol],
+    admissible: &[Vec<Expr>],
+    rank_at_start: &dyn Fn(&[Vec<Expr>], usize) -> (usize, bool),
+) -> Vec<(usize, bool)> {
+    let mut ranks = vec![rank_at_start(admissible, admissible.len())];
     let (mut all, mut newest) = (admissible.to_vec(), admissible.to_vec());
-    while ranks.last().is_some_and(|&rank| rank < space.len()) && !newest.is_empty() {
+    while ranks.last().is_some_and(|&(rank, _)| rank < space.len()) && !newest.is_empty() {
         let next: Vec<Vec<Expr>> = brackets(g, space, admissible, &newest, ranks.len() == 1).collect();
         newest = next.into_iter().filter(|z| !all.contains(z)).collect();
         all.extend(newest.iter().cloned());
         if all.len() > MANY || g.size(&all.concat()) > LONGEST {
             break;
         }
-        ranks.push(surroundings.rank_at_centre(g, &all));
+        ranks.push(rank_at_start(&all, space.len()));
     }
     ranks
 }

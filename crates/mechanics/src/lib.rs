@@ -76,7 +76,7 @@ mod system;
 mod view;
 
 pub use domain::Domain;
-pub use integrability::{Growth, Integrability, Undecided, integrability};
+pub use integrability::{ExactRank, Growth, Integrability, Undecided, integrability, integrability_with};
 pub use observables::Observables;
 pub use rank::{Surroundings, generic_rank};
 pub use removal::{ConstantsRule, DisplacementParameter, MemoryVariable, Removal};

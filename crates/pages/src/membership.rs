@@ -55,7 +55,7 @@ pub fn value(outcome: Option<&Result<Membership, SolveError>>) -> Value {
         Some(Err(error)) => return json!({ "answer": "undecided", "because": error.to_string() }),
         Some(Ok(membership)) => membership,
     };
-    let dimension = membership.decision.set.dimension();
+    let dimension = membership.dimension();
     match membership.answer() {
         Answer::NoneProved { order } => json!({ "answer": "none", "proved": true, "order": order }),
         Answer::None { unproved } => json!({ "answer": "none", "proved": false, "because": unproved }),
@@ -69,7 +69,7 @@ pub fn value(outcome: Option<&Result<Membership, SolveError>>) -> Value {
 
 /// How many there are.
 fn which(membership: &Membership) -> String {
-    match membership.decision.set.dimension() {
+    match membership.dimension() {
         0 => "one".into(),
         d if d == membership.decision.constants.len() => "every".into(),
         d => format!("{d} dimensions"),

@@ -83,7 +83,8 @@ pub(crate) const SHOWN: [&str; 5] = ["pair", "verdict", "1e-3 after (s)", "large
 pub(crate) fn largest(gap: &Gap) -> String {
     match gap.verdict {
         Verdict::Same => format!("< {:.0e}", at_most(gap.bound())),
-        Verdict::Different if !is_seen(gap) => format!("< {}", short(gap.bound())),
+        Verdict::Different if !is_seen(gap) && gap.bound().is_finite() => format!("< {}", short(gap.bound())),
+        Verdict::Different if !is_seen(gap) => "not known".into(),
         _ => short(gap.largest),
     }
 }

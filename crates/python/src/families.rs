@@ -100,7 +100,7 @@ impl Decided {
             values.into_iter().try_for_each(|(name, value)| dict.set_item(name, value))?;
             Ok(dict.unbind())
         });
-        let dimension = membership.as_ref().filter(|_| answer == "some").map(|m| m.decision.set.dimension());
+        let dimension = membership.as_ref().filter(|_| answer == "some").map(Membership::dimension);
         let mismatch = membership.as_ref().map(|m| m.decision.least / m.decision.acceleration);
         let identity = membership.and_then(|m| m.section).map(|section| section.expressions);
         let (constants, answer) = (constants.transpose()?, answer.into());

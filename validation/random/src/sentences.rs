@@ -19,6 +19,8 @@ pub enum Said {
     Dimension(Option<usize>),
     /// Integrable combinations among the constraints.
     Integrable(usize),
+    /// The first ranks of a growth vector at the start, or all.
+    Ranks(Vec<usize>),
     /// A number and its error.
     Number(f64, f64),
 }
@@ -31,6 +33,7 @@ impl Said {
             (Said::Open, _) | (_, Said::Open) => return Some("open"),
             (Said::Dimension(Some(one)), Said::Dimension(Some(two))) => one + adds == *two,
             (Said::Integrable(one), Said::Integrable(two)) => one + adds == *two,
+            (Said::Ranks(one), Said::Ranks(two)) => one.iter().zip(two).all(|(one, two)| one == two),
             (Said::Number(one, error), Said::Number(two, more)) => {
                 (one - two).abs() <= 100.0 * (error + more) + 1e-6 * one.abs()
             }
@@ -56,25 +59,30 @@ pub fn sentences(scene: &Scene, with_integrals: bool) -> Result<BTreeMap<String,
         compare_unfitted(scene.clone(), choices.clone(), Vec::new(), &settings).map_err(|fault| fault.to_string())?;
     compared.is_sound().map_err(|fault| fault.to_string())?;
     let h = scene.system.constraints.len();
-    let (integrable, growth) = match &compared.integrability {
-        Integrability::Integrable { .. } => (Said::Integrable(h), Said::Open),
-        Integrability::PartlyIntegrable { integrals, .. } => (Said::Integrable(*integrals), Said::Open),
-        Integrability::Nonintegrable { growth: Some(growth), .. } => {
-            (Said::Integrable(0), word(format!("{:?} {:?}", growth.generic, growth.start)))
+    let (mut generic, mut at_start) = (Said::Open, Said::Open);
+    let integrable = match &compared.integrability {
+        Integrability::Integrable { .. } => Said::Integrable(h),
+        Integrability::PartlyIntegrable { integrals, .. } => Said::Integrable(*integrals),
+        Integrability::Nonintegrable { growth, .. } => {
+            if let Some(growth) = growth {
+                generic = word(format!("{:?}", growth.generic));
+                at_start = if growth.exact { Said::Ranks(growth.start.clone()) } else { Said::Open };
+            }
+            Said::Integrable(0)
         }
-        Integrability::Nonintegrable { .. } => (Said::Integrable(0), Said::Open),
-        Integrability::Unconstrained => (Said::Integrable(0), Said::Open),
-        Integrability::NonlinearInVelocity => (word("nonlinear"), Said::Open),
-        Integrability::Undecided { .. } => (Said::Open, Said::Open),
+        Integrability::Unconstrained => Said::Integrable(0),
+        Integrability::NonlinearInVelocity => word("nonlinear"),
+        Integrability::Undecided { .. } => Said::Open,
     };
     all.insert("integrable".into(), integrable);
-    all.insert("growth".into(), growth);
+    all.insert("growth at almost every place".into(), generic);
+    all.insert("growth at the start".into(), at_start);
     if let Some(Ok(found)) = compared.membership() {
         all.insert(
             "multipliers".into(),
             match found.answer() {
                 Answer::NoneProved { .. } | Answer::None { .. } => Said::Dimension(None),
-                Answer::SomeProved | Answer::Some { .. } => Said::Dimension(Some(found.decision.set.dimension())),
+                Answer::SomeProved | Answer::Some { .. } => Said::Dimension(Some(found.dimension())),
                 Answer::Undecided => Said::Open,
             },
         );

@@ -1,6 +1,6 @@
 //! Other writings of a scene file: the motions are the same, or are those on one leaf or branch.
 
-use motion::{CHETAEV, choices_among};
+use motion::{CHETAEV, Choice, Settings, choices_among, solve_choice};
 use scene::Scene;
 use toml::{Table, Value};
 
@@ -21,16 +21,16 @@ const fn writing(name: &'static str, adds: usize, keeps_gaps: bool, of: fn(&Tabl
     Writing { name, adds, keeps_gaps, of }
 }
 
-/// The writing with `√(q²)`.
-pub const ROOTS: &str = "roots";
+/// Coordinates that start this far from zero, and do not come to it, are written as roots.
+const FROM_ZERO: f64 = 0.25;
 
-/// Coordinates that start this far from zero have it.
-pub const FROM_ZERO: f64 = 0.25;
+/// Instants at which signs are looked at.
+const INSTANTS: usize = 60;
 
 /// All of them.
 pub const WRITINGS: [Writing; 8] = [
     writing("signs", 0, true, signs),
-    writing(ROOTS, 0, false, roots),
+    writing("roots", 0, false, roots),
     writing("slave", 1, true, slave),
     writing("unit vectors", 1, false, unit_vectors),
     writing("quaternions", 1, false, quaternions),
@@ -134,11 +134,6 @@ fn start(scene: &Table, name: &str) -> Option<String> {
     scene["coordinates"].get(name)?.get("start").map(formula)
 }
 
-fn decimal(scene: &Table, name: &str) -> Option<f64> {
-    let value = scene["coordinates"].get(name)?.get("start")?;
-    value.as_float().or_else(|| value.as_integer().map(|x| x as f64))
-}
-
 fn put(scene: &mut Table, path: [&str; 2], value: String) {
     let section = scene.entry(path[0]).or_insert_with(|| Table::new().into());
     section.as_table_mut().expect("a table").insert(path[1].into(), Value::String(value));
@@ -169,12 +164,29 @@ fn signs(scene: &Table) -> Option<Table> {
     Some(scene)
 }
 
-/// `±√(q²)` for coordinates that do not start at zero, and not near it, in the constraints.
+/// The motion of the scene by Chetaev.
+fn chetaev(scene: &Table) -> Option<(Scene, Choice)> {
+    let read = Scene::parse("own", &written(scene)).ok()?;
+    let choice = choices_among(&read, |own| own == CHETAEV).into_iter().next()?;
+    Some((read, choice))
+}
+
+/// `±√(q²)` in the constraints, for coordinates that are not near zero at the start, and do not come to it:
+/// where one does, it is another constraint from there on.
 fn roots(scene: &Table) -> Option<Table> {
     let mut scene = scene.clone();
+    let (read, choice) = chetaev(&scene)?;
+    let mut motion = solve_choice(&read, &choice, &Settings { max_steps: 20_000, ..Settings::default() }).ok()?;
+    let own = &read.system.coordinates;
+    let far = |i: &usize| read.start.q[*i].abs() > FROM_ZERO;
+    let mut stays: Vec<usize> = (0..own.len()).filter(far).collect();
+    for t in motion.grid(INSTANTS) {
+        let now = motion.at(t).ok()?.coordinates;
+        stays.retain(|&i| read.start.q[i] * now[i] > 0.0);
+    }
     let root = |name: &str, primes: usize| {
-        let start = decimal(&scene, name).filter(|start| primes == 0 && start.abs() > FROM_ZERO)?;
-        Some(format!("({}sqrt({name}^2))", if start < 0.0 { "-" } else { "" }))
+        let i = *stays.iter().find(|&&i| primes == 0 && own[i].name == name)?;
+        Some(format!("({}sqrt({name}^2))", if read.start.q[i] < 0.0 { "-" } else { "" }))
     };
     let text = scene["system"].get("constraints")?.clone();
     let written: Vec<Value> =
@@ -325,9 +337,8 @@ fn quaternions(scene: &Table) -> Option<Table> {
 /// Integrals of Chetaev's motion, which other formulations change.
 fn invariants(scene: &Table) -> Option<Table> {
     let mut other = scene.clone();
-    let read = Scene::parse("own", &written(scene)).ok()?;
-    let chetaev = choices_among(&read, |own| own == CHETAEV);
-    let found = integrals::watched(&read, chetaev.first()?).ok()?;
+    let (read, choice) = chetaev(scene)?;
+    let found = integrals::watched(&read, &choice).ok()?;
     for (i, integral) in found.iter().enumerate() {
         put(&mut other, ["invariants", &format!("own {i}")], integral.name.clone());
     }

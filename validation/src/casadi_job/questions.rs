@@ -144,7 +144,7 @@ impl Question {
         let Some(found) = comparison::membership(scene, scene.start.t + scene.duration)? else { return Ok(self) };
         let dimension = match found.answer() {
             Answer::NoneProved { .. } | Answer::None { .. } => None,
-            Answer::SomeProved | Answer::Some { .. } => Some(found.decision.set.dimension()),
+            Answer::SomeProved | Answer::Some { .. } => Some(found.dimension()),
             Answer::Undecided => bail!("the multipliers of `{}` are undecided", scene.name),
         };
         let point = dimension.map_or(Vec::new(), |_| found.decision.set.point);

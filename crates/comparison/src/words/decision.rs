@@ -16,35 +16,39 @@ pub(super) fn sentences(comparison: &Comparison) -> Vec<String> {
     sentences
 }
 
-/// Whether the vakonomic motion is proved to be Chetaev's for every `μ₀` with regular equations.
+/// Whether the vakonomic motion is proved to be Chetaev's for every `μ₀` with regular equations; without
+/// constraints there is one equation of motion.
 pub(super) fn proved_same(comparison: &Comparison) -> bool {
     let membership = comparison.membership().and_then(|found| found.as_ref().ok());
-    membership.is_some_and(|found| is_every(found) && found.answer() == Answer::SomeProved)
+    comparison.scene.system.constraints.is_empty()
+        || membership.is_some_and(|found| is_every(found) && found.answer() == Answer::SomeProved)
 }
 
 /// Whether the set that was found is that of all constants.
 fn is_every(membership: &Membership) -> bool {
-    membership.decision.set.dimension() == membership.decision.constants.len()
+    membership.dimension() == membership.decision.constants.len()
 }
 
-/// For which `μ₀` two motions are different, and for which the same, in a few words.
-pub(super) fn in_brief(comparison: &Comparison) -> (String, String) {
-    let own = "with the scene's μ₀".to_string();
-    let Some(Ok(membership)) = comparison.membership() else { return (own.clone(), own) };
+/// For which `μ₀` two motions are different, and for which the same, in a few words after a comma; none without
+/// constraints, which have no `μ₀`.
+pub(super) fn in_brief(comparison: &Comparison) -> [String; 2] {
+    let own = match comparison.scene.system.constraints.len() {
+        0 => String::new(),
+        _ => ", with the scene's μ₀".into(),
+    };
+    let Some(Ok(membership)) = comparison.membership() else { return [own.clone(), own] };
     let (some, proved) = match membership.answer() {
         Answer::NoneProved { .. } => (false, "proved"),
         Answer::None { .. } => (false, "computed, not proved"),
         Answer::SomeProved => (true, "proved"),
         Answer::Some { .. } => (true, "computed, not proved"),
-        Answer::Undecided => {
-            return (format!("{own}; whether another μ₀ makes them the same is undecided"), own);
-        }
+        Answer::Undecided => return [format!("{own}; whether another μ₀ makes them the same is undecided"), own],
     };
     let constants = constants(membership, "μ₀");
     match some {
-        false => (format!("for every μ₀ ({proved})"), own),
-        true if is_every(membership) => (own, format!("for {constants} ({proved})")),
-        true => (format!("{own}; the same with {constants} ({proved})"), own),
+        false => [format!(", for every μ₀ ({proved})"), own],
+        true if is_every(membership) => [own, format!(", for {constants} ({proved})")],
+        true => [format!("{own}; the same with {constants} ({proved})"), own],
     }
 }
 
@@ -128,7 +132,7 @@ fn identity(membership: &Membership) -> String {
     }
     let Some(section) = &membership.section else { return String::new() };
     let which = if section.every { String::new() } else { format!(", ({}),", section.expressions.join(", ")) };
-    let dimension = match membership.decision.set.dimension() {
+    let dimension = match membership.dimension() {
         0 => "",
         _ if section.every => "",
         _ => "; the dimension by ranks modulo two primes",
@@ -138,7 +142,7 @@ fn identity(membership: &Membership) -> String {
 
 /// Up to when the numbers were judged, where that is not the end.
 fn up_to(until: Option<f64>) -> String {
-    until.map_or(String::new(), |t| format!(" up to t = {}, after which round-off is too large", precise(t)))
+    until.map_or(String::new(), |time| format!(" up to {} s, after which round-off is too large", short(time)))
 }
 
 /// The best that a search over `μ₀` has found, where none leaves nothing: smaller gaps may exist.

@@ -26,17 +26,17 @@ pub fn answer(comparison: &Comparison) -> Option<String> {
     }
     let chetaev = comparison.run(CHETAEV)?;
     let pair = comparison.pair(chetaev, comparison.run(VAKONOMIC)?)?;
-    let constants = decision::in_brief(comparison);
+    let [different, same] = decision::in_brief(comparison);
     Some(match &pair.gap.verdict {
-        Verdict::Different => format!("Different: Chetaev and vakonomic, {}. {MINE}", constants.0),
+        Verdict::Different => format!("Different: Chetaev and vakonomic{different}. {MINE}"),
         Verdict::Undecided { because } if decision::proved_same(comparison) => {
-            format!("Same: Chetaev and vakonomic, {}. Not seen in numbers: {because}.", constants.1)
+            format!("Same: Chetaev and vakonomic{same}. Not seen in numbers: {because}.")
         }
-        Verdict::Undecided { .. } => format!("Undecided: Chetaev and vakonomic, {}. {MINE}", constants.1),
+        Verdict::Undecided { .. } => format!("Undecided: Chetaev and vakonomic{same}. {MINE}"),
         Verdict::Same => {
             let other = |p: &&Pair| p.gap.verdict == Verdict::Different && [p.first, p.second].contains(&chetaev);
             let rest = if rows(comparison).any(|p| other(&p)) { " Other formulations differ." } else { "" };
-            format!("Same: Chetaev and vakonomic, {}, within the error estimates.{rest}", constants.1)
+            format!("Same: Chetaev and vakonomic{same}, within the error estimates.{rest}")
         }
     })
 }
@@ -226,7 +226,9 @@ fn without_motion(comparison: &Comparison) -> Vec<String> {
 fn why(comparison: &Comparison) -> Vec<String> {
     let mut sentences = vec![format!("Constraint: {}.", comparison.integrability)];
     let pair = comparison.run(CHETAEV).zip(comparison.run(VAKONOMIC)).and_then(|(a, b)| comparison.pair(a, b));
-    if let Some((predicted, measured)) = pair.and_then(|p| p.predicted.as_ref().zip(p.growth.as_ref())) {
+    let growth = pair.and_then(|p| p.predicted.as_ref().zip(p.growth.as_ref()));
+    // what is seen where another term is the larger one is not fitted to this one
+    if let Some((predicted, measured)) = growth.filter(|(predicted, measured)| measured.is_of(predicted)) {
         sentences.push(format!(
             "Predicted growth of the gap between Chetaev and vakonomic: {} t^{}; fitted: {} t^{:.2}.",
             precise(predicted.length),

@@ -111,14 +111,14 @@ fn backwards(case: &mut Case, reversal: &Scaling) -> Result<(), CheckError> {
     for which in all.collect::<Vec<_>>() {
         let (end, less) = case.motion(which).at_in_both_runs(t1)?;
         let mut back = run_back(case, which, reversal, &other, &end)?;
-        let (gap, mut floor) = (case.gap_by(which, &mut back, &clock)?, case.floor);
+        let mut gap = case.gap_by(which, &mut back, &clock)?;
         if case.is_apart(&gap) {
-            // what the end is off by grows on the way back, too
+            // what the end is off by grows on the way back, and adds to what this run is off by
             let mut second = run_back(case, which, reversal, &other, &less)?;
             let between = compare_motions(&mut back, &mut second, &mut case.metric.clone())?;
-            floor = floor.max(CERTAINTY * between.largest);
+            gap.points.iter_mut().for_each(|point| point.limit += CERTAINTY * between.largest);
         }
-        case.note(10, claim(which), &gap, floor);
+        case.note(10, claim(which), &gap, case.floor);
     }
     Ok(())
 }

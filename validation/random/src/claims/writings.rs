@@ -5,7 +5,7 @@ use toml::Table;
 
 use super::CheckError;
 use crate::sentences::sentences;
-use crate::writings::{FROM_ZERO, ROOTS, plain, written};
+use crate::writings::{plain, written};
 use crate::{Case, Said};
 
 const CLAIM: &str = "other writings have the same sentences";
@@ -13,30 +13,12 @@ const CLAIM: &str = "other writings have the same sentences";
 /// Coordinates up to which measures and integrals are asked for: of more they take seconds.
 const FEW: usize = 3;
 
-/// Instants at which signs are looked at.
-const INSTANTS: usize = 60;
-
-/// Whether a coordinate that starts away from zero comes to it: `√(q²)` is another constraint from there on.
-fn crosses(case: &mut Case) -> Result<bool, CheckError> {
-    let start = case.scene.start.q.clone();
-    for t in case.chetaev.grid(INSTANTS) {
-        let now = case.chetaev.at(t)?.coordinates;
-        if start.iter().zip(&now).any(|(from, to)| from.abs() > FROM_ZERO && from * to <= 0.0) {
-            return Ok(true);
-        }
-    }
-    Ok(false)
-}
-
 /// Signs of coordinates, roots of squares, coordinates that follow, unit vectors, formulas for numbers, time.
 pub(super) fn check(case: &mut Case) -> Result<(), CheckError> {
     let Some(writing) = case.writing.or_else(|| case.recipe.features.writing()) else { return Ok(()) };
     let text: Result<Table, _> = case.scene.to_toml().parse();
     let Ok(own) = text.map(|table| plain(&table)) else { return Ok(()) };
     let Some(other) = (writing.of)(&own) else { return Ok(()) };
-    if writing.name == ROOTS && crosses(case)? {
-        return Ok(());
-    }
     let with_integrals = case.recipe.n() <= FEW;
     let of = |table: &Table| {
         let scene = Scene::parse("writing", &written(table)).map_err(|fault| fault.to_string())?;
