@@ -28,7 +28,12 @@ impl Maker<'_> {
             Some(under) => self.curved(contact, i, under)?,
             None => {
                 let support = self.support(contact, i)?;
-                self.touch(contact, i, support)?
+                let touch = self.touch(contact, i, support)?;
+                let turn = support.and_then(|on| self.placed(on).turns.first().map(|turn| self.rate(&turn.angle)));
+                match turn.filter(|rate| !rate.is_empty()) {
+                    Some(rate) => Touch { spin: format!("{} - ({rate})", touch.spin), ..touch },
+                    None => touch,
+                }
             }
         };
         let says = |what: &str| format!("contact {}: {what}", contact.name.text);

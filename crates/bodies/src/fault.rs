@@ -44,8 +44,6 @@ pub enum FaultKind {
     Between,
     #[error("{what} is {value:.3e} off, wherever the bodies are")]
     Off { what: String, value: f64 },
-    #[error("both ends stand on different bodies that are turned in space, `{0}` and `{1}`")]
-    Bases(String, String),
 }
 
 fn meant(suggestion: &Option<String>) -> String {

@@ -7,6 +7,7 @@ mod closed_forms;
 mod constraint_law;
 mod declared;
 mod derivations;
+mod drawn_machines;
 mod ensembles;
 mod forces;
 mod frames;
