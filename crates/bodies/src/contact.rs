@@ -50,8 +50,9 @@ impl Maker<'_> {
             }
         };
         let place = contact.name.place.clone();
-        let normal = touch.normal.as_ref().unwrap_or(&touch.height);
-        let all = [along.clone(), across.clone(), normal.clone()].into_iter();
+        // what the ground can exert: along a smooth surface nothing
+        let tangential = [along.clone(), across.clone()].into_iter().filter(|_| contact.law != Law::Slides);
+        let all = tangential.chain([touch.normal.as_ref().unwrap_or(&touch.height).clone()]);
         let all = all.chain((contact.law == Law::Rubber).then(|| touch.spin.clone()));
         let named = |text| Made { name: contact.name.text.clone(), text, place: place.clone() };
         self.made.slips.extend(all.map(named));

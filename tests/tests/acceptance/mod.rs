@@ -27,4 +27,5 @@ mod support;
 mod taylor;
 mod textbook_machines;
 mod theory;
+mod trees;
 mod vectors;
