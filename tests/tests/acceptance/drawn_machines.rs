@@ -790,6 +790,7 @@ fn drawn_machines_move_as_newton_and_euler_have_it() {
         ("rolling", rolling, 80),
         ("robot", robot, 60),
         ("loop", closed, 40),
+        ("bicycle with a leaning rider", rider, 5),
     ] {
         let (mut of_kind, mut largest) = (0, 0.0_f64);
         for seed in 0..count {

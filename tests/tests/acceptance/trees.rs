@@ -14,7 +14,8 @@ use super::support::must;
 const SIZES: [usize; 5] = [5, 10, 20, 40, 80];
 
 fn parsed(coordinates: &[String], velocities: &str, rest: &str) -> Scene {
-    let (top, rest) = rest.split_at(rest.find('[').unwrap_or_default());
+    let rest = format!("\n{rest}");
+    let (top, rest) = rest.split_at(rest.find("\n[").unwrap_or_default() + 1);
     let q: String = coordinates
         .iter()
         .enumerate()
@@ -46,11 +47,11 @@ fn chain(n: usize) -> [Scene; 2] {
 }
 
 /// Links in the plane on blades, each hitched `at` behind the middle of the one before, `own` before its own: trailers, or
-/// with a motor at each joint a snake. By hand with rows as textbooks have them, and with rows of the definitions of places.
-fn planar(n: usize, [at, own]: [f64; 2], is_driven: bool) -> [Scene; 3] {
+/// with a motor at each joint a snake.
+fn planar(n: usize, [at, own]: [f64; 2], is_driven: bool) -> [Scene; 2] {
     let (mut bodies, mut contacts, mut motors) = (String::new(), "[contact]\n".to_string(), "[motor]\n".to_string());
     let (mut definitions, mut lagrangian) = ("[definitions]\n".to_string(), String::new());
-    let (mut textbook, mut rows) = (String::new(), String::new());
+    let mut rows = String::new();
     let mut forces = vec![String::new(); n];
     let (mut x, mut y) = ("x".to_string(), "y".to_string());
     for i in 0..n {
@@ -72,10 +73,6 @@ fn planar(n: usize, [at, own]: [f64; 2], is_driven: bool) -> [Scene; 3] {
         write!(contacts, "c{i} = {{ of = \"l{i}\", law = \"blade\" }}\n").unwrap_or_default();
         write!(lagrangian, " + {x}'^2 + {y}'^2 + 0.05*a{i}'^2").unwrap_or_default();
         writeln!(rows, "\"{y}'*cos(a{i}) - {x}'*sin(a{i})\", ").unwrap_or_default();
-        let before = |j: usize| format!(" - {}*a{j}'*cos(a{j} - a{i})", if j == 0 { at } else { at + own });
-        let turns: String = (0..i).map(before).collect();
-        let last = if i == 0 { String::new() } else { format!(" - {own}*a{i}'") };
-        writeln!(textbook, "\"y'*cos(a{i}) - x'*sin(a{i}){turns}{last}\", ").unwrap_or_default();
     }
     let mut driven = String::new();
     if is_driven {
@@ -84,12 +81,10 @@ fn planar(n: usize, [at, own]: [f64; 2], is_driven: bool) -> [Scene; 3] {
     } else {
         motors.clear();
     }
-    let by_hand = [textbook, rows].map(|rows| {
-        format!("{definitions}[system]\nlagrangian = \"{}\"\nconstraints = [\n{rows}]\n{driven}", &lagrangian[3..])
-    });
+    let by_hand =
+        format!("{definitions}[system]\nlagrangian = \"{}\"\nconstraints = [\n{rows}]\n{driven}", &lagrangian[3..]);
     let q: Vec<String> = ["x".into(), "y".into()].into_iter().chain((0..n).map(|i| format!("a{i}"))).collect();
-    let [textbook, rows] = by_hand;
-    [format!("{bodies}{contacts}{motors}"), textbook, rows].map(|text| parsed(&q, "\"x'\" = 1\n\"a0'\" = 0.2\n", &text))
+    [format!("{bodies}{contacts}{motors}"), by_hand].map(|text| parsed(&q, "\"x'\" = 1\n\"a0'\" = 0.2\n", &text))
 }
 
 /// Seconds of derivation and compilation, and operations of a right-hand side, of Chetaev's equations.
@@ -104,16 +99,16 @@ fn cost(scene: &Scene) -> [f64; 2] {
 
 #[test]
 fn trees_of_bodies_cost_no_more_than_formulas_by_hand() {
-    type Tree = fn(usize) -> Vec<Scene>;
+    type Tree = fn(usize) -> [Scene; 2];
     let trees: [(&str, Tree); 3] = [
-        ("chain on a cart", |n| chain(n).into()),
-        ("snake", |n| planar(n, [0.5, 0.5], true).into()),
-        ("trailers", |n| planar(n, [0.3, 1.1], false).into()),
+        ("chain on a cart", chain),
+        ("snake", |n| planar(n, [0.5, 0.5], true)),
+        ("trailers", |n| planar(n, [0.3, 1.1], false)),
     ];
     for (name, tree) in trees {
-        let small = tree(6);
-        small[1..].iter().for_each(|by_hand| same_system(name, by_hand, &small[0]));
-        let costs: Vec<Vec<[f64; 2]>> = SIZES.iter().map(|&n| tree(n).iter().map(cost).collect()).collect();
+        let [bodies, by_hand] = tree(6);
+        same_system(name, &by_hand, &bodies);
+        let costs = SIZES.map(|n| tree(n).each_ref().map(cost));
         for (n, cost) in SIZES.iter().zip(&costs) {
             println!("{name}, n = {n}: seconds of derivation, operations, of bodies and by hand: {cost:.3?}");
         }
@@ -121,7 +116,7 @@ fn trees_of_bodies_cost_no_more_than_formulas_by_hand() {
             let points: Vec<(f64, f64)> = SIZES.iter().zip(&costs).map(|(&n, c)| (n as f64, c[of][what])).collect();
             bench::exponent(&points[1..]).map_or(f64::INFINITY, |exponent| exponent.value)
         };
-        let all: Vec<[f64; 2]> = (0..small.len()).map(|of| [exponent(of, 0), exponent(of, 1)]).collect();
+        let all = [0, 1].map(|of| [exponent(of, 0), exponent(of, 1)]);
         println!("{name}: exponents of the same: {all:.2?}");
         must(&format!("{name}: exponent of operations over that by hand"), all[0][1] - all[1][1], 0.1);
         for (n, cost) in SIZES.iter().zip(&costs) {
