@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use crate::text::{Sum, is_zero_vector, vector};
-use crate::turn::{Turn, backwards, join, matrix, read, turned, written};
+use crate::turn::{Axis, Turn, backwards, join, matrix, read, turned, written};
 use crate::{Body, Fault, FaultKind, Formulas, Machine, Made, Motion, Picture, Written};
 
 /// Definitions and brackets within one another that are looked into.
@@ -182,7 +182,7 @@ impl Maker<'_> {
             Motion::Fixed => (Vec::new(), None),
             Motion::Hinge(axis, angle) => (vec![Turn::new(&axis.text, &angle.text)], None),
             Motion::Slider(axis, shift) => {
-                let (axis, round) = crate::turn::Axis::read(&axis.text);
+                let (axis, round) = Axis::read(&axis.text);
                 let shift = Sum::read(&shift.text);
                 (Vec::new(), Some(axis.vector(&if round { shift.negative() } else { shift }.to_string())))
             }
@@ -253,7 +253,7 @@ impl Maker<'_> {
             terms.extend(self.machine.moves(vector).then(|| format!("({vector})'")));
             let rates = turns.iter().map(|turn| (turn, self.rate(&turn.angle))).collect::<Vec<_>>();
             let rate = match &rates[..] {
-                [(turn, rate)] => turn.axis.vector(&rate.to_string()),
+                [(Turn { axis: axis @ Axis::Letter(_), .. }, rate)] => axis.vector(&rate.to_string()),
                 _ => format!("body_angular_velocity({})", written(turns)),
             };
             terms.extend(rates.iter().any(|(_, rate)| !rate.is_empty()).then(|| format!("cross({rate}, {vector})")));

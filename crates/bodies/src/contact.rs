@@ -28,7 +28,12 @@ impl Maker<'_> {
             Some(under) => self.curved(contact, i, under)?,
             None => {
                 let support = self.support(contact, i)?;
-                self.touch(contact, i, support)?
+                let touch = self.touch(contact, i, support)?;
+                let turn = support.and_then(|on| self.placed(on).turns.first().map(|turn| self.rate(&turn.angle)));
+                match turn.filter(|rate| !rate.is_empty()) {
+                    Some(rate) => Touch { spin: format!("{} - ({rate})", touch.spin), ..touch },
+                    None => touch,
+                }
             }
         };
         let says = |what: &str| format!("contact {}: {what}", contact.name.text);
@@ -45,8 +50,9 @@ impl Maker<'_> {
             }
         };
         let place = contact.name.place.clone();
-        let normal = touch.normal.as_ref().unwrap_or(&touch.height);
-        let all = [along.clone(), across.clone(), normal.clone()].into_iter();
+        // what the ground can exert: along a smooth surface nothing
+        let tangential = [along.clone(), across.clone()].into_iter().filter(|_| contact.law != Law::Slides);
+        let all = tangential.chain([touch.normal.as_ref().unwrap_or(&touch.height).clone()]);
         let all = all.chain((contact.law == Law::Rubber).then(|| touch.spin.clone()));
         let named = |text| Made { name: contact.name.text.clone(), text, place: place.clone() };
         self.made.slips.extend(all.map(named));

@@ -34,6 +34,8 @@ pub enum FaultKind {
     Support { on: String, why: &'static str },
     #[error("a joint is one of hinge, slider, plane, ball, surface and fixed; found {found}")]
     Joint { found: String },
+    #[error("`{key}` goes with `{kind}`")]
+    GoesWith { key: &'static str, kind: &'static str },
     #[error("`{name}` has a joint `surface`: it is a ball or a point, on a cone or a cylinder with its sizes")]
     Surface { name: String },
     #[error("`{key}` places a body that has no `joint`; with one, it stands in the joint")]
@@ -44,8 +46,6 @@ pub enum FaultKind {
     Between,
     #[error("{what} is {value:.3e} off, wherever the bodies are")]
     Off { what: String, value: f64 },
-    #[error("both ends stand on different bodies that are turned in space, `{0}` and `{1}`")]
-    Bases(String, String),
 }
 
 fn meant(suggestion: &Option<String>) -> String {

@@ -10,7 +10,7 @@ impl Maker<'_> {
         let length = match &link.between {
             Between::Joint(joint) => self.coordinate(joint)?,
             Between::Points(ends) => {
-                let gap = self.gap(link, ends)?;
+                let gap = self.gap(ends)?;
                 let gap = self.define(&link.name, "gap", gap);
                 if let LinkKind::Loop = link.kind {
                     self.made.rows.extend(["x", "y", "z"].map(|axis| Row {
@@ -62,8 +62,8 @@ impl Maker<'_> {
         }
     }
 
-    /// From the second point to the first.
-    fn gap(&self, link: &Link, [first, second]: &[(Written, Written); 2]) -> Result<String, Fault> {
+    /// From the second point to the first, in space if they stand on different bases.
+    fn gap(&self, [first, second]: &[(Written, Written); 2]) -> Result<String, Fault> {
         let place = |(name, point): &(Written, Written)| -> Result<(Option<usize>, String), Fault> {
             if name.text == "space" {
                 return Ok((None, crate::text::vector(&point.text)));
@@ -71,11 +71,8 @@ impl Maker<'_> {
             let i = self.machine.find(name)?;
             Ok((self.placed(i).base, self.point(i, &point.text)))
         };
-        let ((base, from), (other, to)) = (place(first)?, place(second)?);
-        if base != other {
-            let kind = FaultKind::Bases(first.0.text.clone(), second.0.text.clone());
-            return Err(Fault { place: link.name.place.clone(), kind });
-        }
-        Ok(format!("{from} - ({to})"))
+        let (one, two) = (place(first)?, place(second)?);
+        let seen = |(base, at)| if one.0 == two.0 { String::clone(at) } else { self.in_space(base, at) };
+        Ok(format!("{} - ({})", seen((one.0, &one.1)), seen((two.0, &two.1))))
     }
 }

@@ -41,7 +41,7 @@ impl Axis {
             Axis::Letter('x') => format!("[{length}, 0, 0]"),
             Axis::Letter('y') => format!("[0, {length}, 0]"),
             Axis::Letter(_) => format!("[0, 0, {length}]"),
-            Axis::Along(axis) => format!("({length})*{axis}"),
+            Axis::Along(axis) => format!("({length})/sqrt(dot({axis}, {axis}))*{axis}"),
         }
     }
 }

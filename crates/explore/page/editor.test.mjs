@@ -1,6 +1,8 @@
 // The editor: numbered lines, marks where faults and notes are, names completed by keys, functions and examples, bodies.
 
 import { execFileSync, spawnSync } from "node:child_process";
+import { mkdtempSync, readFileSync, rmSync } from "node:fs";
+import { tmpdir } from "node:os";
 import { join } from "node:path";
 
 const text = (page) => page.$eval("#area", ({ value }) => value);
@@ -84,6 +86,39 @@ export async function editor({ open, leave, link, must, type, after, deltaq, pic
   await page.click("#functions button");
   must((await text(page)) === `sin(x)${before}`, "a function is not put where the caret is");
   await page.screenshot({ path: join(pictures, "editor-functions.png") });
+  await leave(page);
+}
+
+// A scene of bodies that is typed in moves as natively, also with another mass and another parameter; a fault in a body has its line.
+export async function robot({ open, leave, link, must, type, after, slide, rows, native, deltaq, pictures }) {
+  const page = await open(link({ scene: "sledge", tab: "text", time: 1 }));
+  const folder = mkdtempSync(join(tmpdir(), "robot-"));
+  execFileSync(deltaq, ["new", "--bodies", join(folder, "robot.toml")]);
+  const bodies = readFileSync(join(folder, "robot.toml"), "utf8");
+  rmSync(folder, { recursive: true });
+  const moved = async (text) => {
+    await after(page, () => type(page, text));
+    const ours = (await rows(page, "Chetaev")).filter((_, i) => i % 16 === 0).map((row) => row.slice(0, 4));
+    const theirs = native(text, "chetaev", ours.map(([t]) => t));
+    const largest = Math.max(...ours.flatMap((row, i) => row.map((x, j) => Math.abs(x - theirs[i][j]))));
+    must(ours.length > 20 && largest <= 1e-12, `of ${ours.length} rows the native ones differ by ${largest}`);
+    return JSON.stringify(ours.at(-1));
+  };
+  const light = await moved(bodies);
+  await page.screenshot({ path: join(pictures, "robot.png") });
+  const heavy = bodies.replace("mass = 3\n", "mass = 6\n");
+  must((await moved(heavy)) !== light, "another mass changes nothing");
+  const before = JSON.stringify((await rows(page, "Chetaev")).at(-1));
+  await after(page, () => slide(page, "drive", 800));
+  must(JSON.stringify((await rows(page, "Chetaev")).at(-1)) !== before, "the slider of the torque changes nothing");
+  const wrong = bodies.replace('on = "robot"', 'on = "robo"');
+  await type(page, wrong);
+  await page.waitForSelector("#faults:not([hidden])");
+  const message = await page.$eval("#faults", (faults) => faults.dataset.message);
+  const { stderr } = spawnSync(deltaq, ["check", "-"], { input: wrong, encoding: "utf8" });
+  const line = wrong.split("\n").indexOf('on = "robo"') + 1;
+  must(message.startsWith(`own:${line}:6: there is no body`) && stderr.includes(message.replaceAll("own:", "stdin:")), `a fault in a body:\n${message}\nnative:\n${stderr}`);
+  must((await page.$$eval("#marks .bad u", (all) => all.map(({ textContent }) => textContent))).join() === '"robo"', "the body's line is not marked");
   await leave(page);
 }
 

@@ -14,7 +14,7 @@ import puppeteer from "puppeteer-core";
 import * as access from "./access.test.mjs";
 import { broken } from "./broken.test.mjs";
 import * as drawn from "./drawn.test.mjs";
-import { editor, reviewed } from "./editor.test.mjs";
+import { editor, reviewed, robot } from "./editor.test.mjs";
 import * as first from "./first.test.mjs";
 import * as further from "./further.test.mjs";
 import { frames, growth } from "./growth.test.mjs";
@@ -265,13 +265,13 @@ async function looks() {
 // A browser that was never here.
 const fresh = () => browser.createBrowserContext();
 
-const tools = { browser, made: pages.made.bind(pages), open, leave, look, forget, fresh, link, must, after, choose, slide, type, said, OWN, url, pictures, deltaq };
+const tools = { browser, made: pages.made.bind(pages), open, leave, look, forget, fresh, link, must, after, choose, slide, type, rows, native, said, OWN, url, pictures, deltaq };
 // tests without settings that only Chromium has; all scenes run in Chromium only, and here eachBody for a
 // part of them
 const ELSEWHERE = ["eachBody", "costates", "cleared", "refusals", "overlaps", "wayBack", "badLinks", "table", "tabs", "forces", "down", "camera", "differences",
   "runaway", "logarithms", "hand", "rolling", "halted", "curves", "newText", "bodies", "editor", "reviewed"];
 // one that breaks off does not hide what the others find
-const single = { everyScene, eachBody, ...checks, ...access, ...drawn, ...looking, ...hands, ...takes, ...further, ...first, editor, reviewed, broken, tour, tasks };
+const single = { everyScene, eachBody, ...checks, ...access, ...drawn, ...looking, ...hands, ...takes, ...further, ...first, editor, reviewed, robot, broken, tour, tasks };
 const whole = (name, check) => () => check(tools).catch((error) => complaints.push(`${name}: ${error.stack}`));
 const named = (names) => names.map((name) => whole(name, single[name]));
 

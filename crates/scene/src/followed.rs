@@ -7,6 +7,7 @@ use symbolic::{Expr, Vanishing};
 use super::context::{Context, unrounded};
 use super::machine::Kind;
 use super::section::Text;
+use super::start::on_position;
 use crate::{SceneError, SceneErrorKind};
 
 /// Faults of the user's formulas, before those of what was made of them.
@@ -47,7 +48,9 @@ pub(super) fn rows(context: &mut Context, constraints: &mut Vec<Expr>, on_positi
         if is_zero(rate) || height.is_some_and(|height| is_zero(g.total_derivative(height, &system.flow()))) {
             let position = height.or((!has_velocity).then_some(f));
             let value = position.map(|position| g.vanishes(position, &system.parameter_values()));
-            if let Some(Vanishing::No { value, .. }) = value {
+            if let Some(Vanishing::No { value, .. }) = value
+                && on_position(0, value, &context.positions).is_err()
+            {
                 let kind = bodies::FaultKind::Off { what: row.says, value };
                 source.note::<()>(Err(source.error(&text.span, SceneErrorKind::Bodies(kind))));
             }

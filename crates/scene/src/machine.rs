@@ -242,7 +242,8 @@ impl Reader<'_> {
                     let rotation = s.get("rotation").map(|entry| self.rotation(&entry)).transpose()?;
                     Motion::Surface(Box::new(self.numbers(kind, "a list of two coordinates of the surface")?), rotation)
                 }
-                _ => Motion::Fixed,
+                _ if kind.boolean()? => Motion::Fixed,
+                _ => return Err(kind.error(SceneErrorKind::WrongWord { found: "false".into(), expected: "true" })),
             },
             several => {
                 let found: Vec<&str> = several.iter().map(|kind| kind.key).collect();
@@ -250,6 +251,11 @@ impl Reader<'_> {
                 return Err(entry.error(SceneErrorKind::Bodies(FaultKind::Joint { found })));
             }
         };
+        for (kind, key) in [("hinge", "angle"), ("slider", "shift"), ("surface", "rotation")] {
+            if let Some(entry) = s.get(key).filter(|_| s.get(kind).is_none()) {
+                return Err(entry.error_at_key(SceneErrorKind::Bodies(FaultKind::GoesWith { key, kind })));
+            }
+        }
         let axes = s.get("axes").map(|entry| self.rotation(&entry)).transpose()?;
         Ok(Joint { place: entry.span.clone(), at: vector("at")?, own: vector("own")?, axes, motion })
     }

@@ -42,6 +42,8 @@ force = "cos(t)"
 duration = 1
 "#;
 
+const SLIDER: &str = "joint = { slider = [1, 0, 0], shift = \"x\" }";
+
 /// What `right` is replaced by, and the beginning of the message that follows.
 const FAULTS: &[(&str, &str, &str)] = &[
     ("gravity = [0, 0, -9.81]", "gravity = -9.81", "2:11: expected a vector"),
@@ -104,6 +106,25 @@ const FAULTS: &[(&str, &str, &str)] = &[
     ("damping = 0.1\n", "", "28:9: `damping` is missing in [damper.arm]"),
     ("force = \"cos(t)\"", "force = \"cos(u)\"", "33:14: undefined name `u`"),
     ("[motor.wheel]\njoint", "[loop.wheel]\njoint", "31:7: `between` is missing in [loop.wheel]"),
+    (SLIDER, "joint = { plane = [\"x\", 0] }", "8:19: 2 numbers where 3 are needed"),
+    (SLIDER, "joint = { ball = \"x\" }", "8:18: expected a rotation that bodies can be built on"),
+    ("shift = \"x\"", "shift = \"x\", angle = \"a\"", "8:44: `angle` goes with `hinge`"),
+    (SLIDER, "joint = { fixed = false }", "8:19: expected true, found \"false\""),
+    (SLIDER, "rotation = \"rotation(z)\"", "8:12: expected a rotation that bodies can be built on"),
+    (SLIDER, "at = [1, 2, 3, 4]", "8:6: 4 numbers where 3 are needed"),
+    (
+        SLIDER,
+        "joint = { surface = [\"x\", 0] }",
+        "8:9: `cart` has a joint `surface`: it is a ball or a point, on a cone",
+    ),
+    (SLIDER, "joint = { surface = [\"x\"] }", "8:21: 1 numbers where 2 are needed"),
+    (SLIDER, "joint = { fixed = true, rotation = \"rotation(z, x)\" }", "8:25: `rotation` goes with `surface`"),
+    ("at = [0, 0, 0.3]", "at = [0, 0, \"h\"]", "12:56: undefined name `h`"),
+    ("at = [0, 0, 0.3]", "own = 0.3", "12:49: expected a vector"),
+    ("law = \"rolls\"", "law = \"rolls\"\nalong = \"x\"", "25:9: expected a vector of 2 or 3, found a number"),
+    ("stiffness = 2", "stiffness = 2\nrest = \"l\"", "28:9: undefined name `l`"),
+    ("stiffness = 2", "stiffness = 0\nrest = [1]", "28:8: expected a number or an expression in quotes"),
+    ("joint = \"cart\"", "between = { arm = [1, 0, 0], wal = [0, 0, 0] }", "26:30: there is no body `wal`"),
     ("\"r'\" = 1", "\"R'\" = 1", "36:1: `R'` is no"),
 ];
 
@@ -123,6 +144,18 @@ fn every_fault_of_bodies_has_its_place() {
         }
     }
     assert!(missed.is_empty(), "{}", missed.join("\n"));
+}
+
+/// The height of a wheel that is a coordinate follows from the contact; its guess is a number.
+#[test]
+fn a_guess_is_a_number() {
+    let text = ARM.replace("r = {", "z = { guess = 0.3 }\nr = {").replace("at = [0, 0, 0.1]", "at = [0, 0, \"z\"]");
+    let scene = Scene::parse("arm", &text).unwrap_or_else(|e| panic!("{e}"));
+    assert!((scene.start.q[2] - 0.1).abs() < 1e-14, "{:?}", scene.start);
+    let error = Scene::parse("arm", &text.replace("guess = 0.3", "guess = \"0.3\"")).map(drop).unwrap_err().to_string();
+    assert!(error.starts_with("arm:6:15: expected a number"), "{error}");
+    let error = Scene::parse("arm", &ARM.replace("r = { start", "r = { guess")).map(drop).unwrap_err().to_string();
+    assert!(error.starts_with("arm:6:1: `start` is missing in [coordinates.r]"), "{error}");
 }
 
 #[test]

@@ -14,9 +14,9 @@ macro_rules! by_hand {
 }
 
 /// Built-in scenes of bodies, and their definitions and `[system]` by hand.
-const MACHINES: [(&str, &str); 29] = by_hand!(
+const MACHINES: [(&str, &str); 30] = by_hand!(
     "ball-in-cone" "ball-in-cylinder" "ball-on-incline" "bicycle" "bowl" "chaplygin-sphere" "coin-on-incline" "disc"
-    "falling-disc" "mobile-robot" "one-motor-robot" "planar-body" "roller-racer" "routh-sphere"
+    "falling-disc" "mobile-robot" "one-motor-robot" "parallel-velocities" "planar-body" "roller-racer" "routh-sphere"
     "rubber-ball" "rubber-chaplygin-sphere" "rudder-skate" "servo-pendulum" "sledge" "sledge-with-friction" "sleigh"
     "snakeboard" "suslov" "trailer" "turning-knife-edge" "turntable" "unicycle-in-potential"
     "velocity-pendulum" "veselova"
