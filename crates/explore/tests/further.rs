@@ -101,7 +101,8 @@ fn where_derivatives_end_before_the_motion_it_is_said_why() {
         let (_, asked) = symbolic::faults::chances(work);
         asked.iter().filter(|chance| chance.at.file().replace('\\', "/").contains("removed-constraint/")).count()
     };
-    let by_one = derived(&|| drop(motion::sensitivities(&scene, choice, &["x"], &[setting(&scene).end], &Settings::default())));
+    let by_one =
+        derived(&|| drop(motion::sensitivities(&scene, choice, &["x"], &[setting(&scene).end], &Settings::default())));
     let by_all = derived(&|| {
         ask(json!({ "ask": "derivatives", "name": "rudder-skate", "text": text, "motions": [choice.label] }));
     });
