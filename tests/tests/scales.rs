@@ -21,7 +21,7 @@ const ACTIONS: [f64; 3] = [1e-13, 1.0, 1e13];
 const LENGTHS: [f64; 3] = [1e-9, 1.0, 1e9];
 const TIMES: [f64; 3] = [1e-6, 1.0, 1e6];
 /// One question out of this number is asked, in one scale; `SCALES=all` asks all questions in all scales.
-const ONE_IN: f64 = 4.0;
+const ONE_IN: f64 = 12.0;
 /// Factor by which the error estimates of two results may be wrong, and allowed relative error of numbers.
 const FACTOR: f64 = 100.0;
 const ALLOWED: f64 = 1e-11;

@@ -13,9 +13,9 @@ use symbolic::SplitMix;
 const UNITS: [i32; 5] = [-9, -3, 0, 3, 9];
 /// One choice of units in this number is drawn; `UNITS=1` takes all, `UNITS_OF_MOTIONS=1` for verdicts on
 /// motions.
-const ONE_IN: usize = 30;
+const ONE_IN: usize = 60;
 /// The answer of one scene takes a second: its brackets are too long.
-const LONG: (&str, usize) = ("bicycle", 120);
+const LONG: (&str, usize) = ("bicycle", 240);
 /// Number of words among which one may become undecided.
 const OPEN: usize = 50;
 

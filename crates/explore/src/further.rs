@@ -42,19 +42,26 @@ pub(crate) fn derivatives(subject: &Subject, question: &Question) -> Value {
     json!({ "motions": motions.collect::<Vec<_>>() })
 }
 
-/// By all numbers at once; if that is refused, by each alone: then the others have theirs, and it is said why
-/// one has not.
+/// By all numbers at once; if one of them is refused, by each alone: then the others have theirs, and it is
+/// said why one has not. A motion that stops on the way does so whatever it is derived by.
 fn of_motion(subject: &Subject, choice: &Choice, controls: &[Value], question: &Question) -> Value {
     let numbers: Vec<(&str, &str)> = controls.iter().filter_map(|control| number(control, choice)).collect();
     let end = setting(&subject.scene).end;
     let derived = |numbers: &[(&str, &str)]| rows(subject, choice, numbers, end, question);
     let found = derived(&numbers).or_else(|error| {
+        let error = match error {
+            Lacking::Motion(words) => return Err(words),
+            Lacking::Number(words) => words,
+        };
         let alone: Vec<_> = numbers.iter().map(|number| derived(&[*number])).collect();
         if alone.iter().all(Result::is_err) {
             return Err(error);
         }
         let rows = numbers.iter().zip(alone).map(|((name, unit), found)| {
-            found.unwrap_or_else(|refused| vec![json!({ "name": name, "unit": unit, "refused": refused })])
+            found.unwrap_or_else(|lacking| {
+                let (Lacking::Motion(words) | Lacking::Number(words)) = lacking;
+                vec![json!({ "name": name, "unit": unit, "refused": words })]
+            })
         });
         Ok(rows.flatten().collect())
     });
@@ -64,6 +71,12 @@ fn of_motion(subject: &Subject, choice: &Choice, controls: &[Value], question: &
     }
 }
 
+/// Why there are no derivatives: of the motion, or of a number.
+enum Lacking {
+    Motion(String),
+    Number(String),
+}
+
 /// A row per number, or why there is none.
 fn rows(
     subject: &Subject,
@@ -71,12 +84,12 @@ fn rows(
     numbers: &[(&str, &str)],
     end: f64,
     question: &Question,
-) -> Result<Vec<Value>, String> {
+) -> Result<Vec<Value>, Lacking> {
     let names: Vec<&str> = numbers.iter().map(|(name, _)| *name).collect();
     let found = sensitivities(&subject.scene, choice, &names, &[end], &settings(question));
-    let found = found.map_err(|error| error.to_string())?;
+    let found = found.map_err(|error| Lacking::Number(error.to_string()))?;
     if let Some(complaint) = found.complaint() {
-        return Err(complaint);
+        return Err(Lacking::Motion(complaint));
     }
     let at_end = found.derivatives.into_iter().flatten().zip(found.errors.into_iter().flatten());
     let rows = numbers.iter().zip(at_end).map(|((name, unit), (by, error))| {

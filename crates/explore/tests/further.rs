@@ -1,7 +1,7 @@
 //! Integrals and derivatives, against the library and against motions from other numbers.
 
 use integrals::Integrals;
-use motion::choices;
+use motion::{Settings, choices, setting};
 use scene::Scene;
 use serde_json::{Value, json};
 
@@ -93,6 +93,20 @@ fn where_derivatives_end_before_the_motion_it_is_said_why() {
     let refused = of("removed constraint (coordinates)")["refused"].as_str().unwrap();
     assert!(refused.contains("cos(phi) vanishes, by which the equations divide"), "{refused}");
     assert!(of("Chetaev")["rows"].is_array(), "{found}");
+    // that is so by whatever number: the motion is not asked again by each alone
+    let scene = Scene::parse("rudder-skate", text).unwrap();
+    let all = choices(&scene);
+    let choice = all.iter().find(|choice| choice.label == "removed constraint (coordinates)").unwrap();
+    let derived = |work: &dyn Fn()| {
+        let (_, asked) = symbolic::faults::chances(work);
+        asked.iter().filter(|chance| chance.at.file().replace('\\', "/").contains("removed-constraint/")).count()
+    };
+    let by_one =
+        derived(&|| drop(motion::sensitivities(&scene, choice, &["x"], &[setting(&scene).end], &Settings::default())));
+    let by_all = derived(&|| {
+        ask(json!({ "ask": "derivatives", "name": "rudder-skate", "text": text, "motions": [choice.label] }));
+    });
+    assert!(by_one > 0 && by_all < 3 * by_one, "{by_all} operations, by one number {by_one}");
 }
 
 /// Equations are right, or the wrong term is told with its place.

@@ -1,6 +1,6 @@
 """One object of each class, and every method of it from eight threads at once; a freeze ends with the stacks.
 
-Some seconds long, or `ROUNDS` of them, whatever time they take."""
+A second long, or `ROUNDS` of them, whatever time they take."""
 
 import faulthandler
 import os
@@ -13,7 +13,7 @@ import deltaq
 import numpy as np
 
 THREADS, ROUNDS = 8, int(os.environ.get("ROUNDS", "0"))
-SECONDS, FROZEN = (1e9, 36_000.0) if ROUNDS else (4.0, 100.0)
+SECONDS, FROZEN = (1e9, 36_000.0) if ROUNDS else (1.0, 100.0)
 # seldom otherwise: a thread that gives Python's lock up finds another one that waits for it
 sys.setswitchinterval(1e-5)
 faulthandler.dump_traceback_later(FROZEN, exit=True)

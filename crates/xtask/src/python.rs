@@ -24,6 +24,8 @@ const WHEEL_REQUIREMENTS: &str = "crates/xtask/wheel.txt";
 const GLIBC: u32 = 28;
 /// What of stubs the module itself cannot have.
 const STUBTEST: &str = "stubtest.txt";
+/// maturin would warn that it is not the backend: it is asked by the one that is.
+const OWN_BACKEND: (&str, &str) = ("MATURIN_NO_MISSING_BUILD_BACKEND_WARNING", "1");
 /// The oldest Python for which the module is built.
 const OLDEST: (u32, u32) = (3, 11);
 /// Where a Python is looked for.
@@ -102,8 +104,8 @@ pub(crate) fn wheel() -> Result<Outcome> {
 /// The source distribution, in this folder.
 pub(crate) fn source_distribution(folder: &Path) -> Result<PathBuf> {
     let mut maturin = outside(environment()?);
-    maturin.args(["-m", "maturin", "sdist", "--quiet", "--out"]).arg(folder).current_dir(CRATE);
-    succeed(maturin.env("MATURIN_NO_MISSING_BUILD_BACKEND_WARNING", "1"))?;
+    maturin.args(["-m", "maturin", "sdist", "--out"]).arg(folder).current_dir(CRATE);
+    succeed(maturin.env(OWN_BACKEND.0, OWN_BACKEND.1))?;
     let files = std::fs::read_dir(folder)?.filter_map(|file| file.ok().map(|file| file.path()));
     let mut packed = files.filter(|path| path.extension().is_some_and(|ending| ending == "gz"));
     packed.next().context("maturin made no source distribution")
@@ -188,7 +190,8 @@ fn module(python: &Path) -> Result<Module> {
     std::fs::create_dir_all(&folder).with_context(|| folder.display().to_string())?;
     let mut metadata = outside(python);
     metadata.args(["-m", "maturin", "pep517", "write-dist-info", "--metadata-directory"]).arg(&site);
-    succeed(metadata.arg("--interpreter").arg(python).current_dir(CRATE).stdout(Stdio::null()))?;
+    metadata.arg("--interpreter").arg(python).current_dir(CRATE).stdout(Stdio::null());
+    succeed(metadata.env(OWN_BACKEND.0, OWN_BACKEND.1))?;
     for file in std::fs::read_dir(SOURCES).context(SOURCES)? {
         let file = file.context(SOURCES)?;
         if file.path().is_file() {

@@ -12,10 +12,13 @@ use scene::catalogue::{CLASSICS, SCENES, find};
 
 /// Not divisible by the number of lanes.
 const MEMBERS: usize = 11;
+/// One member in so many is solved alone, too: of each motion others, so that of three all are.
+const ONE_IN: usize = 3;
 
 /// What became of the members of all ensembles.
 #[derive(Default, Debug)]
 struct Count {
+    motions: usize,
     completed: usize,
     stopped: usize,
     refused: usize,
@@ -53,6 +56,7 @@ fn compare(name: &str, base: &Scene, choice: &Choice, count: &mut Count) {
     let settings = Settings { method: Some(Method::Taylor), tolerance: 1e-9, ..Settings::default() };
     let parameter = base.system.parameters.first().map(|p| base.system.graph.name(p.symbol));
     let what = format!("{name}, {}", choice.label);
+    count.motions += 1;
     let Ok(mut ensemble) = Ensemble::new(base, choice, parameter.as_deref().as_slice(), &settings) else {
         assert!(solve_choice(base, choice, &settings).is_err(), "{what}: no ensemble where there is a motion");
         return;
@@ -67,13 +71,16 @@ fn compare(name: &str, base: &Scene, choice: &Choice, count: &mut Count) {
     let (start, length) = (base.start.t, base.duration);
     let times: Vec<f64> = [0.0, 0.01, 0.1, 0.25, 0.3, 0.4, 0.5].map(|part| start + part * length).to_vec();
     let mut motions = ensemble.motions(&members, &times, &EnsembleOptions::default()).into_iter();
-    for (scene, member) in scenes.iter().zip(ready) {
+    for (place, (scene, member)) in scenes.iter().zip(ready).enumerate() {
+        let here = member.and_then(|_| motions.next().expect("an answer for every member"));
+        if !(place + count.motions).is_multiple_of(ONE_IN) {
+            continue;
+        }
         // a removal is made of expressions of its own scene
         let mut own = choices(scene).into_iter().chain(forms(scene));
         let own = own.find(|own| own.label == choice.label).expect("the same choice");
         let choice = Choice { constants: constants_of(choice, scene), ..own };
         let single = solve_choice(scene, &choice, &settings);
-        let here = member.and_then(|_| motions.next().expect("an answer for every member"));
         let (mut single, here) = match (single, here) {
             (Ok(single), Ok(here)) => (single, here),
             (Err(_), Err(_)) => {
@@ -126,8 +133,8 @@ fn members_are_single_motions_in_every_formulation_of_every_scene() {
         }
     }
     println!("{count:?}");
-    assert!(count.completed > 500, "{count:?}");
-    assert!(count.stopped > 20, "members that stop: {count:?}");
+    assert!(count.completed > 170, "{count:?}");
+    assert!(count.stopped > 7, "members that stop: {count:?}");
     for why in ["an event on the way", "not in lanes", "not to be trusted"] {
         assert!(count.alone.iter().any(|words| words.contains(why)), "no member left for `{why}`: {count:?}");
     }

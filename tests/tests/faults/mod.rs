@@ -78,7 +78,7 @@ const EXPLAINED: [[&str; 4]; 2] = [
 
 /// Number of faults per place that are tried on one derivation path; `FAULTS_A_PLACE=N` tries more, or all.
 /// Each path begins with another one, so that the paths of fifteen systems together try most of them.
-const A_PLACE: usize = 2;
+const A_PLACE: usize = 1;
 
 /// A derivation path that is still to be tried.
 pub struct Way<'a> {
