@@ -33,11 +33,13 @@ pub(crate) fn check(arguments: &CheckArguments) -> Result<String> {
     let mut text = String::new();
     let (mut faults, mut remarks) = (0, 0);
     for name in &arguments.scenes {
-        match scene::catalogue::find(name, &arguments.set.overrides) {
-            Ok(scene) => {
+        let file = if name == "-" { "stdin" } else { name };
+        let read = |text: String| Ok(Scene::remarks(file, &text, &arguments.set.overrides)?);
+        match scene::catalogue::source(name).and_then(read) {
+            Ok((scene, of_scene)) => {
                 text += &described(&scene);
                 text += &of_contacts(&scene);
-                for remark in Scene::remarks(name, &scene::catalogue::source(name)?, &arguments.set.overrides)? {
+                for remark in of_scene {
                     remarks += 1;
                     text += &format!("note: {remark}\n");
                 }

@@ -71,5 +71,5 @@ fn fault(e: &SceneError) -> Value {
 /// Notes on a text without faults, with their places.
 fn remarks(question: &Question) -> Result<Value, SceneError> {
     let set: &[(String, f64)] = &[];
-    Ok(Scene::remarks(&question.name, &question.text, set)?.iter().map(fault).collect())
+    Ok(Scene::remarks(&question.name, &question.text, set)?.1.iter().map(fault).collect())
 }

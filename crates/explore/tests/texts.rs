@@ -30,7 +30,7 @@ fn notes_are_those_of_the_check() {
     let odd = SLEDGE.replace("[coordinates]", "unused = 2.0\n[coordinates]");
     let (answer, _) = ask(json!({ "ask": "check", "name": "a", "text": odd }));
     let set: &[(String, f64)] = &[];
-    let remarks = Scene::remarks("a", &odd, set).unwrap();
+    let (_, remarks) = Scene::remarks("a", &odd, set).unwrap();
     assert_eq!(answer["remarks"].as_array().map(Vec::len), Some(remarks.len()));
     let line = odd.lines().position(|line| line.starts_with("unused")).unwrap() + 1;
     assert_eq!(

@@ -1,6 +1,6 @@
 //! Constraints that are integrable each on its own.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use symbolic::{Expr, Symbol};
 
@@ -30,10 +30,13 @@ impl System {
         let is_integrable = |(row, offset): &(BTreeMap<usize, Expr>, Expr)| {
             let a = |j: usize| row.get(&j).copied().unwrap_or(if j + 1 == places.len() { *offset } else { g.zero() });
             let turn = |j: usize, k: usize| g.sub(g.derivative(a(k), places[j]), g.derivative(a(j), places[k]));
-            let n = places.len();
-            let triples = (0..n).flat_map(|i| (i + 1..n).flat_map(move |j| (j + 1..n).map(move |k| [i, j, k])));
-            let written = |triple: &[usize; 3]| triple.iter().any(|&i| !g.is_zero(a(i)));
-            triples.filter(written).all(|[i, j, k]| {
+            // of other places there are neither coefficients nor derivatives
+            let seen: BTreeSet<Symbol> = row.values().chain([offset]).flat_map(|&e| g.symbols_of(e)).collect();
+            let written = |&j: &usize| !g.is_zero(a(j)) || seen.contains(&places[j]);
+            let own: Vec<usize> = (0..places.len()).filter(written).collect();
+            let after = |i: usize| own.iter().copied().filter(move |&j| j > i);
+            let pairs = |i: usize| after(i).flat_map(move |j| after(j).map(move |k| [i, j, k]));
+            own.iter().copied().flat_map(pairs).all(|[i, j, k]| {
                 let terms = [[i, j, k], [j, k, i], [k, i, j]].map(|[i, j, k]| g.mul(a(i), turn(j, k)));
                 let sum = g.sum(&terms);
                 g.vanishes_exactly(sum) || g.vanishes_exactly(self.as_written(sum))

@@ -1,11 +1,11 @@
 //! Constraints that follow from the others: dependent rows of constant rank.
 
-use std::collections::HashMap;
+use std::collections::BTreeMap;
 
 use nalgebra::{DMatrix, DVector};
 use symbolic::{Evaluator, Expr, SplitMix};
 
-use crate::elimination::{PIVOT_CHOICE, eliminate, largest, open};
+use crate::elimination::{LinearForms, PIVOT_CHOICE, eliminate, largest, open};
 use crate::{SingularValues, System};
 
 /// Singular values under this part of the largest are zero at the start, and behind a way from it.
@@ -36,6 +36,9 @@ impl System {
         let place: Vec<f64> = q.iter().copied().chain([t]).collect();
         let mut rows = Rows::new(self)?;
         let start = rows.at(&place)?;
+        if SingularValues::least_at_least(&start) > AT_START * start.norm() {
+            return None;
+        }
         let rank_of = |matrix: &DMatrix<f64>| rank(&SingularValues::of(matrix), AT_START);
         let rank = rank_of(&start);
         if rank == rows.count || rank_of(&start.columns(0, q.len()).into_owned()) < rank {
@@ -116,19 +119,16 @@ struct Rows {
 
 impl Rows {
     fn new(system: &System) -> Option<Self> {
-        let (g, velocities) = (&system.graph, system.velocities());
-        let jacobian = system.constraint_jacobian();
-        let (count, n) = (jacobian.rows(), jacobian.columns());
-        let moves = |&e: &Expr| velocities.iter().any(|&v| g.depends_on(e, v));
-        if count == 0 || jacobian.entries().iter().any(moves) {
+        let g = &system.graph;
+        let LinearForms { rows, offsets } = system.linear_constraints().ok()?;
+        let (count, n) = (rows.len(), system.dimension());
+        if count == 0 {
             return None;
         }
-        let rest: HashMap<_, _> = velocities.iter().map(|&v| (v, g.zero())).collect();
-        let row = |i: usize| {
-            let b = g.substitute(system.constraints[i], &rest);
-            jacobian.row(i).iter().copied().take(n).chain([b]).collect::<Vec<_>>()
+        let row = |(row, b): (&BTreeMap<usize, Expr>, &Expr)| {
+            (0..n).map(|j| row.get(&j).copied().unwrap_or(g.zero())).chain([*b]).collect::<Vec<_>>()
         };
-        let entries: Vec<Expr> = (0..count).flat_map(row).collect();
+        let entries: Vec<Expr> = rows.iter().zip(&offsets).flat_map(row).collect();
         let inputs: Vec<_> = system.positions().into_iter().chain([system.time]).collect();
         let program = Evaluator::new(g.compile(&inputs, &entries, &system.parameter_values()).ok()?);
         Some(Rows { program, count, columns: None })
@@ -144,10 +144,10 @@ impl Rows {
         let inverse = |x: f64| if x > 0.0 { x.recip() } else { 1.0 };
         let [rows, columns] = self.columns.get_or_insert_with(|| {
             let columns = DVector::from_iterator(place.len(), matrix.column_iter().map(|c| inverse(c.amax())));
-            let scaled = &matrix * DMatrix::from_diagonal(&columns);
+            let scaled = DMatrix::from_fn(self.count, place.len(), |i, j| matrix[(i, j)] * columns[j]);
             [DVector::from_iterator(matrix.nrows(), scaled.row_iter().map(|r| inverse(r.amax()))), columns]
         });
-        Some(DMatrix::from_diagonal(rows) * matrix * DMatrix::from_diagonal(columns))
+        Some(DMatrix::from_fn(self.count, place.len(), |i, j| rows[i] * matrix[(i, j)] * columns[j]))
     }
 
     /// The direction nearest to `wanted` that the constraints allow, in the units of places.

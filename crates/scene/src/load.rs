@@ -66,9 +66,9 @@ impl Scene {
         load(name, name, text, overrides)
     }
 
-    /// What a reviewer would ask about a scene that can be read, each with its place: names that nothing
-    /// uses, masses below zero, moments that no body has, weights with the wrong sign, forces that drive
-    /// whichever way the system moves, constraints that contradict the picture. `file` as in errors.
+    /// [`Scene::parse_with`], and what a reviewer would ask about the scene, each with its place: names that
+    /// nothing uses, masses below zero, moments that no body has, weights with the wrong sign, forces that
+    /// drive whichever way the system moves, constraints that contradict the picture. `file` as in errors.
     ///
     /// # Errors
     /// As [`Scene::parse`].
@@ -76,8 +76,8 @@ impl Scene {
         file: &str,
         text: &str,
         overrides: &[(String, N)],
-    ) -> Result<Vec<SceneError>, SceneError> {
-        loaded(file, file, text, overrides, review::remarks).map(|(_, remarks)| remarks)
+    ) -> Result<(Scene, Vec<SceneError>), SceneError> {
+        loaded(&name_of(file), file, text, overrides, review::remarks)
     }
 
     /// Reads a scene file of at most [`SIZE_LIMIT`] bytes.
@@ -139,8 +139,7 @@ impl Scene {
         overrides: &[(String, N)],
     ) -> Result<Scene, SceneError> {
         let file = path.display().to_string();
-        let name = path.file_stem().map_or_else(|| file.clone(), |stem| stem.to_string_lossy().into_owned());
-        load(&name, &file, text, overrides)
+        load(&name_of(&file), &file, text, overrides)
     }
 }
 
@@ -150,8 +149,12 @@ fn load<N: Clone + Into<Number>>(
     text: &str,
     overrides: &[(String, N)],
 ) -> Result<Scene, SceneError> {
-    work_on(format!("scene {name}, digest {:016x}", digest(text, overrides)));
     loaded(name, file, text, overrides, |_, _, _| ()).map(|(scene, ())| scene)
+}
+
+/// What the scene of a file is called.
+fn name_of(file: &str) -> String {
+    Path::new(file).file_stem().map_or_else(|| file.into(), |stem| stem.to_string_lossy().into_owned())
 }
 
 /// The scene, and what `look` sees in it while it is read.
@@ -162,6 +165,7 @@ fn loaded<N: Clone + Into<Number>, T>(
     overrides: &[(String, N)],
     look: impl FnOnce(&Context, &View, &State) -> T,
 ) -> Result<(Scene, T), SceneError> {
+    work_on(format!("scene {name}, digest {:016x}", digest(text, overrides)));
     let faults = RefCell::default();
     let source = Source { file, text, faults: &faults };
     let scene = Overrides::new(source, overrides).and_then(|overrides| read(name, source, overrides, look));

@@ -3,7 +3,7 @@
 use scene::Scene;
 
 fn remarks(text: &str) -> Vec<String> {
-    let remarks = Scene::remarks::<f64>("scene", text, &[]).unwrap_or_else(|e| panic!("{e}"));
+    let (_, remarks) = Scene::remarks::<f64>("scene", text, &[]).unwrap_or_else(|e| panic!("{e}"));
     remarks.iter().map(|remark| remark.to_string().lines().next().unwrap_or_default().to_owned()).collect()
 }
 

@@ -4,7 +4,7 @@ use nalgebra::DMatrix;
 use symbolic::Matrix;
 
 use super::error::StartError;
-use super::regularity::scaled_constraint_jacobian;
+use super::regularity::nearly_dependent;
 use crate::{State, System};
 
 /// Ratio of singular values under which constraints are recombined; over it multipliers lose < 4 digits.
@@ -32,10 +32,9 @@ impl Recombination {
         if system.constraints.len() < 2 {
             return Ok(None);
         }
-        let (jacobian, row_scale, ratio) = scaled_constraint_jacobian(system, state)?;
-        if ratio > NEARLY_DEPENDENT {
+        let Some((jacobian, row_scale, ratio)) = nearly_dependent(system, state, NEARLY_DEPENDENT)? else {
             return Ok(None);
-        }
+        };
         // Aᵀ = Q R, so that R⁻ᵀ A = Qᵀ
         let inverse = jacobian.transpose().qr().r().try_inverse();
         let matrix = inverse.map(|r| r.transpose() * DMatrix::from_diagonal(&row_scale));

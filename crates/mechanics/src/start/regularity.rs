@@ -6,7 +6,7 @@ use symbolic::{Bounded, Symbol};
 use super::error::{Quantity, StartError, check_lengths};
 use super::numeric::{AtState, Program, bounded, state_symbols};
 use crate::newton::decompose;
-use crate::{State, System};
+use crate::{SingularValues, State, System};
 
 /// Ratios of singular values under this are taken for zero.
 pub(super) const SINGULAR_LIMIT: f64 = 1e-10;
@@ -44,7 +44,8 @@ pub fn check_reactions(system: &System, state: &State) -> Result<(), StartError>
     let (own, kept) = (scaled(&own)?, scaled(system)?);
     let singular =
         |singular_values, ratio| StartError::SingularReactions { singular_values, ratio, limit: SINGULAR_LIMIT };
-    if let Err(StartError::DependentConstraints { singular_values, ratio, .. }) = own.check_constraints() {
+    if let Err(StartError::DependentConstraints { singular_values, ratio, .. }) = own.check_constraints(SINGULAR_LIMIT)
+    {
         return Err(singular(singular_values, ratio));
     }
     let between = own.kernel()?.tr_mul(&(&kept.mass * kept.kernel()?));
@@ -54,14 +55,16 @@ pub fn check_reactions(system: &System, state: &State) -> Result<(), StartError>
     }
 }
 
-/// `A` in units that make its entries of order 1, the factors of its rows, the ratio of its singular values.
-pub(super) fn scaled_constraint_jacobian(
+/// `A` in units that make its entries of order 1, the factors of its rows, the ratio of its singular values;
+/// `None` where that is over a limit.
+pub(super) fn nearly_dependent(
     system: &System,
     state: &State,
-) -> Result<(DMatrix<f64>, DVector<f64>, f64), StartError> {
+    limit: f64,
+) -> Result<Option<(DMatrix<f64>, DVector<f64>, f64)>, StartError> {
     let scaled = Regularity::new(system, &[]).scaled(state, &[])?;
-    let ratio = scaled.check_constraints()?;
-    Ok((scaled.constraint_jacobian, scaled.rows, ratio))
+    let ratio = scaled.check_constraints(limit)?;
+    Ok((ratio <= limit).then_some((scaled.constraint_jacobian, scaled.rows, ratio)))
 }
 
 /// What [`check_regularity`] checks, compiled for values of some parameters.
@@ -102,13 +105,13 @@ impl Regularity {
             }
         }
         let scaled = self.scaled(state, varied)?;
-        scaled.check_constraints()?;
+        scaled.check_constraints(SINGULAR_LIMIT)?;
         scaled.check_mass()
     }
 
     /// Checks the constraint Jacobian alone.
     pub(super) fn check_constraints(&mut self, state: &State, varied: &[f64]) -> Result<(), StartError> {
-        self.scaled(state, varied)?.check_constraints().map(|_| ())
+        self.scaled(state, varied)?.check_constraints(SINGULAR_LIMIT).map(|_| ())
     }
 
     fn scaled(&mut self, state: &State, varied: &[f64]) -> Result<ScaledMatrices, StartError> {
@@ -144,10 +147,16 @@ impl ScaledMatrices {
         })
     }
 
-    /// The ratio of the singular values of `A`, 1 where there is no constraint.
-    fn check_constraints(&self) -> Result<f64, StartError> {
+    /// The ratio of the singular values of `A`, 1 where there is no constraint; where it is over `enough`, any
+    /// such number.
+    fn check_constraints(&self, enough: f64) -> Result<f64, StartError> {
         if self.constraint_jacobian.nrows() == 0 {
             return Ok(1.0);
+        }
+        let at_least = SingularValues::least_at_least(&self.constraint_jacobian);
+        let at_least = at_least / self.constraint_jacobian.norm().max(1.0);
+        if at_least > enough {
+            return Ok(at_least);
         }
         let values = match self.constraint_jacobian.nrows() {
             1 => DVector::from_element(1, self.constraint_jacobian.norm()),
