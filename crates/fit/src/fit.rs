@@ -240,7 +240,9 @@ pub(crate) fn with_intervals(problem: &Problem, fit: Fit) -> Fit {
     let own = fit.estimates.iter().take(problem.unknowns().len());
     let whole = Minimum { value: fit.chi_squared, ..Minimum::start(0, own.map(|e| e.value).collect()) };
     let Ok(Near { held, less, best, jacobian }) = Near::new(problem, &whole) else { return fit };
-    let near = less.limited(&best.unknowns, PROFILE_STEPS);
+    let mut near = less.coarse().limited(&best.unknowns, PROFILE_STEPS);
+    let Ok((values, _)) = near.weighed(&best.unknowns, false) else { return fit };
+    let best = Minimum { value: values.norm_squared(), ..best };
     let errors = shown(&less, &best.unknowns, &jacobian).errors;
     let shown = (0..problem.unknowns().len()).filter(|i| !held.contains(i));
     for (i, place) in shown.enumerate() {

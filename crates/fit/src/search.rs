@@ -21,7 +21,7 @@ const LONGER: f64 = 1.5;
 /// Starts that are followed from one beginning to the next, by its number: short ones tell little of them.
 const FOLLOWED: [usize; 4] = [12, 10, 8, 4];
 /// Least gain, as a part of χ², for which an iteration goes on, by [`Stage`].
-const GAINS: [f64; 5] = [1e-2, 1e-4, 1e-10, 1e-6, 1e-4];
+const GAINS: [f64; 5] = [1e-2, 1e-4, 1e-8, 1e-6, 1e-4];
 /// Iterations by [`Stage`].
 const ITERATIONS: [usize; 5] = [10, 20, 100, 12, 50];
 /// Starts for the whole film are up to this many times halfway to the first one.
