@@ -8,13 +8,15 @@ use motion::{CHETAEV, Choice, VAKONOMIC, choices_among, over_threads};
 use scene::Scene;
 
 use crate::creep;
+use crate::fit::{sought, with_intervals};
 use crate::known;
 use crate::length::length_that_tells;
+use crate::problem::Fitting;
 use crate::question::{SLIP, has_constants, is_constant, is_law, problem_of};
-use crate::search::{POOR, begun, fits as fits_noise, least_near};
-use crate::settled::{by_beginning, explain, settle};
+use crate::search::{POOR, begun};
+use crate::settled::{explain, settle};
 use crate::verdict::{beside, is_excluded};
-use crate::{Film, Fit, FitError, Problem, Question, Row, Unknown, Verdict, fit, verdicts};
+use crate::{Film, Fit, FitError, Problem, Question, Row, Unknown, Verdict, verdicts};
 
 /// Most numbers of all films: with them a fit takes minutes.
 const MOST_NUMBERS: usize = 300_000;
@@ -144,12 +146,21 @@ fn fit_given(
     };
     let mut rows = verdicts(fits.iter().map(plain).collect());
     for (row, (_, own)) in rows.iter_mut().zip(&fits) {
-        let asked = problem_of(&scene, &row.choice, films, question).ok();
-        row.shown = asked.map(|problem| beside(problem.identifiability(&scene, &row.choice), row.fit.as_ref().ok()));
         row.problem = own.as_ref().ok().map(|(problem, _)| problem.clone());
     }
     settle(&mut rows, question);
     explain(&scene, &mut rows, films, question);
+    for row in &mut rows {
+        // what is excluded has no intervals to look for, and slip has them from its bound
+        let has_none = matches!(row.verdict, Verdict::Excluded { .. } | Verdict::Unsettled { .. });
+        if let (false, Ok(fit), Some(problem)) = (has_none, &row.fit, &row.problem)
+            && !fit.estimates.iter().any(|e| e.name == SLIP)
+        {
+            row.fit = Ok(with_intervals(problem, fit.clone()));
+        }
+        let asked = problem_of(&scene, &row.choice, films, question).ok();
+        row.shown = asked.map(|problem| beside(problem.identifiability(&scene, &row.choice), row.fit.as_ref().ok()));
+    }
     for (i, row) in rows.iter_mut().enumerate() {
         if ordered && *row.choice.formulation == *CHETAEV {
             row.notes.push("nested: each of its motions is vakonomic for some μ₀, which is proved".into());
@@ -268,33 +279,21 @@ fn fit_choices(
         if let Some((own, chetaev, fit)) = near {
             problem.known = known::beside_chetaev(scene, choice, &problem, (own, chetaev, &known::numbers(fit)));
         }
-        let near = near.filter(|(.., fit)| fit.faults().next().is_none());
-        Ok::<_, FitError>((problem, near.map(|(own, _, fit)| (own.clone(), fit.clone()))))
+        if let Some((own, _, fit)) = near.filter(|(.., fit)| fit.faults().next().is_none()) {
+            let theta = fit.estimates.iter().map(|e| e.value).collect();
+            let scale = fit.estimates.iter().map(|e| if e.error.is_finite() { e.error } else { 1.0 }).collect();
+            problem.beside = Some(Box::new(Fitting { problem: own.clone(), theta, scale }));
+        }
+        Ok::<_, FitError>(problem)
     };
     let problems: Vec<_> = choices.iter().map(|choice| Mutex::new(Some(problem(choice)))).collect();
     let is_of_law = |name: &str| question.law.iter().any(|u| u.name == name);
     let (starts, is_of_law): (usize, &(dyn Fn(&str) -> bool + Sync)) = (question.starts, &is_of_law);
     let fits = over_threads(question.threads, choices.len(), |i| {
-        let (mut problem, near) =
-            problems[i].lock().ok().and_then(|mut own| own.take()).expect("each is taken once")?;
-        // where a beginning excludes it, the least χ² of the whole films is no matter
-        if let Some((own, fit)) = near.filter(|_| !begins_well(&problem)) {
-            let spread = |name: &str| is_constant(name) || is_of_law(name);
-            problem.excluded_by = by_beginning((&own, &fit), &problem, (1, problem.samples() / 2), &spread, starts);
-        }
-        let is_open = problem.excluded_by.is_none();
-        if !is_open {
-            problem.known.clear();
-        }
-        let starts = if is_open { starts } else { 1 };
+        let problem = problems[i].lock().ok().and_then(|mut own| own.take()).expect("each is taken once")?;
         fit_one(problem, None, is_of_law, starts, false)
     });
     choices.into_iter().zip(fits).collect()
-}
-
-/// Whether a start that is known leads to residuals of noise.
-fn begins_well(problem: &Problem) -> bool {
-    problem.known.iter().any(|start| least_near(problem, start).is_some_and(|found| fits_noise(problem, &found)))
 }
 
 /// The law of first order fitted: with slip, constraints that are kept are its bound.
@@ -310,11 +309,13 @@ fn fit_law(scene: &Scene, choice: &Choice, films: &[Film], question: &Question, 
     let law: Vec<Unknown> = question.law.iter().filter(|u| u.name != SLIP).cloned().collect();
     let kept = problem_of(&unmoved, choice, films, &Question { law: &law, ..question.clone() });
     let kept = kept.and_then(|problem| fit_one(problem, near, &is_of_law, question.starts, false));
+    let kept = kept.map(|(problem, fit)| (problem.clone(), with_intervals(&problem, fit)));
     let fine = kept.as_ref().ok().map(|(_, fit)| fit).filter(|fit| fit.objections().next().is_none());
     let near = fine.or(near).cloned();
     let problem = creep::followed(&problem, slip);
     let creeping = fit_one(problem.clone(), near.as_ref(), &is_of_law, question.starts, false);
-    creep::joined(kept, (problem, slip), creeping.map(|(_, fit)| fit))
+    let creeping = creeping.map(|(problem, fit)| with_intervals(&problem, fit));
+    creep::joined(kept, (problem, slip), creeping)
 }
 
 fn fit_one(
@@ -337,6 +338,6 @@ fn fit_one(
         problem.begin_at(&begun(&problem, &held));
     }
     let spread = |name: &str| is_constant(name) || is_of_law(name) || hidden(name);
-    let found = fit(&problem, &spread, starts, known || near.is_some())?;
+    let found = sought(&problem, &spread, starts, known || near.is_some())?;
     Ok((problem, found))
 }

@@ -104,6 +104,13 @@ pub(crate) fn positive(of: &str, found: f64) -> Result<f64, FitError> {
 }
 
 impl Film {
+    /// A thousandth of the least standard deviation, over the size of its column.
+    pub(crate) fn finest(&self) -> f64 {
+        let size = |c: usize| self.rows.iter().filter_map(|row| row[c]).fold(0.0, |a: f64, x| a.max(x.abs()));
+        let each = self.columns.iter().enumerate().map(|(c, column)| 1e-3 * column.sigma / size(c));
+        each.fold(f64::INFINITY, f64::min)
+    }
+
     /// Reads a table, CSV, with a column `t`. Every other column has the name of an entry of `[film]` or of
     /// `[observables]`, or is an expression of coordinates, velocities and parameters: `x`, `x'`,
     /// `a*theta`. A unit may follow: `x [mm]`. Empty cells and `nan` are gaps; a row of gaps only is left

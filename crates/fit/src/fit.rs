@@ -71,6 +71,8 @@ pub struct Fit {
     pub reached: usize,
     /// The least χ² that the first half of the starts leads to; infinite where they lead nowhere.
     pub by_half: f64,
+    /// Samples of a beginning of the films that excludes the formulation beside another, and the significance.
+    pub excluded_by: Option<(usize, f64)>,
     /// The residuals.
     pub residuals: Vec<Residual>,
 }
@@ -178,13 +180,21 @@ fn combination(problem: &Problem, along: &DVector<f64>, lengths: &[f64]) -> Stri
 /// # Errors
 /// [`FitError::NoMotion`], and [`FitError::ShowsNothing`] where all unknowns change nothing.
 pub fn fit(problem: &Problem, spread: &dyn Fn(&str) -> bool, starts: usize, known: bool) -> Result<Fit, FitError> {
+    sought(problem, spread, starts, known).map(|fit| with_intervals(problem, fit))
+}
+
+/// The same, with intervals by standard errors alone.
+pub(crate) fn sought(
+    problem: &Problem,
+    spread: &dyn Fn(&str) -> bool,
+    starts: usize,
+    known: bool,
+) -> Result<Fit, FitError> {
     let half = starts.div_ceil(2);
-    let Found { best, minima, starts } = search(problem, spread, starts, known)?;
-    let best = off_stationary(problem, best);
-    let whole = best.clone();
-    let (held, less, best) = without_hidden(problem, &best)?;
+    let Found { best, minima, starts, excluded_by } = search(problem, spread, starts, known)?;
     let no_motion = |reason| FitError::NoMotion { starts, reason };
-    let (_, jacobian) = less.clone().weighed(&best.unknowns, true).map_err(no_motion)?;
+    let whole = off_stationary(problem, best);
+    let Near { held, less, best, jacobian } = Near::new(problem, &whole)?;
     let Shown { errors, hidden } = shown(&less, &best.unknowns, &jacobian);
     let by_half = if best.first < half { best.value } else { least_from(half, &minima) };
     let residuals = less.clone().residuals(&best.unknowns).map_err(no_motion)?;
@@ -192,23 +202,18 @@ pub fn fit(problem: &Problem, spread: &dyn Fn(&str) -> bool, starts: usize, know
     let (count, unknowns) = (problem.count(), errors.len());
     let fitted = unknowns - hidden.len();
     let tests = residual_tests(&films, &residuals, fitted.saturating_sub(priors(problem)), problem.is_robust());
-    // what does not fit has no intervals to look for
-    let profiles = !tests.iter().any(|test| test.objects && !test.is_too_small());
-    let near = less.limited(&best.unknowns, PROFILE_STEPS);
-    let profile = |i| Profile::new(&near, &jacobian, &best, &errors, i);
-    let mut estimates: Vec<Estimate> =
-        (0..unknowns).map(|i| estimate(&near, &best, &errors, i, profiles.then(|| profile(i)))).collect();
+    let mut estimates: Vec<Estimate> = (0..unknowns).map(|i| estimate(&less, &best, &errors, i, None)).collect();
     let mut names = Vec::new();
     for i in held {
         let unknown = &problem.unknowns()[i];
-        let estimate = match moving(problem, &whole, i).filter(|_| profiles) {
-            Some(step) => stationary(problem, &whole, i, step),
+        let value = match moving(problem, &whole, i) {
+            Some(_) => whole.unknowns[i],
             None => {
                 names.push(unknown.label());
-                Estimate::hidden(unknown, problem.start()[i])
+                problem.start()[i]
             }
         };
-        estimates.insert(i, estimate);
+        estimates.insert(i, Estimate::hidden(unknown, value));
     }
     Ok(Fit {
         estimates,
@@ -221,8 +226,35 @@ pub fn fit(problem: &Problem, spread: &dyn Fn(&str) -> bool, starts: usize, know
         starts,
         reached: best.reached,
         by_half,
+        excluded_by,
         residuals,
     })
+}
+
+/// With intervals by the profile where standard errors are wrong; what does not fit has none to look for.
+pub(crate) fn with_intervals(problem: &Problem, fit: Fit) -> Fit {
+    let mut fit = fit;
+    if fit.faults().next().is_some() {
+        return fit;
+    }
+    let own = fit.estimates.iter().take(problem.unknowns().len());
+    let whole = Minimum { value: fit.chi_squared, ..Minimum::start(0, own.map(|e| e.value).collect()) };
+    let Ok(Near { held, less, best, jacobian }) = Near::new(problem, &whole) else { return fit };
+    let mut near = less.coarse().limited(&best.unknowns, PROFILE_STEPS);
+    let Ok((values, _)) = near.weighed(&best.unknowns, false) else { return fit };
+    let best = Minimum { value: values.norm_squared(), ..best };
+    let errors = shown(&less, &best.unknowns, &jacobian).errors;
+    let shown = (0..problem.unknowns().len()).filter(|i| !held.contains(i));
+    for (i, place) in shown.enumerate() {
+        let profile = Profile::new(&near, &jacobian, &best, &errors, i);
+        fit.estimates[place] = estimate(&near, &best, &errors, i, Some(profile));
+    }
+    for i in held {
+        if let Some(step) = moving(problem, &whole, i) {
+            fit.estimates[i] = stationary(problem, &whole, i, step);
+        }
+    }
+    fit
 }
 
 /// Parts of the size of an unknown by which it is moved for a second look.
@@ -306,31 +338,43 @@ pub fn profile(problem: &Problem, fit: &Fit, name: &str, at: &[f64]) -> Option<V
     Some(rises)
 }
 
-/// The unknowns that change nothing at the minimum, ascending, the problem with these where the search began,
-/// and its minimum.
-fn without_hidden(problem: &Problem, best: &Minimum) -> Result<(Vec<usize>, Problem, Minimum), FitError> {
-    let no_motion = |reason| FitError::NoMotion { starts: 1, reason };
-    let (_, jacobian) = problem.clone().weighed(&best.unknowns, true).map_err(no_motion)?;
-    let lengths: Vec<f64> = jacobian.column_iter().map(|column| column.norm()).collect();
-    let held = alone(problem, &best.unknowns, &lengths);
-    if held.len() == lengths.len() && held.iter().all(|&i| moving(problem, best, i).is_none()) {
-        return Err(FitError::ShowsNothing);
+/// What a minimum is where unknowns that change nothing there are held.
+struct Near {
+    /// These, ascending.
+    held: Vec<usize>,
+    /// The problem with these where the search began, its minimum, and the Jacobian there.
+    less: Problem,
+    best: Minimum,
+    jacobian: DMatrix<f64>,
+}
+
+impl Near {
+    fn new(problem: &Problem, best: &Minimum) -> Result<Near, FitError> {
+        let no_motion = |reason| FitError::NoMotion { starts: 1, reason };
+        let (_, jacobian) = problem.clone().weighed(&best.unknowns, true).map_err(no_motion)?;
+        let lengths: Vec<f64> = jacobian.column_iter().map(|column| column.norm()).collect();
+        let held = alone(problem, &best.unknowns, &lengths);
+        if held.len() == lengths.len() && held.iter().all(|&i| moving(problem, best, i).is_none()) {
+            return Err(FitError::ShowsNothing);
+        }
+        let (mut shown, mut theta, mut scale) = (problem.clone(), best.unknowns.clone(), lengths);
+        for &i in held.iter().rev() {
+            shown = shown.without(i, problem.start()[i]);
+            theta.remove(i);
+            scale.remove(i);
+        }
+        let all = |held, jacobian| Near { held, less: problem.clone(), best: best.clone(), jacobian };
+        if held.is_empty() {
+            return Ok(all(held, jacobian));
+        }
+        scale.iter_mut().for_each(|length| *length = 1.0 / *length);
+        let found = least(&shown, &theta, &scale, Stage::Whole).map_err(no_motion)?;
+        if found.value > best.value + SAME_CHI_SQUARED {
+            return Ok(all(Vec::new(), jacobian));
+        }
+        let (_, jacobian) = shown.clone().weighed(&found.unknowns, true).map_err(no_motion)?;
+        Ok(Near { held, less: shown, best: Minimum { reached: best.reached, first: best.first, ..found }, jacobian })
     }
-    let (mut shown, mut theta, mut scale) = (problem.clone(), best.unknowns.clone(), lengths);
-    for &i in held.iter().rev() {
-        shown = shown.without(i, problem.start()[i]);
-        theta.remove(i);
-        scale.remove(i);
-    }
-    if held.is_empty() {
-        return Ok((held, shown, best.clone()));
-    }
-    scale.iter_mut().for_each(|length| *length = 1.0 / *length);
-    let found = least(&shown, &theta, &scale, Stage::Whole).map_err(no_motion)?;
-    if found.value > best.value + SAME_CHI_SQUARED {
-        return Ok((Vec::new(), problem.clone(), best.clone()));
-    }
-    Ok((held, shown, Minimum { reached: best.reached, first: best.first, ..found }))
 }
 
 fn priors(problem: &Problem) -> usize {

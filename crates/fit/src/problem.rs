@@ -9,6 +9,9 @@ use crate::part::{Part, Place};
 use crate::unknown::CLOCK;
 use crate::{Film, FitError, Unknown};
 
+/// The largest tolerance of motions of a search.
+const COARSEST: f64 = 1e-6;
+
 /// Films of motions of one scene in one formulation, and what is not known of it: residuals
 ///
 /// ```text
@@ -27,11 +30,19 @@ pub struct Problem {
     pub(crate) first: usize,
     /// Starts that are known before, beside the first one.
     pub(crate) known: Vec<Vec<f64>>,
-    /// Samples of a beginning by which another formulation excludes this one, and the significance.
-    pub(crate) excluded_by: Option<(usize, f64)>,
+    /// Beside which formulation beginnings of the films may exclude this one.
+    pub(crate) beside: Option<Box<Fitting>>,
     robust: Option<f64>,
     /// `(θ − mean)/deviation` of unknowns that are held.
     held: Vec<f64>,
+}
+
+/// A formulation that fits: its problem, its numbers, and their scales.
+#[derive(Clone)]
+pub(crate) struct Fitting {
+    pub(crate) problem: Problem,
+    pub(crate) theta: Vec<f64>,
+    pub(crate) scale: Vec<f64>,
 }
 
 /// One residual.
@@ -77,7 +88,7 @@ impl Problem {
         let start = unknowns.iter().map(value).collect();
         let parameters = unknowns.iter().map(|unknown| is_parameter(scene, &unknown.name)).collect();
         let (known, held) = (Vec::new(), Vec::new());
-        Ok(Problem { parts, unknowns, start, parameters, first: 0, known, excluded_by: None, robust: None, held })
+        Ok(Problem { parts, unknowns, start, parameters, first: 0, known, beside: None, robust: None, held })
     }
 
     /// Residuals above this size count linearly (Huber); 1.345 costs 5 % where errors are normal.
@@ -151,6 +162,25 @@ impl Problem {
             part.model.limit_steps(&row, times);
         }
         limited
+    }
+
+    /// Excluded beside none.
+    #[must_use]
+    pub(crate) fn alone(self) -> Problem {
+        Problem { beside: None, ..self }
+    }
+
+    /// With motions whose errors are small beside standard deviations, and no smaller.
+    #[must_use]
+    pub(crate) fn coarse(&self) -> Problem {
+        let mut coarse = self.clone();
+        for part in &mut coarse.parts {
+            let tolerance = part.film.finest().min(COARSEST);
+            if tolerance > part.model.tolerance() {
+                part.model.set_tolerance(tolerance);
+            }
+        }
+        coarse
     }
 
     /// The most samples of a film.

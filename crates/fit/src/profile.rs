@@ -22,12 +22,12 @@ pub(crate) const SHOWN: f64 = 1e-7;
 /// Steps outwards and steps in all to the end of a profile, and the part of the rise that they come to.
 const OUTWARDS: usize = 5;
 const STEPS: usize = 15;
-const CLOSE: f64 = 0.02;
+const CLOSE: f64 = 0.05;
 /// Chords in a row, and `|J δ|²` of the last one.
 const CHORDS: usize = 5;
 const LAST: f64 = 0.02;
 /// Distances are halved up to this many times.
-const HALVINGS: usize = 3;
+const HALVINGS: usize = 2;
 
 /// How χ² rises where unknown `i` is held and the others are fitted.
 pub(crate) struct Profile<'a> {

@@ -10,8 +10,10 @@ use motion::shooting::{Minimum, spread};
 use nalgebra::DMatrix;
 
 use crate::minimum::{distinct, spread_out};
+use crate::problem::Fitting;
 use crate::residual_tests::residual_tests;
-use crate::{FitError, Problem, Residual};
+use crate::verdict::sigmas;
+use crate::{EXCLUDED, FitError, Problem, Residual};
 
 /// Samples of the first beginning, and the factor from one to the next.
 const FIRST: usize = 20;
@@ -19,7 +21,7 @@ const LONGER: f64 = 1.5;
 /// Starts that are followed from one beginning to the next, by its number: short ones tell little of them.
 const FOLLOWED: [usize; 4] = [12, 10, 8, 4];
 /// Least gain, as a part of χ², for which an iteration goes on, by [`Stage`].
-const GAINS: [f64; 5] = [1e-2, 1e-4, 1e-10, 1e-6, 1e-4];
+const GAINS: [f64; 5] = [1e-2, 1e-4, 1e-8, 1e-6, 1e-4];
 /// Iterations by [`Stage`].
 const ITERATIONS: [usize; 5] = [10, 20, 100, 12, 50];
 /// Starts for the whole film are up to this many times halfway to the first one.
@@ -56,38 +58,49 @@ pub struct Found {
     pub minima: Vec<Minimum>,
     /// Number of starts that were followed: fewer than asked for if some coincide.
     pub starts: usize,
+    /// Samples of a beginning of the films that excludes the formulation beside another, and the significance.
+    pub excluded_by: Option<(usize, f64)>,
 }
 
 /// The least minimum from several starts: the first is [`Problem::start`]; in the others unknowns for which
 /// `moves` says so are moved, by parts of their scales that no period fits; further ones are known before:
-/// each goes by way of beginnings and at once. Beginnings are left out where
-/// the first start is `known` to come close. Starts for the whole film at once are left out where beginnings
-/// of several lead to residuals of noise.
+/// each goes by way of beginnings and, unless it is far off, at once. Beginnings are left out where the first
+/// start is `known` to come close. Starts for the whole film at once are left out where beginnings of several
+/// lead to residuals of noise. Once a beginning excludes the formulation, one start is followed.
 ///
 /// # Errors
 /// [`FitError::NoMotion`].
 pub fn search(problem: &Problem, moves: &dyn Fn(&str) -> bool, starts: usize, known: bool) -> Result<Found, FitError> {
     // where nothing is moved all starts are one
     let starts = if problem.unknowns().iter().any(|u| moves(&u.name)) { starts.max(1) } else { 1 };
-    let problem = &problem.limited(problem.start(), STEPS);
+    let beside = problem.beside.as_deref();
+    let whole = &problem.limited(problem.start(), STEPS).alone();
+    let problem = &whole.coarse();
     let short = problem.beginning(FIRST.max(2 * problem.unknowns().len()))?;
     let (scale, mut reason) = scales(&mut short.clone());
     let known_before: Vec<Minimum> = problem.known.iter().map(|known| Minimum::start(0, known.clone())).collect();
     // they count as starts once, by way of beginnings
-    let at_once = known_before.iter().map(|start| Minimum { reached: usize::from(known), ..start.clone() }).collect();
+    let mut evaluated = problem.clone();
+    let mut near = |start: &&Minimum| {
+        let found = evaluated.weighed(&start.unknowns, false);
+        known || found.is_ok_and(|(values, _)| !is_poor(problem, values.norm_squared()))
+    };
+    let at_once = known_before.iter().filter(&mut near);
+    let at_once = at_once.map(|start| Minimum { reached: usize::from(known), ..start.clone() }).collect();
     let mut minima = refined(problem, at_once, &scale, Stage::Rough, &mut reason);
-    let mut tried = known_before.len();
+    let (mut tried, mut excluded_by) = (known_before.len(), None);
     // beside what is known to fit others are few
     let starts = if minima.first().is_some_and(|m| fits(problem, m)) { starts.min(FEW) } else { starts };
     if !known {
         let begun = (0..starts).map(|number| moved(problem, &scale, moves, number));
         let begun: Vec<Minimum> = begun.chain(known_before).collect();
         tried += begun.len();
-        let led = followed(problem, short, &scale, begun, &mut reason)?;
+        let led;
+        (led, excluded_by) = followed(problem, short, &scale, begun, beside, &mut reason)?;
         minima.extend(refined(problem, led, &scale, Stage::Rough, &mut reason));
         distinct(&mut minima, &scale);
     }
-    if starts == 1 || !minima.first().is_some_and(|least| fits(problem, least)) {
+    if starts == 1 || excluded_by.is_none() && !minima.first().is_some_and(|least| fits(problem, least)) {
         let begun = screened(problem, moves, starts);
         tried += begun.len();
         minima.extend(refined(problem, begun, &scale, Stage::Rough, &mut reason));
@@ -96,9 +109,18 @@ pub fn search(problem: &Problem, moves: &dyn Fn(&str) -> bool, starts: usize, kn
     let least = minima.first().map_or(f64::INFINITY, |m| m.value);
     let close = if is_poor(problem, least) { CLOSE[1] * least } else { CLOSE[0] * least + HOPELESS };
     let hopeless = minima.split_off(minima.partition_point(|m| m.value < close));
-    let mut minima = refined(problem, minima, &scale, Stage::Whole, &mut reason);
+    let mut minima = refined(whole, minima, &scale, Stage::Whole, &mut reason);
     minima.extend(hopeless);
     distinct(&mut minima, &scale);
+    as_high(&mut minima);
+    let no_motion = || FitError::NoMotion { starts: tried, reason: reason.unwrap_or_else(|| "no minimum".into()) };
+    let mut best = minima.first().cloned().ok_or_else(no_motion)?;
+    best.reached = best.reached.max(1);
+    Ok(Found { best, minima, starts: tried, excluded_by })
+}
+
+/// Minima as high as another, as far as noise can tell, count as one.
+fn as_high(minima: &mut Vec<Minimum>) {
     minima.dedup_by(|b, a| {
         let same = b.value - a.value <= SAME[0] + SAME[1] * a.value;
         if same {
@@ -106,10 +128,6 @@ pub fn search(problem: &Problem, moves: &dyn Fn(&str) -> bool, starts: usize, kn
         }
         same
     });
-    let no_motion = || FitError::NoMotion { starts: tried, reason: reason.unwrap_or_else(|| "no minimum".into()) };
-    let mut best = minima.first().cloned().ok_or_else(no_motion)?;
-    best.reached = best.reached.max(1);
-    Ok(Found { best, minima, starts: tried })
 }
 
 /// The minima near others, the least first; those not found are left out, except for the last stage.
@@ -149,7 +167,7 @@ fn refined(
 }
 
 /// Whether χ² is that of noise, and no test on residuals objects.
-pub(crate) fn fits(problem: &Problem, found: &Minimum) -> bool {
+fn fits(problem: &Problem, found: &Minimum) -> bool {
     let unknowns = problem.unknowns().len();
     let films: Vec<_> = problem.films().collect();
     let content = |residuals: Vec<Residual>| {
@@ -170,15 +188,17 @@ fn is_noise(problem: &Problem, chi_squared: f64) -> bool {
     chi_squared < count + FITS * (2.0 * count).sqrt()
 }
 
-/// Minima over beginnings that become longer, from these starts: where the search over the whole film begins.
+/// Minima over beginnings that become longer, from these starts: where the search over the whole film begins;
+/// and by which beginning the formulation is excluded, if by one.
 fn followed(
     problem: &Problem,
     short: Problem,
     scale: &[f64],
     starts: Vec<Minimum>,
+    beside: Option<&Fitting>,
     reason: &mut Option<String>,
-) -> Result<Vec<Minimum>, FitError> {
-    let (mut part, mut starts) = (short, starts);
+) -> Result<(Vec<Minimum>, Option<(usize, f64)>), FitError> {
+    let (mut part, mut starts, mut excluded_by) = (short, starts, None);
     for number in 0.. {
         for start in &mut starts {
             start.unknowns = within(&part, problem.start(), &start.unknowns);
@@ -192,10 +212,34 @@ fn followed(
         if part.samples() >= problem.samples() {
             break;
         }
+        if let Some(beside) = beside.filter(|_| excluded_by.is_none()) {
+            excluded_by = excluded(&part, &mut starts, scale, beside).map(|sigmas| (part.samples(), sigmas));
+        }
+        if excluded_by.is_some() {
+            starts.truncate(1);
+        }
         let samples = (part.samples() as f64 * LONGER) as usize;
         part = problem.beginning(samples.min(problem.samples()))?;
     }
-    Ok(starts)
+    Ok((starts, excluded_by))
+}
+
+/// Starts that have to lead to the least χ² of a formulation before it is excluded.
+pub(crate) const SEVERAL: usize = 2;
+/// How much more χ² has to be above for one of several beginnings: what keeps the level for eight of them.
+pub(crate) const LOOKS: f64 = 4.5;
+
+/// The significance at which this beginning excludes its formulation, if it does: by a least χ² that several
+/// starts reach. Where it may, `starts` become the minima.
+fn excluded(part: &Problem, starts: &mut Vec<Minimum>, scale: &[f64], beside: &Fitting) -> Option<f64> {
+    let best = beside.problem.beginning(part.samples()).ok()?;
+    let best = least(&best, &beside.theta, &beside.scale, Stage::Profile).ok()?.value;
+    let enough = |found: &[Minimum]| Some(found.first()?.value - best).filter(|above| *above >= EXCLUDED + LOOKS);
+    enough(starts)?;
+    *starts = refined(part, std::mem::take(starts), scale, Stage::Whole, &mut None);
+    let mut as_one = starts.clone();
+    as_high(&mut as_one);
+    enough(&as_one).filter(|_| as_one[0].reached >= SEVERAL).map(|above| sigmas(above, 1))
 }
 
 /// A start of the search: the minimum near its own with these unknowns held, ascending, or else its own.
@@ -283,12 +327,6 @@ fn within(problem: &Problem, origin: &[f64], theta: &[f64]) -> Vec<f64> {
         origin.iter().zip(theta).map(|(o, x)| o + part * (x - o)).collect()
     };
     (0..HALVINGS).map(at).find(|theta| problem.weighed(theta, false).is_ok()).unwrap_or_else(|| origin.to_vec())
-}
-
-/// The minimum near a start, coarsely.
-pub(crate) fn least_near(problem: &Problem, start: &[f64]) -> Option<Minimum> {
-    let (scale, _) = scales(&mut problem.clone());
-    least(&problem.limited(start, NEAR_STEPS), start, &scale, Stage::Rough).ok()
 }
 
 /// What is fitted.

@@ -4,18 +4,14 @@ use scene::Scene;
 
 use crate::explain::explanations;
 use crate::question::{has_constants, is_constant, is_law};
-use crate::search::{Stage, least, search};
+use crate::search::{LOOKS, SEVERAL, Stage, least, search};
 use crate::verdict::{above, sigmas, threshold};
 use crate::{Film, Fit, Problem, Question, Row, Verdict};
 
-/// Starts that have to lead to the least χ² of a formulation before it is excluded.
-const SEVERAL: usize = 2;
 /// Numbers per unknown of the first beginning of which an exclusion is asked for that no whole film settles,
 /// and the factor from one to the next.
 const FIRST: usize = 2;
 const LONGER: f64 = 1.6;
-/// How much more χ² has to be above for one of several beginnings: what keeps the level for eight of them.
-const LOOKS: f64 = 4.5;
 
 /// An exclusion rests on a least χ² that several starts reach: of the whole films, or of their beginnings,
 /// which have no more minima than tell. Elsewhere the search is not settled.
@@ -28,13 +24,13 @@ pub(crate) fn settle(rows: &mut [Row], question: &Question) {
         let (Verdict::Excluded { sigmas }, Ok(fit), Some(problem)) = (&row.verdict, &row.fit, &row.problem) else {
             continue;
         };
-        let is_settled = fit.reached >= SEVERAL && problem.excluded_by.is_none();
+        let is_settled = fit.reached >= SEVERAL && fit.excluded_by.is_none();
         if is_settled || !has_constants(&row.choice) && !is_law(row.choice.formulation) {
             continue;
         }
         let (sigmas, more) = (*sigmas, above(fit, &best).1);
         let settled = || by_beginning((&of_best, &best), problem, (more, problem.samples()), &spread, question.starts);
-        match problem.excluded_by.or_else(settled) {
+        match fit.excluded_by.or_else(settled) {
             Some((samples, sigmas)) => {
                 row.notes.push(format!(
                     "excluded by the first {samples} samples; of the whole films few starts reach the least χ²"
@@ -48,7 +44,7 @@ pub(crate) fn settle(rows: &mut [Row], question: &Question) {
 
 /// The shortest beginning of the films that excludes `problem`, by a least χ² that several starts reach: its
 /// samples, fewer than `most`, and the significance, the best having so many unknowns `more`.
-pub(crate) fn by_beginning(
+fn by_beginning(
     (best, fit): (&Problem, &Fit),
     problem: &Problem,
     (more, most): (usize, usize),
@@ -62,7 +58,8 @@ pub(crate) fn by_beginning(
     let mut samples = (FIRST * problem.unknowns().len()).div_ceil(columns * films) + 1;
     while samples < most {
         let of_best = least(&best.beginning(samples).ok()?, &theta, &scale[..theta.len()], Stage::Profile).ok()?;
-        let found = search(&problem.beginning(samples).ok()?, spread, starts, false).ok()?.best;
+        let beginning = problem.beginning(samples).ok()?.alone();
+        let found = search(&beginning, spread, starts, false).ok()?.best;
         let above = found.value - of_best.value;
         if above >= threshold(more) + LOOKS && found.reached >= SEVERAL {
             return Some((samples, sigmas(above, more)));

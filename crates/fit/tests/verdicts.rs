@@ -16,6 +16,7 @@ fn fitted(chi_squared: f64) -> Result<Fit, FitError> {
         starts: 1,
         reached: 1,
         by_half: chi_squared,
+        excluded_by: None,
         residuals: Vec::new(),
     })
 }

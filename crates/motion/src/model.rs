@@ -1,5 +1,7 @@
 //! Outputs of a motion as a function of numbers of its scene, for fits: a motion that fails is not an error.
 
+use std::sync::Arc;
+
 use equations::Outputs;
 use integrate::Status;
 use mechanics::ConstantsRule;
@@ -8,7 +10,6 @@ use scene::Scene;
 use crate::differences::size;
 use crate::direction::Direction;
 use crate::variational::{VariationalRun, Which};
-use crate::wanted::wanted;
 use crate::{ByName, Choice, Settings, SolveError};
 
 /// A motion read off at given times, for any values of some numbers: derived and compiled once. It is
@@ -30,7 +31,7 @@ use crate::{ByName, Choice, Settings, SolveError};
 #[derive(Clone)]
 pub struct Model {
     by_name: ByName,
-    times: Vec<f64>,
+    times: Arc<[f64]>,
     settings: Settings,
     start: f64,
 }
@@ -71,7 +72,7 @@ impl Model {
         let method = by_name.varying().prepared().method.method;
         VariationalRun::check(method)?;
         let settings = Settings { method: Some(method), ..settings.clone() };
-        Ok(Model { by_name, times: times.to_vec(), settings, start })
+        Ok(Model { by_name, times: times.into(), settings, start })
     }
 
     /// The same at other times; nothing is derived anew.
@@ -90,8 +91,18 @@ impl Model {
     /// As [`Model::with_times`].
     pub fn set_times(&mut self, times: &[f64]) -> Result<(), SolveError> {
         check(self.start, times)?;
-        self.times = times.to_vec();
+        self.times = times.into();
         Ok(())
+    }
+
+    /// The tolerance of its motions.
+    pub fn tolerance(&self) -> f64 {
+        self.settings.tolerance
+    }
+
+    /// From now on with this tolerance.
+    pub fn set_tolerance(&mut self, tolerance: f64) {
+        self.settings.tolerance = tolerance;
     }
 
     /// From now on a motion may take no more than `times` the steps, 10 at least, of that with these numbers;
@@ -182,7 +193,8 @@ impl Model {
 
     fn end(&self) -> (f64, integrate::Options) {
         let end = self.times[self.times.len() - 1];
-        let wanted = Some(wanted([self.start, end], &self.times));
+        // no more is read
+        let wanted = Some(self.times.clone());
         (end, integrate::Options { wanted, ..self.settings.options(self.settings.tolerance) })
     }
 

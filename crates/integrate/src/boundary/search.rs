@@ -37,9 +37,8 @@ pub(super) struct Search<'a> {
     evaluations: usize,
     /// r at the guess, until the minimiser asks for it.
     first: Option<Vec<f64>>,
-    /// The last Jacobian, and its condition.
+    /// The last Jacobian.
     last: Option<DMatrix<f64>>,
-    condition: f64,
 }
 
 impl<'a> Search<'a> {
@@ -65,7 +64,6 @@ impl<'a> Search<'a> {
             evaluations: 0,
             first: None,
             last: None,
-            condition: f64::INFINITY,
         };
         search.first = Some(search.values(guess)?);
         Ok(search)
@@ -104,7 +102,6 @@ impl<'a> Search<'a> {
         } else {
             self.differences(unknowns)?
         };
-        self.condition = condition(&jacobian);
         self.last = Some(jacobian.clone());
         Ok(jacobian)
     }
@@ -139,12 +136,13 @@ impl<'a> Search<'a> {
         Ok(jacobian)
     }
 
-    /// One step more, kept where it is one nearer; none where what was found is not good enough.
-    fn finish(&mut self) {
+    /// One step more by a Jacobian of this condition, kept where it is one nearer; none where what was found is
+    /// not good enough.
+    fn finish(&mut self, condition: f64) {
         if self.smallest == 0.0 || self.smallest > self.enough {
             return;
         }
-        let (best, last) = (self.best.clone(), self.last.take().filter(|_| self.condition <= SINGULAR));
+        let (best, last) = (self.best.clone(), self.last.take().filter(|_| condition <= SINGULAR));
         let Some(jacobian) = last else { return };
         if let Some(step) = jacobian.lu().solve(&DVector::from_column_slice(&self.nearest)) {
             // what cannot be evaluated is not nearer
@@ -164,8 +162,9 @@ impl<'a> Target<'a> {
     /// What was found, after one step more.
     pub(super) fn found(self) -> Shot {
         let mut search = self.0.into_inner();
-        search.finish();
-        let Search { best, smallest, iterations, exact, evaluations, condition, options, .. } = search;
+        let condition = search.last.as_ref().map_or(f64::INFINITY, condition);
+        search.finish(condition);
+        let Search { best, smallest, iterations, exact, evaluations, options, .. } = search;
         let exhausted = iterations >= options.max_iterations;
         Shot { unknowns: best, residual: smallest, iterations, exact, evaluations, exhausted, condition }
     }
