@@ -304,13 +304,14 @@ impl Comparison {
     }
 }
 
-/// Whether a leading term would have been seen while it leads.
+/// Whether a leading term would have been seen while it leads; one beyond all numbers tells nothing of gaps.
 fn stands_out(predicted: &LeadingTerm, pair: &Pair, start: f64) -> bool {
-    pair.gap.points.iter().any(|point| {
-        let past = point.t - start;
-        let leads = predicted.from < LEADS * past && past < LEADS * predicted.reach;
-        leads && predicted.length * past.powi(predicted.exponent as i32) > 2.0 * point.limit
-    })
+    predicted.length.is_finite()
+        && pair.gap.points.iter().any(|point| {
+            let past = point.t - start;
+            let leads = predicted.from < LEADS * past && past < LEADS * predicted.reach;
+            leads && predicted.length * past.powi(predicted.exponent as i32) > 2.0 * point.limit
+        })
 }
 
 fn is_another(growth: &Growth, predicted: &LeadingTerm) -> bool {

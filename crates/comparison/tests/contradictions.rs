@@ -126,6 +126,10 @@ fn a_proved_difference_beside_motions_that_agree_and_beside_another_growth() {
     let gap = &mut pair(&mut sledge, VAKONOMIC).gap;
     let certain_from = gap.certain_from.take();
     assert!(found(&sledge).contains("agree within their errors, but it is proved that they part as"));
+    let predicted = pair(&mut sledge, VAKONOMIC).predicted.as_mut().expect("a term");
+    let length = std::mem::replace(&mut predicted.length, f64::INFINITY);
+    assert_eq!(sledge.contradictions(), Vec::new());
+    pair(&mut sledge, VAKONOMIC).predicted.as_mut().expect("a term").length = length;
     let pair = pair(&mut sledge, VAKONOMIC);
     pair.gap.certain_from = certain_from;
     pair.growth.as_mut().expect("a growth").exponent += 1.0;

@@ -223,3 +223,19 @@ fn a_compare_that_fails_leaves_nothing() {
     let output = run(&["compare", "bowl", "--set", "duration=1", "--out", file.to_str().expect("UTF-8")]);
     assert_eq!(output.status.code(), Some(2), "{}", text(&output.stderr));
 }
+
+/// A motion whose estimate is doubted from the start has no bound for its gap, and no infinite one is printed.
+#[test]
+fn what_has_no_bound_is_not_known() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("far.toml");
+    let scene = "title = 'far'\n[coordinates]\nx = { start = 1e3 }\ny = { start = 0 }\nz = { start = 1 }\nw = { start = \"pi/2\" }\n\
+                 s = { start = -1 }\n[system]\nlagrangian = \"x'^2/2 + y'^2/2 + z'^2/2 + w'^2/2 + s'^2\"\nconstraints = [\n\
+                 \"w' - 2*cos(y)*x' - cos(z)^2*cos(y)^2/2*y' - (2*cos(y)*y + 2*tanh(20*(z-1)))*z'\",\n\
+                 \"s' + x^2*y' - 2*tanh(20*(x-1))*z'\"]\n[start.velocities]\n\"x'\" = 1\n\"y'\" = 1\n\"z'\" = -0.7\n[run]\n\
+                 duration = 1\n";
+    fs::write(&path, scene).expect("written");
+    let file = path.to_str().expect("UTF-8");
+    let (told, _) = answer(&["compare", file, "-f", "chetaev,vakonomic", "--without", "fits"], 0);
+    assert!(told.contains("different (proved)") && told.contains("not known") && !told.contains("inf"), "{told}");
+}
