@@ -49,6 +49,9 @@ impl Maker<'_> {
         if self.machine.moves(&self.meaning(&origin)) || axes.iter().any(|turn| !self.rate(&turn.angle).is_empty()) {
             return fault("a curved surface has to be at rest");
         }
+        if c.law == Law::Blade {
+            return fault("a blade needs a plane");
+        }
         if c.along.is_some() {
             return fault("`along` is for planes");
         }

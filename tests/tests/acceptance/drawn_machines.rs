@@ -55,6 +55,8 @@ enum Step {
     Shift(V),
     Slide(V, Arg),
     Turn(V, Arg),
+    /// The axes of space again.
+    Upright,
 }
 
 #[derive(Clone, Copy, PartialEq)]
@@ -63,6 +65,10 @@ enum Shape {
     Wheel(f64, f64),
     Ball(f64),
     Ellipsoid(V),
+    /// A ball or point on the inner side of a cone or cylinder.
+    Inside(f64),
+    /// A point in a bowl of these curvatures.
+    Bowl(f64, f64),
 }
 
 struct Body {
@@ -71,6 +77,8 @@ struct Body {
     mass: f64,
     moments: Matrix3<f64>,
     centre: V,
+    /// On a surface: from the frame of the parent to axes that go with the contact, and the outward normal there.
+    surface: Option<(Vec<Step>, V)>,
 }
 
 enum Between {
@@ -145,6 +153,10 @@ impl Frame {
     fn step(self, step: &Step, (t, q, v): (f64, &[f64], &[f64])) -> Frame {
         match step {
             Step::Shift(x) => self.point(*x),
+            Step::Upright => {
+                let Frame { p, of_v, v, a, .. } = self;
+                Frame { p, of_v, v, a, ..Frame::space(q.len()) }
+            }
             Step::Slide(axis, arg) => {
                 let (Value { now, gradient, rate, bias }, e) = (arg.at(t, q, v), self.r * axis.normalize());
                 let mut next = self.moved(e * now);
@@ -171,10 +183,12 @@ struct Machine {
     random: SplitMix,
     head: String,
     coordinates: String,
+    definitions: String,
     velocities: String,
     text: String,
     start: Vec<f64>,
     is_angle: Vec<bool>,
+    may_be_homogeneous: bool,
     gravity: V,
     bodies: Vec<Body>,
     forces: Vec<(Between, Force)>,
@@ -200,10 +214,12 @@ impl Machine {
             random,
             head: format!("title = \"drawn\"\ngravity = {}\n", written(gravity)),
             coordinates: "[coordinates]\n".into(),
+            definitions: "[definitions]\n".into(),
             velocities: String::new(),
             text: String::new(),
             start: Vec::new(),
             is_angle: Vec::new(),
+            may_be_homogeneous: false,
             gravity,
             bodies: Vec::new(),
             forces: Vec::new(),
@@ -254,7 +270,7 @@ impl Machine {
         let k = self.coordinate(is_angle, false);
         let others: Vec<usize> = (0..k).filter(|&h| self.is_angle[h] == is_angle).collect();
         let linear = vec![(k, 1.0)];
-        match self.below(12) {
+        let arg = match self.below(12) {
             0 => Arg { text: format!("-q{k}"), linear: vec![(k, -1.0)], ..Arg::default() },
             1 => Arg { text: format!("2*q{k}"), linear: vec![(k, 2.0)], ..Arg::default() },
             2 => Arg { text: format!("q{k} + 0.3*sin(2*t)"), linear, wave: 0.3, ..Arg::default() },
@@ -265,7 +281,12 @@ impl Machine {
                 Arg { text: format!("q{k} - q{h}"), linear: vec![(k, 1.0), (h, -1.0)], ..Arg::default() }
             }
             _ => Arg { text: format!("q{k}"), linear, ..Arg::default() },
+        };
+        if self.likely(0.8) {
+            return arg;
         }
+        self.definitions += &format!("d{k} = \"{}\"\n", arg.text);
+        Arg { text: format!("d{k}"), ..arg }
     }
 
     /// Turns about letters, and their formula.
@@ -284,10 +305,16 @@ impl Machine {
         let i = self.bodies.len();
         self.text += &format!("[body.b{i}]\n{lines}");
         self.text += &parent.map_or_else(String::new, |parent| format!("on = \"b{parent}\"\n"));
-        let mut body = Body { parent, steps, mass: 0.0, moments: Matrix3::zeros(), centre: V::zeros() };
+        let mut body = Body { parent, steps, mass: 0.0, moments: Matrix3::zeros(), centre: V::zeros(), surface: None };
         if is_heavy {
             body.mass = self.between(0.5, 3.0);
             self.text += &format!("mass = {:?}\n", body.mass);
+            if self.may_be_homogeneous && self.likely(0.4) {
+                let text = self.homogeneous(&mut body);
+                self.text += &text;
+                self.bodies.push(body);
+                return i;
+            }
             let (a, b, d) = (self.between(0.2, 0.6), self.between(0.2, 0.6), self.between(-0.05, 0.05));
             body.moments = Matrix3::from_diagonal(&V::new(a, b, 0.7));
             let moments = match self.below(3) {
@@ -309,6 +336,31 @@ impl Machine {
         }
         self.bodies.push(body);
         i
+    }
+
+    /// Moments and mass centre that follow from the shape: ∫(|x|² − x xᵀ) dm.
+    fn homogeneous(&mut self, body: &mut Body) -> String {
+        let [a, b, c] = [(); 3].map(|()| self.between(0.3, 0.9));
+        let [x, y, z] = [V::x(), V::y(), V::z()].map(|e| e * e.transpose());
+        // mean squares of one coordinate in the unit interval, disc and ball: ∫rⁿ⁺²/∫rⁿ, a part for each coordinate
+        let [line, disc, ball] = [0.0, 1.0, 2.0].map(|n: f64| 1.0 / (n + 3.0));
+        let (text, squares) = match self.below(6) {
+            0 => (format!("rod\"\nsize = [{a:?}]"), x * (a * a / 4.0 * line)),
+            1 => {
+                (format!("box\"\nsize = [{a:?}, {b:?}, {c:?}]"), (x * (a * a) + y * (b * b) + z * (c * c)) / 4.0 * line)
+            }
+            2 => (format!("disc\"\nsize = [{a:?}]"), (x + z) * (a * a * disc)),
+            3 => (format!("cylinder\"\nsize = [{a:?}, {b:?}]"), x * (b * b / 4.0 * line) + (y + z) * (a * a * disc)),
+            4 => (format!("ball\"\nsize = [{a:?}]"), (x + y + z) * (a * a * ball)),
+            _ => {
+                (format!("ellipsoid\"\nsize = [{a:?}, {b:?}, {c:?}]"), (x * (a * a) + y * (b * b) + z * (c * c)) * ball)
+            }
+        };
+        if text.starts_with("rod") {
+            body.centre = V::x() * a / 2.0;
+        }
+        body.moments = (Matrix3::identity() * squares.trace() - squares) * body.mass;
+        format!("shape = \"{text}\n")
     }
 
     /// A plane at rest that is turned in space.
@@ -478,12 +530,41 @@ impl Machine {
             let (body, under) =
                 (&frames[contact.of], contact.on.map_or_else(|| Frame::space(n), |on| frames[on].clone()));
             let Frame { r: axes, w, .. } = *body;
+            if let Shape::Bowl(k, l) = contact.shape {
+                let [p, rate] = [body.p - under.p, body.v].map(|x| under.r.transpose() * x);
+                let gradient = under.r * V::new(-k * p.x, -l * p.y, 1.0);
+                rows.push(body.of_v.transpose() * gradient);
+                biases.push(gradient.dot(&body.a) - k * rate.x * rate.x - l * rate.y * rate.y);
+                let height = p.z - (k * p.x * p.x + l * p.y * p.y) / 2.0;
+                off = off.max(height.abs()).max(gradient.dot(&body.v).abs());
+                continue;
+            }
+            if let (Shape::Inside(a), Some((steps, normal))) = (contact.shape, &self.bodies[contact.of].surface) {
+                let axes = steps.iter().fold(under, |frame, step| frame.step(step, (t, q, v)));
+                let out = axes.r * normal;
+                let (x, rate) = (out * a, axes.w.cross(&out) * a);
+                let slip = body.v + w.cross(&x);
+                let row = &body.of_v - x.cross_matrix() * &body.of_w;
+                let bias = body.a + body.alpha.cross(&x) + w.cross(&rate);
+                for e in axes.r.column_iter().filter(|e| contact.law != Law::Slides && e.dot(&out).abs() < 0.5) {
+                    rows.push(row.transpose() * e);
+                    biases.push(e.dot(&bias));
+                    off = off.max(slip.amax());
+                }
+                if contact.law == Law::Rubber {
+                    rows.push(body.of_w.transpose() * out);
+                    biases.push(out.dot(&body.alpha) + axes.w.cross(&out).dot(&w));
+                    off = off.max(out.dot(&w).abs());
+                }
+                continue;
+            }
             let up = under.r.column(2).into_owned();
             // from the middle to the contact, and the rate of that; for a blade, what is across
             let axle = axes.column(1).into_owned();
             let flat = |e: V| e - up * up.dot(&e);
             let (x, rate, across) = match contact.shape {
                 Shape::Point(own) => (axes * own, w.cross(&(axes * own)), up.cross(&(axes.column(0).into_owned()))),
+                Shape::Inside(_) | Shape::Bowl(..) => (V::zeros(), V::zeros(), axle),
                 Shape::Ball(a) => (-a * up, V::zeros(), axle),
                 Shape::Wheel(a, tyre) => {
                     let turning = w.cross(&axle);
@@ -514,7 +595,9 @@ impl Machine {
             add(up, V::zeros());
             match contact.law {
                 Law::Slides => {}
-                Law::Rolls | Law::Rubber => [V::x(), V::y(), V::z()].into_iter().for_each(|e| add(e, V::zeros())),
+                Law::Rolls | Law::Rubber => {
+                    [0, 1].into_iter().for_each(|k| add(under.r.column(k).into_owned(), V::zeros()))
+                }
                 Law::Blade => add(
                     across,
                     if let Shape::Point(_) = contact.shape { w.cross(&across) } else { flat(w.cross(&axle)) },
@@ -538,10 +621,21 @@ impl Machine {
         (found, off)
     }
 
+    /// Whether a wheel is turned about z, then about x by more than 90°: then its rows are those of its highest point.
+    fn leans_past_flat(&self, t: f64, q: &[f64]) -> bool {
+        let still = vec![0.0; q.len()];
+        self.contacts.iter().any(|contact| match (contact.shape, &self.bodies[contact.of].steps[..]) {
+            (Shape::Wheel(..), [.., Step::Turn(z, _), Step::Turn(x, lean), Step::Turn(..)]) => {
+                *z == V::z() && *x == V::x() && lean.at(t, q, &still).now.cos() < 0.0
+            }
+            _ => false,
+        })
+    }
+
     fn scene_text(&self) -> String {
-        let Machine { head, coordinates, velocities, text, .. } = self;
+        let Machine { head, coordinates, definitions, velocities, text, .. } = self;
         format!(
-            "{head}{coordinates}[start]\ntime = 0.4\nproject = true\n[start.velocities]\n{velocities}[run]\nduration = 1\n{text}"
+            "{head}{coordinates}{definitions}[start]\ntime = 0.4\nproject = true\n[start.velocities]\n{velocities}[run]\nduration = 1\n{text}"
         )
     }
 }
@@ -551,6 +645,7 @@ const KINDS: [&str; 6] = ["hinge", "hinge", "slider", "plane", "ball", "fixed"];
 /// A tree of two to four bodies with forces between them, in space or on a slope.
 fn tree(seed: u64) -> Machine {
     let mut m = Machine::new(seed);
+    m.may_be_homogeneous = true;
     let slope = m.likely(0.3).then(|| m.slope());
     let mut joints = Vec::new();
     let roots = m.bodies.len();
@@ -617,6 +712,59 @@ fn rolling(seed: u64) -> Machine {
     m
 }
 
+/// A ball or a point in a cone, a cylinder or a bowl, which stands somewhere and is turned.
+fn inside(seed: u64) -> Machine {
+    let mut m = Machine::new(seed);
+    let (a, b, at) = (m.number(0.5), m.number(0.5), m.vector(0.5));
+    let (rotation, turns) = Machine::turns("yx", vec![Arg::number(a), Arg::number(b)]);
+    let (size, curved) = (m.between(0.4, 0.8), m.between(0.3, 0.9));
+    let kind = ["cone", "cylinder", "bowl"][m.below(3)];
+    let sizes = match kind {
+        "cone" => format!("{size:?}, 2"),
+        "cylinder" => format!("{size:?}, 3"),
+        _ => format!("{size:?}, {curved:?}, 2"),
+    };
+    let placed =
+        if m.likely(0.7) { format!("at = {}\nrotation = \"{rotation}\"\n", written(at)) } else { String::new() };
+    let steps = if placed.is_empty() { Vec::new() } else { [vec![Step::Shift(at)], turns].concat() };
+    let under = m.body(&format!("shape = \"{kind}\"\nsize = [{sizes}]\n{placed}"), None, steps, false);
+    if kind == "bowl" {
+        let body = m.free(None, "zx", Some(0.3), "");
+        m.contact(body, Some(under), Shape::Bowl(size, curved), Law::Slides);
+        return m;
+    }
+    let (k, v) = (m.coordinate(false, false), m.arg(true));
+    let u = Arg { text: format!("0.8 + q{k}"), linear: vec![(k, 1.0)], constant: 0.8, ..Arg::default() };
+    let is_ball = m.likely(0.7);
+    let radius = if is_ball { m.between(0.05, 0.2) } else { 0.0 };
+    let (along, normal) = match kind {
+        "cone" => (vec![Step::Turn(V::z(), v.clone()), Step::Turn(V::y(), Arg::number(size))], V::x()),
+        _ => (vec![Step::Turn(V::x(), v.clone())], -V::z()),
+    };
+    let place = match kind {
+        "cone" => vec![Step::Slide(V::z(), u.clone()), Step::Shift(-V::x() * radius)],
+        _ => vec![Step::Slide(V::x(), u.clone()), Step::Shift(V::z() * (radius - size))],
+    };
+    let mut steps = [along.clone(), place, vec![Step::Upright]].concat();
+    let mut joint = format!("surface = [\"{}\", \"{}\"]", u.text, v.text);
+    let mut lines = "shape = \"point\"\nsize = [0.1]\n".to_string();
+    if is_ball {
+        let word = m.word();
+        let angles = word.chars().map(|_| m.arg(true)).collect();
+        let (rotation, turns) = Machine::turns(word, angles);
+        joint += &format!(", rotation = \"{rotation}\"");
+        lines = format!("shape = \"ball\"\nsize = [{radius:?}]\n");
+        steps.extend(turns);
+    }
+    let body = m.body(&format!("{lines}joint = {{ {joint} }}\n"), Some(under), steps, true);
+    m.bodies[body].surface = Some((along, normal));
+    if is_ball {
+        let law = [Law::Rolls, Law::Rubber, Law::Slides][m.below(3)];
+        m.contact(body, Some(under), Shape::Inside(radius), law);
+    }
+    m
+}
+
 /// A robot on wheels: a body in the plane, arms and forks on it, and wheels, upright or with camber, and blades.
 fn robot(seed: u64) -> Machine {
     let mut m = Machine::new(seed);
@@ -663,6 +811,7 @@ fn robot(seed: u64) -> Machine {
 /// A chain whose end is held where it is at the start, by a point that closes the loop.
 fn closed(seed: u64) -> Machine {
     let mut m = Machine::new(seed);
+    m.may_be_homogeneous = true;
     let slope = m.likely(0.3).then(|| m.slope());
     let is_flat = m.likely(0.5);
     let mut on = slope;
@@ -762,7 +911,7 @@ fn rider(seed: u64) -> Machine {
             "[body.b{i}]\n{on}{lines}mass = {mass:?}\n{mass_centre}inertia = [[{a:?}, 0, {d:?}], [0, {b:?}, 0], [{d:?}, 0, {c:?}]]\n"
         );
         let moments = Matrix3::new(a, 0.0, d, 0.0, b, 0.0, d, 0.0, c);
-        m.bodies.push(Body { parent, steps, mass, moments, centre });
+        m.bodies.push(Body { parent, steps, mass, moments, centre, surface: None });
     }
     m.contact(0, None, Shape::Wheel(0.3, 0.0), Law::Rolls);
     m.contact(3, None, Shape::Wheel(0.35, 0.0), Law::Rolls);
@@ -777,9 +926,18 @@ fn rider(seed: u64) -> Machine {
 
 /// Whether a fault says rightly that a drawn machine is none.
 fn is_no_machine(fault: &str) -> bool {
-    ["nothing to move", "configurations", "configuration", "a heading only", "singular", "no solution"]
-        .iter()
-        .any(|words| fault.contains(words))
+    [
+        "nothing to move",
+        "is empty",
+        "no start of",
+        "configurations",
+        "configuration",
+        "a heading only",
+        "singular",
+        "no solution",
+    ]
+    .iter()
+    .any(|words| fault.contains(words))
 }
 
 #[test]
@@ -790,6 +948,7 @@ fn drawn_machines_move_as_newton_and_euler_have_it() {
         ("rolling", rolling, 80),
         ("robot", robot, 60),
         ("loop", closed, 40),
+        ("inside", inside, 80),
         ("bicycle with a leaning rider", rider, 5),
     ] {
         let (mut of_kind, mut largest) = (0, 0.0_f64);
@@ -811,6 +970,10 @@ fn drawn_machines_move_as_newton_and_euler_have_it() {
             let (expected, off) = machine.accelerations(t, q, v);
             if expected.len() < q.len() {
                 println!("{kind} {seed}: something without mass");
+                continue;
+            }
+            if machine.leans_past_flat(t, q) {
+                println!("{kind} {seed}: leans past flat");
                 continue;
             }
             let mut rates = vec![0.0; 2 * q.len()];
