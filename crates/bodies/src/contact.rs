@@ -36,8 +36,6 @@ impl Maker<'_> {
                 }
             }
         };
-        let says = |what: &str| format!("contact {}: {what}", contact.name.text);
-        let mut rows: Vec<(String, Option<String>, String)> = Vec::new();
         let [along, across] = match (&contact.along, &touch.rows) {
             (None, Some(rows)) => rows.clone(),
             (given, _) => {
@@ -49,30 +47,25 @@ impl Maker<'_> {
                 }
             }
         };
-        let place = contact.name.place.clone();
-        // what the ground can exert: along a smooth surface nothing
-        let tangential = [along.clone(), across.clone()].into_iter().filter(|_| contact.law != Law::Slides);
-        let all = tangential.chain([touch.normal.as_ref().unwrap_or(&touch.height).clone()]);
-        let all = all.chain((contact.law == Law::Rubber).then(|| touch.spin.clone()));
-        let named = |text| Made { name: contact.name.text.clone(), text, place: place.clone() };
-        self.made.slips.extend(all.map(named));
-        match contact.law {
-            Law::Rolls | Law::Rubber => {
-                rows.push((along, None, says("no slip along")));
-                rows.push((across, None, says("no slip across")));
-            }
-            Law::Blade => rows.push((across, None, says("no slip across"))),
-            Law::Slides => {}
+        let (rolls, is_rough) = (matches!(contact.law, Law::Rolls | Law::Rubber), contact.law != Law::Slides);
+        let spins = contact.law == Law::Rubber;
+        let (normal, height) = match touch.normal {
+            Some(normal) => (normal, Some(touch.height)),
+            None => (touch.height, None),
+        };
+        // which of them are constraints, and which the ground can exert: along a smooth surface nothing
+        let rows = [
+            (along, None, "no slip along", rolls, is_rough),
+            (across, None, "no slip across", is_rough, is_rough),
+            (normal, height, "height", true, true),
+            (touch.spin, None, "no turn about the normal", spins, spins),
+        ];
+        for (text, height, says, is_constraint, acts) in rows {
+            let (name, place) = (contact.name.text.clone(), contact.name.place.clone());
+            let says = format!("contact {name}: {says}");
+            self.made.slips.extend(acts.then(|| Made { name, text: text.clone(), place: place.clone() }));
+            self.made.rows.extend(is_constraint.then_some(Row { text, height, says, place }));
         }
-        rows.push(match touch.normal {
-            Some(normal) => (normal, Some(touch.height), says("height")),
-            None => (touch.height, None, says("height")),
-        });
-        if contact.law == Law::Rubber {
-            rows.push((touch.spin, None, says("no turn about the normal")));
-        }
-        let rows = rows.into_iter().map(|(text, height, says)| Row { text, height, says, place: place.clone() });
-        self.made.rows.extend(rows);
         let on = contact.on.as_ref().map_or("ground", |on| on.text.as_str()).to_owned();
         let machine = self.machine;
         let is_drawn = machine.drawn.contains(&on) || self.made.pictures.iter().any(|p| p.name == on);
