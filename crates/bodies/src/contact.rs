@@ -41,10 +41,7 @@ impl Maker<'_> {
             (given, _) => {
                 let slip = self.define(&contact.name, "slip", touch.slip.clone());
                 let along = given.as_ref().map_or_else(|| "[1, 0, 0]".into(), |along| vector(&along.text));
-                match components(&along).is_some_and(|u| u[0].parse() == Ok(1.0) && is_zero(&u[1]) && is_zero(&u[2])) {
-                    true => [format!("{slip}.x"), format!("{slip}.y")],
-                    false => [format!("dot({slip}, {along})"), format!("dot({slip}, cross([0, 0, 1], {along}))")],
-                }
+                [format!("dot({slip}, {along})"), format!("dot({slip}, cross([0, 0, 1], {along}))")]
             }
         };
         let (rolls, is_rough) = (matches!(contact.law, Law::Rolls | Law::Rubber), contact.law != Law::Slides);
@@ -257,7 +254,7 @@ impl Maker<'_> {
     }
 
     fn wheel(&mut self, c: &Contact, i: usize, support: Option<usize>, a: &str, tyre: Option<&str>) -> Touch {
-        let Placed { at: middle, turns, .. } = self.placed(i);
+        let (middle, turns) = (self.point(i, "[0, 0, 0]"), self.placed(i).turns);
         let (carried_by, own) = carrier(&turns, Some('y'));
         let upright = match carried_by {
             [] => true,
@@ -267,7 +264,6 @@ impl Maker<'_> {
         };
         let (axes, omega) = self.turning(i, Some('y'));
         let tyre = tyre.filter(|b| !is_zero(b));
-        let middle = if middle.is_empty() { "[0, 0, 0]".into() } else { middle };
         let spin = self.upward(&axes, &omega);
         if !upright {
             return self.leaning(c, support, [a, tyre.unwrap_or("0")], [&middle, &axes, &omega], spin);
@@ -331,8 +327,7 @@ impl Maker<'_> {
     }
 
     fn ball(&mut self, c: &Contact, i: usize, support: Option<usize>, a: &str) -> Touch {
-        let Placed { at: middle, rotation, .. } = self.placed(i);
-        let middle = if middle.is_empty() { "[0, 0, 0]".into() } else { middle };
+        let (middle, rotation) = (self.point(i, "[0, 0, 0]"), self.placed(i).rotation);
         let omega = match rotation.as_str() {
             "" => "[0, 0, 0]".into(),
             _ => self.define(&c.name, "w", format!("angular_velocity({rotation})")),
@@ -346,8 +341,7 @@ impl Maker<'_> {
 
     /// `r = −R D²ν/√(ν·D²ν)`, `ν = Rᵀn`.
     fn ellipsoid(&mut self, c: &Contact, i: usize, support: Option<usize>, d: [&str; 3]) -> Touch {
-        let Placed { at: middle, rotation, .. } = self.placed(i);
-        let middle = if middle.is_empty() { "[0, 0, 0]".into() } else { middle };
+        let (middle, rotation) = (self.point(i, "[0, 0, 0]"), self.placed(i).rotation);
         if rotation.is_empty() {
             let at = self.define(&c.name, "touch", format!("{middle} - [0, 0, {}]", d[2]));
             let slip = self.against(support, format!("{middle}'"), &at);
