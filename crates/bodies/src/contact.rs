@@ -36,43 +36,33 @@ impl Maker<'_> {
                 }
             }
         };
-        let says = |what: &str| format!("contact {}: {what}", contact.name.text);
-        let mut rows: Vec<(String, Option<String>, String)> = Vec::new();
         let [along, across] = match (&contact.along, &touch.rows) {
             (None, Some(rows)) => rows.clone(),
             (given, _) => {
                 let slip = self.define(&contact.name, "slip", touch.slip.clone());
                 let along = given.as_ref().map_or_else(|| "[1, 0, 0]".into(), |along| vector(&along.text));
-                match components(&along).is_some_and(|u| u[0].parse() == Ok(1.0) && is_zero(&u[1]) && is_zero(&u[2])) {
-                    true => [format!("{slip}.x"), format!("{slip}.y")],
-                    false => [format!("dot({slip}, {along})"), format!("dot({slip}, cross([0, 0, 1], {along}))")],
-                }
+                [format!("dot({slip}, {along})"), format!("dot({slip}, cross([0, 0, 1], {along}))")]
             }
         };
-        let place = contact.name.place.clone();
-        // what the ground can exert: along a smooth surface nothing
-        let tangential = [along.clone(), across.clone()].into_iter().filter(|_| contact.law != Law::Slides);
-        let all = tangential.chain([touch.normal.as_ref().unwrap_or(&touch.height).clone()]);
-        let all = all.chain((contact.law == Law::Rubber).then(|| touch.spin.clone()));
-        let named = |text| Made { name: contact.name.text.clone(), text, place: place.clone() };
-        self.made.slips.extend(all.map(named));
-        match contact.law {
-            Law::Rolls | Law::Rubber => {
-                rows.push((along, None, says("no slip along")));
-                rows.push((across, None, says("no slip across")));
-            }
-            Law::Blade => rows.push((across, None, says("no slip across"))),
-            Law::Slides => {}
+        let (rolls, is_rough) = (matches!(contact.law, Law::Rolls | Law::Rubber), contact.law != Law::Slides);
+        let spins = contact.law == Law::Rubber;
+        let (normal, height) = match touch.normal {
+            Some(normal) => (normal, Some(touch.height)),
+            None => (touch.height, None),
+        };
+        // which of them are constraints, and which the ground can exert: along a smooth surface nothing
+        let rows = [
+            (along, None, "no slip along", rolls, is_rough),
+            (across, None, "no slip across", is_rough, is_rough),
+            (normal, height, "height", true, true),
+            (touch.spin, None, "no turn about the normal", spins, spins),
+        ];
+        for (text, height, says, is_constraint, acts) in rows {
+            let (name, place) = (contact.name.text.clone(), contact.name.place.clone());
+            let says = format!("contact {name}: {says}");
+            self.made.slips.extend(acts.then(|| Made { name, text: text.clone(), place: place.clone() }));
+            self.made.rows.extend(is_constraint.then_some(Row { text, height, says, place }));
         }
-        rows.push(match touch.normal {
-            Some(normal) => (normal, Some(touch.height), says("height")),
-            None => (touch.height, None, says("height")),
-        });
-        if contact.law == Law::Rubber {
-            rows.push((touch.spin, None, says("no turn about the normal")));
-        }
-        let rows = rows.into_iter().map(|(text, height, says)| Row { text, height, says, place: place.clone() });
-        self.made.rows.extend(rows);
         let on = contact.on.as_ref().map_or("ground", |on| on.text.as_str()).to_owned();
         let machine = self.machine;
         let is_drawn = machine.drawn.contains(&on) || self.made.pictures.iter().any(|p| p.name == on);
@@ -264,7 +254,7 @@ impl Maker<'_> {
     }
 
     fn wheel(&mut self, c: &Contact, i: usize, support: Option<usize>, a: &str, tyre: Option<&str>) -> Touch {
-        let Placed { at: middle, turns, .. } = self.placed(i);
+        let (middle, turns) = (self.point(i, "[0, 0, 0]"), self.placed(i).turns);
         let (carried_by, own) = carrier(&turns, Some('y'));
         let upright = match carried_by {
             [] => true,
@@ -274,7 +264,6 @@ impl Maker<'_> {
         };
         let (axes, omega) = self.turning(i, Some('y'));
         let tyre = tyre.filter(|b| !is_zero(b));
-        let middle = if middle.is_empty() { "[0, 0, 0]".into() } else { middle };
         let spin = self.upward(&axes, &omega);
         if !upright {
             return self.leaning(c, support, [a, tyre.unwrap_or("0")], [&middle, &axes, &omega], spin);
@@ -338,8 +327,7 @@ impl Maker<'_> {
     }
 
     fn ball(&mut self, c: &Contact, i: usize, support: Option<usize>, a: &str) -> Touch {
-        let Placed { at: middle, rotation, .. } = self.placed(i);
-        let middle = if middle.is_empty() { "[0, 0, 0]".into() } else { middle };
+        let (middle, rotation) = (self.point(i, "[0, 0, 0]"), self.placed(i).rotation);
         let omega = match rotation.as_str() {
             "" => "[0, 0, 0]".into(),
             _ => self.define(&c.name, "w", format!("angular_velocity({rotation})")),
@@ -353,8 +341,7 @@ impl Maker<'_> {
 
     /// `r = −R D²ν/√(ν·D²ν)`, `ν = Rᵀn`.
     fn ellipsoid(&mut self, c: &Contact, i: usize, support: Option<usize>, d: [&str; 3]) -> Touch {
-        let Placed { at: middle, rotation, .. } = self.placed(i);
-        let middle = if middle.is_empty() { "[0, 0, 0]".into() } else { middle };
+        let (middle, rotation) = (self.point(i, "[0, 0, 0]"), self.placed(i).rotation);
         if rotation.is_empty() {
             let at = self.define(&c.name, "touch", format!("{middle} - [0, 0, {}]", d[2]));
             let slip = self.against(support, format!("{middle}'"), &at);

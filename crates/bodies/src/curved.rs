@@ -49,6 +49,9 @@ impl Maker<'_> {
         if self.machine.moves(&self.meaning(&origin)) || axes.iter().any(|turn| !self.rate(&turn.angle).is_empty()) {
             return fault("a curved surface has to be at rest");
         }
+        if c.law == Law::Blade {
+            return fault("a blade needs a plane");
+        }
         if c.along.is_some() {
             return fault("`along` is for planes");
         }
@@ -99,15 +102,8 @@ impl Maker<'_> {
             ),
         };
         let height = format!("{p}.z - ({k}*{p}.x^2 + {l}*{p}.y^2)/2");
-        let zero = || "[0, 0, 0]".to_string();
-        Ok(Touch {
-            at: middle,
-            slip: zero(),
-            rows: Some([zero(), zero()].map(|v| format!("{v}.x"))),
-            height,
-            normal: None,
-            spin: "0".into(),
-        })
+        let none = || "0".to_string();
+        Ok(Touch { at: middle, slip: none(), rows: Some([none(), none()]), height, normal: None, spin: none() })
     }
 }
 

@@ -1,4 +1,5 @@
-//! What trees of n bodies cost beside the same systems in formulas by hand: operations of a right-hand side, and derivation.
+//! What trees of n bodies cost beside the same systems in formulas by hand: operations of a right-hand side,
+//! and derivation.
 
 use std::fmt::Write;
 use std::time::Instant;
@@ -26,7 +27,8 @@ fn parsed(coordinates: &[String], velocities: &str, rest: &str) -> Scene {
     Scene::parse("tree", &text).unwrap_or_else(|e| panic!("{e}"))
 }
 
-/// Points of mass 1/n that hang one on another by links of length 1/n from a cart with a wheel: of bodies, and by hand.
+/// Points of mass 1/n that hang one on another by links of length 1/n from a cart with a wheel: of bodies,
+/// and by hand.
 fn chain(n: usize) -> [Scene; 2] {
     let l = 1.0 / n as f64;
     let mut bodies = "gravity = [0, 0, -9.81]\n[body.cart]\njoint = { slider = \"x\", shift = \"x\", at = [0, 0, 0.25] }\nmass = 2\n[body.wheel]\non = \"cart\"\njoint = { hinge = \"y\", angle = \"psi\" }\nshape = \"wheel\"\nsize = [0.25]\ninertia = [0, 0.5, 0]\n[contact.wheel]\nof = \"wheel\"\nlaw = \"rolls\"\n".to_string();
@@ -46,8 +48,8 @@ fn chain(n: usize) -> [Scene; 2] {
     [bodies, by_hand].map(|text| parsed(&q, &v, &text))
 }
 
-/// Links in the plane on blades, each hitched `at` behind the middle of the one before, `own` before its own: trailers, or
-/// with a motor at each joint a snake.
+/// Links in the plane on blades, each hitched `at` behind the middle of the one before, `own` before its own:
+/// trailers, or with a motor at each joint a snake.
 fn planar(n: usize, [at, own]: [f64; 2], is_driven: bool) -> [Scene; 2] {
     let (mut bodies, mut contacts, mut motors) = (String::new(), "[contact]\n".to_string(), "[motor]\n".to_string());
     let (mut definitions, mut lagrangian) = ("[definitions]\n".to_string(), String::new());
