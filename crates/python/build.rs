@@ -4,13 +4,16 @@
 use std::path::Path;
 use std::{env, fs, io};
 
-const STUBS: &str = "python/deltaq/_native.pyi";
+/// From this crate, and in a source distribution, where what is Python stands above all crates.
+const STUBS: [&str; 2] = ["python/deltaq/_native.pyi", "../../python/deltaq/_native.pyi"];
 const QUOTES: &str = "\"\"\"";
 
 fn main() -> io::Result<()> {
-    println!("cargo::rerun-if-changed={STUBS}");
+    let stubs = STUBS.into_iter().find(|file| Path::new(file).exists());
+    let stubs = stubs.ok_or_else(|| io::Error::other(format!("there is none of {}", STUBS.join(", "))))?;
+    println!("cargo::rerun-if-changed={stubs}");
     let out = env::var_os("OUT_DIR").ok_or_else(|| io::Error::other("cargo sets OUT_DIR"))?;
-    let text = fs::read_to_string(STUBS)?;
+    let text = fs::read_to_string(stubs)?;
     let (mut owner, mut item, mut lines) = (String::new(), String::new(), text.lines());
     while let Some(line) = lines.next() {
         let bare = line.trim_start();
