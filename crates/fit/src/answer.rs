@@ -148,7 +148,7 @@ fn fit_given(
     for (row, (_, own)) in rows.iter_mut().zip(&fits) {
         row.problem = own.as_ref().ok().map(|(problem, _)| problem.clone());
     }
-    settle(&mut rows, question);
+    settle(&mut rows);
     explain(&scene, &mut rows, films, question);
     for row in &mut rows {
         // what is excluded has no intervals to look for, and slip has them from its bound

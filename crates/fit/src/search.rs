@@ -227,7 +227,7 @@ fn followed(
 /// Starts that have to lead to the least χ² of a formulation before it is excluded.
 pub(crate) const SEVERAL: usize = 2;
 /// How much more χ² has to be above for one of several beginnings: what keeps the level for eight of them.
-pub(crate) const LOOKS: f64 = 4.5;
+const LOOKS: f64 = 4.5;
 
 /// The significance at which this beginning excludes its formulation, if it does: by a least χ² that several
 /// starts reach. Where it may, `starts` become the minima.
