@@ -16,11 +16,11 @@ import resource
 import signal
 import subprocess
 import tempfile
-import time
 from collections import Counter
 from pathlib import Path
 
 import numpy as np
+from scipy.stats import beta
 from systems import COLUMNS, EPS, FREE, REMOVAL, SET, SYSTEMS, VIOLENT, film
 
 SMOOTH = [name for name in SYSTEMS if name not in VIOLENT]
@@ -37,6 +37,18 @@ TWINS = ["heisenberg", "disc", "turntable"]
 ROW = {"chetaev": "chetaev", "drag": "chetaev", "eps": "first-order", "slip": "first-order", "vakonomic": "vakonomic"}
 NOISE = [1e-4, 5e-4, 1e-3, 5e-3]
 PATIENCE = 60  # seconds of a processor per film
+
+
+def processor():
+    """Seconds of a processor that the programs run so far have taken."""
+    return resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
+
+
+def between(found, count):
+    """Clopper and Pearson's interval of 95 %, in percent."""
+    low = beta.ppf(0.025, found, count - found + 1) if found else 0.0
+    high = beta.ppf(0.975, found + 1, count - found) if found < count else 1.0
+    return f"{100 * low:.1f} to {100 * high:.1f} %"
 
 
 def table(columns, times, rows):
@@ -87,12 +99,12 @@ def ask(program, number, seed, cases):
     free = [*SYSTEMS[scene][FREE], *(["drag"] if law == "drag" else [])]
     line = {"number": number, "seed": seed, "scene": scene, "law": law, "sigma": sigma, "truth": numbers, "asked": more}
     line["chi true"] = float(((noise / sigma) ** 2).sum())
-    clock = time.monotonic()
+    before = processor()
     try:
         answer = fitted(program, scene, table(SYSTEMS[scene][COLUMNS].split(), times, rows), free, sigma, more)
     except TimeoutError:
         return line | {"seconds": PATIENCE, "verdict": "too slow", "chi": {}, "intervals": [], "words": ""}
-    line["seconds"] = round(time.monotonic() - clock, 1)
+    line["seconds"] = round(processor() - before, 2)
     by_removal = lambda row: law == "removed" and f"({SYSTEMS[scene][REMOVAL][0]})" in row["label"]  # noqa: E731
     right = next(row for row in answer if row["formulation"] == ROW.get(law) or by_removal(row))
     line |= {"verdict": right["verdict"], "words": right["words"], "intervals": intervals(right, numbers)}
@@ -145,7 +157,7 @@ def totals(lines):
                 covering[key] += covers
     print("intervals that cover")
     for key, count in counted.items():
-        print(f"  {key:20} {covering[key]:5} of {count:5}, {100 * covering[key] / count:.1f} %")
+        print(f"  {key:20} {covering[key]:5} of {count:5}, {100 * covering[key] / count:.1f} %, {between(covering[key], count)}")
     print("verdicts")
     for law, counter in verdicts.items():
         print(f"  {law:10}", dict(counter))
@@ -160,6 +172,10 @@ def totals(lines):
             print(f"film {line['number']} {line['scene']} {line['law']}: cannot tell without a rival; {line['chi']}")
     reached = [line for line in lines if isinstance(line["chi"].get(line.get("right")), float)]
     reached = sum(line["chi"][line["right"]] <= line["chi true"] + 0.5 for line in reached)
+    wrong = sum(line["verdict"] == "WRONG" for line in lines)
+    print(f"{wrong} wrong verdicts, {between(wrong, len(lines))}")
+    seconds = sorted(line["seconds"] for line in lines)
+    print(f"processor seconds a film: median {seconds[len(lines) // 2]}, most {seconds[-1]}, up to 1 s {sum(s <= 1 for s in seconds)}")
     print(f"{len(lines)} films; the least χ² is not above that of the truth in {reached}")
 
 

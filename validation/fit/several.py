@@ -10,11 +10,10 @@ are allowed, at the level of one in 9,300 films.
 """
 
 import argparse
-import time
 from collections import Counter
 
 import numpy as np
-from coverage import fitted, table
+from coverage import between, fitted, processor, table
 from systems import COLUMNS, FREE, LAGRANGIAN, PARAMETERS, SECONDS, SYSTEMS, motion, truth
 
 NOISE = [5e-4, 1e-3, 5e-3]
@@ -63,7 +62,7 @@ def main():
     for number in range(options.films):
         kind, name = cases[number % len(cases)]
         told, rows, sigma, free = made(kind, name, np.random.default_rng([options.seed, number]))
-        clock = time.monotonic()
+        before = processor()
         try:
             answer = fitted(options.program, name, table(SYSTEMS[name][COLUMNS].split(), told, rows), free, sigma)
         except TimeoutError:
@@ -73,12 +72,12 @@ def main():
         wrong |= kind == "contained" and "excluded" in verdicts.values()
         word = "too slow" if not answer else "WRONG" if wrong else verdicts.get("chetaev", "not asked")
         counts.setdefault(kind, Counter())[word] += 1
-        print(f"{number:3} {kind:10} {name:24} {sigma * 1e3:.1f} mm {time.monotonic() - clock:5.1f} s {word:12} {verdicts}", flush=True)
+        print(f"{number:3} {kind:10} {name:24} {sigma * 1e3:.1f} mm {processor() - before:5.2f} s {word:12} {verdicts}", flush=True)
     total = Counter()
     for kind, counter in counts.items():
         total += counter
         print(f"{kind:10} {dict(counter)}")
-    print(f"{options.films} films, {total['WRONG']} wrong, {options.films / 9300:.2f} by noise alone")
+    print(f"{options.films} films, {total['WRONG']} wrong ({between(total['WRONG'], options.films)}), {options.films / 9300:.2f} by noise alone")
 
 
 if __name__ == "__main__":

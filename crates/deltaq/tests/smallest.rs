@@ -48,7 +48,18 @@ fn the_smallest_questions_are_answered() {
     let many: Vec<String> = (0..20).map(|k| format!("f{k}.csv")).collect();
     many.iter().enumerate().for_each(|(k, name)| write(name, line(&every(0.1, 0.1, 6), 0.3 * k as f64)));
     let films = many.join(" ");
+    // a disc of 2 cm, as the program itself writes its motion: multipliers and errors are not looked at
+    let own = ["solve", "disc", "-f", "chetaev", "--set", "R=0.02", "--times", "0:1:11"];
+    let own = Command::new(env!("CARGO_BIN_EXE_deltaq")).args(own).output().expect("it runs");
+    write("own.csv", String::from_utf8(own.stdout).expect("text"));
+    write("gaps.csv", "t,x,y\n0.5,0.5,\n1,,1\n1.5,,\n2,0.5,2\n".into());
     let mut asked = [
+        "fit disc own.csv --set R=0.02 --free start --sigma 1e-3",
+        "fit disc own.csv --set R=0.02 --free phi' --sigma 1e-3",
+        "fit disc own.csv --set R=0.02 --free R~0.03 --sigma free",
+        "fit heisenberg gaps.csv --free x' --sigma 1mm",
+        "fit rest.toml rest.csv --free g~0 --law eps --sigma 1mm",
+        "fit rest.toml rest.csv --free g~0 --law slip --sigma 1mm",
         "fit heisenberg one.csv --free x' --sigma 1mm",
         "fit heisenberg one.csv --free x',y' --sigma 1mm",
         "fit heisenberg rest.csv --free x' --sigma 1mm",

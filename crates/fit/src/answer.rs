@@ -8,10 +8,9 @@ use motion::{CHETAEV, Choice, VAKONOMIC, choices_among, over_threads};
 use scene::Scene;
 
 use crate::creep;
+use crate::design::length_that_tells;
 use crate::fit::{sought, with_intervals};
 use crate::known;
-use crate::length::length_that_tells;
-use crate::problem::Fitting;
 use crate::question::{SLIP, has_constants, is_constant, is_law, problem_of};
 use crate::search::{POOR, begun};
 use crate::settled::{explain, settle};
@@ -148,7 +147,7 @@ fn fit_given(
     for (row, (_, own)) in rows.iter_mut().zip(&fits) {
         row.problem = own.as_ref().ok().map(|(problem, _)| problem.clone());
     }
-    settle(&mut rows, question);
+    settle(&mut rows);
     explain(&scene, &mut rows, films, question);
     for row in &mut rows {
         // what is excluded has no intervals to look for, and slip has them from its bound
@@ -280,9 +279,7 @@ fn fit_choices(
             problem.known = known::beside_chetaev(scene, choice, &problem, (own, chetaev, &known::numbers(fit)));
         }
         if let Some((own, _, fit)) = near.filter(|(.., fit)| fit.faults().next().is_none()) {
-            let theta = fit.estimates.iter().map(|e| e.value).collect();
-            let scale = fit.estimates.iter().map(|e| if e.error.is_finite() { e.error } else { 1.0 }).collect();
-            problem.beside = Some(Box::new(Fitting { problem: own.clone(), theta, scale }));
+            problem.beside = Some(Box::new((own.clone(), [fit.numbers(), fit.scales()])));
         }
         Ok::<_, FitError>(problem)
     };

@@ -19,9 +19,10 @@ use motion::{CHETAEV, Choice, choices_among};
 use scene::Scene;
 
 use crate::known::beside_chetaev;
+use crate::least::{Stage, least};
 use crate::question::{LAW, has_constants, is_constant, is_of_a_law, problem_of};
 use crate::search::search;
-use crate::{EXCLUDED, Film, FitError, Problem, Question, Unknown, quantity, standard_errors};
+use crate::{EXCLUDED, Film, Fit, FitError, Problem, Question, Unknown, quantity, standard_errors};
 
 /// Lengths over that of the film, at which a film that tells is looked for.
 const LENGTHS: [f64; 7] = [1.0, 1.5, 2.0, 3.0, 4.0, 6.0, 8.0];
@@ -347,6 +348,24 @@ impl Design {
         let found = least(twice)?;
         Some((found * self.length, tells(found, twice)?.1))
     }
+}
+
+/// How many times as long a film has to be, where `truth` is the formulation and its best fit are the
+/// numbers, until χ² of `rival` is [`EXCLUDED`] at least, without noise; of a few lengths.
+pub(crate) fn length_that_tells(truth: (&Problem, &Fit), rival: (&Problem, &Fit)) -> Option<f64> {
+    // a slip at its bound is no unknown of the problem: it is the last estimate
+    let own = |problem: &Problem, of: Vec<f64>| of[..problem.unknowns().len()].to_vec();
+    let [at, mut start] = [truth, rival].map(|(problem, fit)| own(problem, fit.numbers()));
+    let scale = own(rival.0, rival.1.scales());
+    for longer in &LENGTHS[1..] {
+        let films = truth.0.foreseen(&at, *longer).ok()?;
+        let found = least(&rival.0.of_films(films).ok()?, &start, &scale, Stage::Profile).ok()?;
+        if found.value >= EXCLUDED {
+            return Some(*longer);
+        }
+        start = found.unknowns;
+    }
+    None
 }
 
 /// The least length over that of the films at which these tell, none where there is no motion.

@@ -55,3 +55,34 @@ fn ln_gamma(a: f64) -> f64 {
     let series = (1.0 / 12.0 - s * (1.0 / 360.0 - s * (1.0 / 1260.0 - s * (1.0 / 1680.0 - s / 1188.0)))) / a;
     (a - 0.5) * a.ln() - a + 0.5 * (2.0 * std::f64::consts::PI).ln() + series - shift
 }
+
+/// A formulation with one unknown less than that of the least χ², or with as many, is excluded where its χ²
+/// is this much above: by noise, where it is right, in one of 9,300 films.
+pub const EXCLUDED: f64 = 15.0;
+
+/// What χ² has to be above the least for an exclusion at the same level, where the other has `more ≥ 1`
+/// unknowns: noise lowers χ² by a χ² distribution with as many degrees of freedom.
+pub fn threshold(more: usize) -> f64 {
+    let (level, more) = (chi_squared_tail(EXCLUDED, 1.0), more.max(1) as f64);
+    let (mut low, mut high) = (0.0, 4.0 * (EXCLUDED + more));
+    for _ in 0..80 {
+        let middle = 0.5 * (low + high);
+        if chi_squared_tail(middle, more) > level { low = middle } else { high = middle }
+    }
+    if more > 1.0 { high } else { EXCLUDED }
+}
+
+/// Standard deviations of a normal distribution whose tails are as rare as χ² this far `above` with `more`
+/// unknowns; `√above` where that is rarer than numbers can say.
+pub(crate) fn sigmas(above: f64, more: usize) -> f64 {
+    let rare = chi_squared_tail(above, more.max(1) as f64);
+    if rare < 1e-280 {
+        return above.sqrt();
+    }
+    let (mut low, mut high) = (0.0, above.sqrt());
+    for _ in 0..60 {
+        let middle = 0.5 * (low + high);
+        if normal_tails(middle) > rare { low = middle } else { high = middle }
+    }
+    0.5 * (low + high)
+}

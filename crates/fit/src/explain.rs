@@ -19,11 +19,11 @@ use nalgebra::{DMatrix, DVector};
 use scene::{Filmed, Scene};
 use symbolic::{Expr, Function};
 
+use crate::distribution::threshold;
 use crate::film::expression;
+use crate::least::{Stage, least, scaled};
 use crate::question::{is_constant, is_law, problem_of};
-use crate::search::{Stage, least, scaled};
 use crate::unknown::CLOCK;
-use crate::verdict::threshold;
 use crate::{Film, Fit, Problem, Question, Unknown};
 
 /// The part of the extent of the films by which something plain moves them.

@@ -30,19 +30,11 @@ pub struct Problem {
     pub(crate) first: usize,
     /// Starts that are known before, beside the first one.
     pub(crate) known: Vec<Vec<f64>>,
-    /// Beside which formulation beginnings of the films may exclude this one.
-    pub(crate) beside: Option<Box<Fitting>>,
+    /// One that fits, its numbers and their scales: beside it beginnings of the films may exclude this one.
+    pub(crate) beside: Option<Box<(Problem, [Vec<f64>; 2])>>,
     robust: Option<f64>,
     /// `(θ − mean)/deviation` of unknowns that are held.
     held: Vec<f64>,
-}
-
-/// A formulation that fits: its problem, its numbers, and their scales.
-#[derive(Clone)]
-pub(crate) struct Fitting {
-    pub(crate) problem: Problem,
-    pub(crate) theta: Vec<f64>,
-    pub(crate) scale: Vec<f64>,
 }
 
 /// One residual.
@@ -164,22 +156,11 @@ impl Problem {
         limited
     }
 
-    /// Excluded beside none.
-    #[must_use]
-    pub(crate) fn alone(self) -> Problem {
-        Problem { beside: None, ..self }
-    }
-
     /// With motions whose errors are small beside standard deviations, and no smaller.
     #[must_use]
     pub(crate) fn coarse(&self) -> Problem {
         let mut coarse = self.clone();
-        for part in &mut coarse.parts {
-            let tolerance = part.film.finest().min(COARSEST);
-            if tolerance > part.model.tolerance() {
-                part.model.set_tolerance(tolerance);
-            }
-        }
+        coarse.parts.iter_mut().for_each(|part| part.model.coarsen(part.film.finest().min(COARSEST)));
         coarse
     }
 

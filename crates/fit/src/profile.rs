@@ -12,7 +12,7 @@ use motion::shooting::Minimum;
 use nalgebra::{DMatrix, DVector, Dyn, SVD};
 
 use crate::Problem;
-use crate::search::{Stage, least, scaled};
+use crate::least::{Stage, least, scaled};
 
 /// Standard deviations of 95 %.
 pub(crate) const NORMAL: f64 = 1.959_963_984_540_054;

@@ -5,25 +5,19 @@
 //! so on. While a beginning shows little, unknowns stay near where they were: each start counts as a
 //! measurement whose deviation is the change that would move the film by its own extent.
 
-use integrate::{BoundaryError, Residuals, ShootOptions};
 use motion::shooting::{Minimum, spread};
-use nalgebra::DMatrix;
 
+use crate::distribution::{EXCLUDED, sigmas};
+use crate::least::{Stage, least};
 use crate::minimum::{distinct, spread_out};
-use crate::problem::Fitting;
 use crate::residual_tests::residual_tests;
-use crate::verdict::sigmas;
-use crate::{EXCLUDED, FitError, Problem, Residual};
+use crate::{FitError, Problem, Residual};
 
 /// Samples of the first beginning, and the factor from one to the next.
 const FIRST: usize = 20;
 const LONGER: f64 = 1.5;
 /// Starts that are followed from one beginning to the next, by its number: short ones tell little of them.
 const FOLLOWED: [usize; 4] = [12, 10, 8, 4];
-/// Least gain, as a part of χ², for which an iteration goes on, by [`Stage`].
-const GAINS: [f64; 5] = [1e-2, 1e-4, 1e-8, 1e-6, 1e-4];
-/// Iterations by [`Stage`].
-const ITERATIONS: [usize; 5] = [10, 20, 100, 12, 50];
 /// Starts for the whole film are up to this many times halfway to the first one.
 const NEARER: i32 = 8;
 /// A change of an unknown by its own size that moves the film by this part of its extent is round-off.
@@ -58,7 +52,7 @@ pub struct Found {
     pub minima: Vec<Minimum>,
     /// Number of starts that were followed: fewer than asked for if some coincide.
     pub starts: usize,
-    /// Samples of a beginning of the films that excludes the formulation beside another, and the significance.
+    /// Samples of a beginning of the films that excludes it, and the significance.
     pub excluded_by: Option<(usize, f64)>,
 }
 
@@ -73,8 +67,8 @@ pub struct Found {
 pub fn search(problem: &Problem, moves: &dyn Fn(&str) -> bool, starts: usize, known: bool) -> Result<Found, FitError> {
     // where nothing is moved all starts are one
     let starts = if problem.unknowns().iter().any(|u| moves(&u.name)) { starts.max(1) } else { 1 };
-    let beside = problem.beside.as_deref();
-    let whole = &problem.limited(problem.start(), STEPS).alone();
+    let mut whole = problem.limited(problem.start(), STEPS);
+    let (beside, whole) = (whole.beside.take(), &whole);
     let problem = &whole.coarse();
     let short = problem.beginning(FIRST.max(2 * problem.unknowns().len()))?;
     let (scale, mut reason) = scales(&mut short.clone());
@@ -96,7 +90,7 @@ pub fn search(problem: &Problem, moves: &dyn Fn(&str) -> bool, starts: usize, kn
         let begun: Vec<Minimum> = begun.chain(known_before).collect();
         tried += begun.len();
         let led;
-        (led, excluded_by) = followed(problem, short, &scale, begun, beside, &mut reason)?;
+        (led, excluded_by) = followed(problem, short, &scale, begun, beside.as_deref(), &mut reason)?;
         minima.extend(refined(problem, led, &scale, Stage::Rough, &mut reason));
         distinct(&mut minima, &scale);
     }
@@ -195,7 +189,7 @@ fn followed(
     short: Problem,
     scale: &[f64],
     starts: Vec<Minimum>,
-    beside: Option<&Fitting>,
+    beside: Option<&(Problem, [Vec<f64>; 2])>,
     reason: &mut Option<String>,
 ) -> Result<(Vec<Minimum>, Option<(usize, f64)>), FitError> {
     let (mut part, mut starts, mut excluded_by) = (short, starts, None);
@@ -227,13 +221,17 @@ fn followed(
 /// Starts that have to lead to the least χ² of a formulation before it is excluded.
 pub(crate) const SEVERAL: usize = 2;
 /// How much more χ² has to be above for one of several beginnings: what keeps the level for eight of them.
-pub(crate) const LOOKS: f64 = 4.5;
+const LOOKS: f64 = 4.5;
 
 /// The significance at which this beginning excludes its formulation, if it does: by a least χ² that several
 /// starts reach. Where it may, `starts` become the minima.
-fn excluded(part: &Problem, starts: &mut Vec<Minimum>, scale: &[f64], beside: &Fitting) -> Option<f64> {
-    let best = beside.problem.beginning(part.samples()).ok()?;
-    let best = least(&best, &beside.theta, &beside.scale, Stage::Profile).ok()?.value;
+fn excluded(
+    part: &Problem,
+    starts: &mut Vec<Minimum>,
+    scale: &[f64],
+    (best, own): &(Problem, [Vec<f64>; 2]),
+) -> Option<f64> {
+    let best = least(&best.beginning(part.samples()).ok()?, &own[0], &own[1], Stage::Profile).ok()?.value;
     let enough = |found: &[Minimum]| Some(found.first()?.value - best).filter(|above| *above >= EXCLUDED + LOOKS);
     enough(starts)?;
     *starts = refined(part, std::mem::take(starts), scale, Stage::Whole, &mut None);
@@ -327,108 +325,4 @@ fn within(problem: &Problem, origin: &[f64], theta: &[f64]) -> Vec<f64> {
         origin.iter().zip(theta).map(|(o, x)| o + part * (x - o)).collect()
     };
     (0..HALVINGS).map(at).find(|theta| problem.weighed(theta, false).is_ok()).unwrap_or_else(|| origin.to_vec())
-}
-
-/// What is fitted.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Stage {
-    /// A beginning, coarsely; the start counts as a measurement.
-    Beginning,
-    /// The whole film, coarsely.
-    Rough,
-    /// The whole film.
-    Whole,
-    /// The whole film, with one unknown held beside a minimum.
-    Profile,
-    /// The whole film, coarsely, where residuals are many deviations.
-    Poor,
-}
-
-/// The minimum near `start`, no unknown below its bound: one that would be is at it.
-pub(crate) fn least(problem: &Problem, start: &[f64], scale: &[f64], stage: Stage) -> Result<Minimum, String> {
-    let mut found = match start {
-        [] => {
-            let (values, _) = problem.clone().weighed(&[], false)?;
-            return Ok(Minimum { value: values.norm_squared(), ..Minimum::start(0, Vec::new()) });
-        }
-        _ => minimise(&mut problem.clone(), start, scale, stage)?,
-    };
-    let bounds = problem.unknowns().iter().map(|unknown| unknown.bound);
-    let mut each = bounds.zip(&found.unknowns).enumerate();
-    let below = each.find_map(|(i, (bound, x))| bound.filter(|bound| x < bound).map(|bound| (i, bound)));
-    if let Some((i, bound)) = below {
-        let mut scale = scale.to_vec();
-        found.unknowns.remove(i);
-        scale.remove(i);
-        found = least(&problem.without(i, bound), &found.unknowns, &scale, stage)?;
-        found.unknowns.insert(i, bound);
-    }
-    Ok(found)
-}
-
-fn minimise(problem: &mut Problem, start: &[f64], scale: &[f64], stage: Stage) -> Result<Minimum, String> {
-    let guess: Vec<f64> = start.iter().zip(scale).map(|(x, s)| x / s).collect();
-    let count = problem.count();
-    let held = (stage == Stage::Beginning).then(|| guess.clone());
-    let rows = count + held.as_ref().map_or(0, Vec::len);
-    let options = ShootOptions {
-        max_iterations: ITERATIONS[stage as usize],
-        least_gain: GAINS[stage as usize],
-        ..ShootOptions::with_tolerance(1e-10)
-    };
-    let mut squares = Squares { problem: &mut *problem, scale, held };
-    let shot = integrate::fit(&mut squares, rows, &guess, &options).map_err(|error| error.to_string())?;
-    let theta: Vec<f64> = shot.unknowns.iter().zip(scale).map(|(x, s)| x * s).collect();
-    let (values, _) = problem.weighed(&theta, false)?;
-    Ok(Minimum { value: values.norm_squared(), ..Minimum::start(0, theta) })
-}
-
-/// Residuals as functions of unknowns over their scales.
-struct Squares<'a> {
-    problem: &'a mut Problem,
-    scale: &'a [f64],
-    held: Option<Vec<f64>>,
-}
-
-impl Squares<'_> {
-    fn theta(&self, unknowns: &[f64]) -> Vec<f64> {
-        unknowns.iter().zip(self.scale).map(|(x, s)| x * s).collect()
-    }
-}
-
-impl Residuals for Squares<'_> {
-    fn residual(&mut self, unknowns: &[f64], residual: &mut [f64]) -> Result<(), BoundaryError> {
-        let theta = self.theta(unknowns);
-        let broken = |reason| BoundaryError::Residual { reason };
-        let (values, _) = self.problem.weighed(&theta, false).map_err(broken)?;
-        let held = self.held.iter().flatten().zip(unknowns).map(|(held, x)| x - held);
-        residual.iter_mut().zip(values.iter().copied().chain(held)).for_each(|(r, value)| *r = value);
-        Ok(())
-    }
-
-    fn jacobian(&mut self, unknowns: &[f64], jacobian: &mut [f64]) -> Result<bool, BoundaryError> {
-        let theta = self.theta(unknowns);
-        let broken = |reason| BoundaryError::Residual { reason };
-        let (_, derivatives) = self.problem.weighed(&theta, true).map_err(broken)?;
-        let width = unknowns.len();
-        for (i, row) in jacobian.chunks_exact_mut(width).enumerate() {
-            for (j, entry) in row.iter_mut().enumerate() {
-                let held = f64::from(u8::from(i >= derivatives.nrows() && i - derivatives.nrows() == j));
-                *entry = if i < derivatives.nrows() { derivatives[(i, j)] * self.scale[j] } else { held };
-            }
-        }
-        Ok(true)
-    }
-}
-
-/// The Jacobian with columns of length one, and their lengths.
-pub(crate) fn scaled(jacobian: &DMatrix<f64>) -> (DMatrix<f64>, Vec<f64>) {
-    let lengths: Vec<f64> = jacobian.column_iter().map(|column| column.norm()).collect();
-    let mut scaled = jacobian.clone();
-    for (mut column, &length) in scaled.column_iter_mut().zip(&lengths) {
-        if length > 0.0 {
-            column /= length;
-        }
-    }
-    (scaled, lengths)
 }

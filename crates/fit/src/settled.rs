@@ -3,70 +3,26 @@
 use scene::Scene;
 
 use crate::explain::explanations;
-use crate::question::{has_constants, is_constant, is_law};
-use crate::search::{LOOKS, SEVERAL, Stage, least, search};
-use crate::verdict::{above, sigmas, threshold};
-use crate::{Film, Fit, Problem, Question, Row, Verdict};
-
-/// Numbers per unknown of the first beginning of which an exclusion is asked for that no whole film settles,
-/// and the factor from one to the next.
-const FIRST: usize = 2;
-const LONGER: f64 = 1.6;
+use crate::question::{has_constants, is_law};
+use crate::search::SEVERAL;
+use crate::{Film, Fit, Question, Row, Verdict};
 
 /// An exclusion rests on a least χ² that several starts reach: of the whole films, or of their beginnings,
 /// which have no more minima than tell. Elsewhere the search is not settled.
-pub(crate) fn settle(rows: &mut [Row], question: &Question) {
-    let fitted = rows.iter().filter_map(|row| Some((row.fit.as_ref().ok()?, row.problem.as_ref()?)));
-    let best = fitted.min_by(|a, b| a.0.chi_squared.total_cmp(&b.0.chi_squared));
-    let Some((best, of_best)) = best.map(|(fit, problem)| (fit.clone(), problem.clone())) else { return };
-    let spread = |name: &str| is_constant(name) || question.law.iter().any(|u| u.name == name);
+pub(crate) fn settle(rows: &mut [Row]) {
     for row in rows.iter_mut() {
-        let (Verdict::Excluded { sigmas }, Ok(fit), Some(problem)) = (&row.verdict, &row.fit, &row.problem) else {
-            continue;
-        };
-        let is_settled = fit.reached >= SEVERAL && fit.excluded_by.is_none();
-        if is_settled || !has_constants(&row.choice) && !is_law(row.choice.formulation) {
-            continue;
-        }
-        let (sigmas, more) = (*sigmas, above(fit, &best).1);
-        let settled = || by_beginning((&of_best, &best), problem, (more, problem.samples()), &spread, question.starts);
-        match fit.excluded_by.or_else(settled) {
+        let (&Verdict::Excluded { sigmas }, Ok(fit)) = (&row.verdict, &row.fit) else { continue };
+        match fit.excluded_by {
             Some((samples, sigmas)) => {
                 row.notes.push(format!(
                     "excluded by the first {samples} samples; of the whole films few starts reach the least χ²"
                 ));
                 row.verdict = Verdict::Excluded { sigmas };
             }
+            None if fit.reached >= SEVERAL || !has_constants(&row.choice) && !is_law(row.choice.formulation) => {}
             None => row.verdict = Verdict::Unsettled { sigmas },
         }
     }
-}
-
-/// The shortest beginning of the films that excludes `problem`, by a least χ² that several starts reach: its
-/// samples, fewer than `most`, and the significance, the best having so many unknowns `more`.
-fn by_beginning(
-    (best, fit): (&Problem, &Fit),
-    problem: &Problem,
-    (more, most): (usize, usize),
-    spread: &dyn Fn(&str) -> bool,
-    starts: usize,
-) -> Option<(usize, f64)> {
-    let theta: Vec<f64> = fit.estimates.iter().map(|e| e.value).take(best.unknowns().len()).collect();
-    let scale: Vec<f64> = fit.estimates.iter().map(|e| if e.error.is_finite() { e.error } else { 1.0 }).collect();
-    let columns = problem.films().map(|film| film.columns.len()).min().unwrap_or(1);
-    let films = problem.films().count();
-    let mut samples = (FIRST * problem.unknowns().len()).div_ceil(columns * films) + 1;
-    while samples < most {
-        let of_best = least(&best.beginning(samples).ok()?, &theta, &scale[..theta.len()], Stage::Profile).ok()?;
-        let beginning = problem.beginning(samples).ok()?.alone();
-        let found = search(&beginning, spread, starts, false).ok()?.best;
-        let above = found.value - of_best.value;
-        if above >= threshold(more) + LOOKS && found.reached >= SEVERAL {
-            return Some((samples, sigmas(above, more)));
-        }
-        samples = (samples as f64 * LONGER) as usize;
-    }
-    None
 }
 
 /// What a plain explanation brings as near as the best fits is not excluded, and does not leave the best as

@@ -95,14 +95,9 @@ impl Model {
         Ok(())
     }
 
-    /// The tolerance of its motions.
-    pub fn tolerance(&self) -> f64 {
-        self.settings.tolerance
-    }
-
-    /// From now on with this tolerance.
-    pub fn set_tolerance(&mut self, tolerance: f64) {
-        self.settings.tolerance = tolerance;
+    /// From now on with this tolerance, if it is larger.
+    pub fn coarsen(&mut self, tolerance: f64) {
+        self.settings.tolerance = self.settings.tolerance.max(tolerance);
     }
 
     /// From now on a motion may take no more than `times` the steps, 10 at least, of that with these numbers;

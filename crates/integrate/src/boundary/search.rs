@@ -136,8 +136,8 @@ impl<'a> Search<'a> {
         Ok(jacobian)
     }
 
-    /// One step more by a Jacobian of this condition, kept where it is one nearer; none where what was found is
-    /// not good enough.
+    /// One step more by a Jacobian of this condition, kept where it is one nearer; none where what was found
+    /// is not good enough.
     fn finish(&mut self, condition: f64) {
         if self.smallest == 0.0 || self.smallest > self.enough {
             return;
