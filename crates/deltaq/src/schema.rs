@@ -6,7 +6,7 @@ use scene::format::{CONSTANTS, Content, FORMAT, Key, REMOVAL, SCENE};
 use serde_json::{Map, Value, json};
 
 /// Those of answers, all of them.
-const ANSWERS: [fn() -> Value; 7] = [
+const ANSWERS: [fn() -> Value; 11] = [
     schema_of::<crate::connect_command::Connected>,
     schema_of::<crate::ensemble_command::AllMembers>,
     schema_of::<crate::judge_command::AllJudged>,
@@ -14,6 +14,10 @@ const ANSWERS: [fn() -> Value; 7] = [
     schema_of::<crate::show_command::List>,
     schema_of::<crate::show_command::Shown>,
     schema_of::<crate::solve_command::Solved>,
+    schema_of::<fit::Designed>,
+    schema_of::<fit::Fitted>,
+    schema_of::<integrals::Answer>,
+    schema_of::<review::Reviewed>,
 ];
 
 /// The schema of the answer of this kind, or the names of all: `urn:deltaq:KIND:VERSION`.

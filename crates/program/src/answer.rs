@@ -93,7 +93,9 @@ pub fn schema_of<T: JsonSchema>() -> Value {
     let settings = SchemaSettings::draft2020_12().for_serialize().with_transform(RecursiveTransform(closed));
     let (name, mut schema) = (T::schema_name(), settings.into_generator().into_root_schema_for::<T>().to_value());
     schema["$id"] = format!("urn:deltaq:{}", name.replace('/', ":")).into();
-    schema["properties"]["schema"] = json!({ "const": format!("deltaq/{name}") });
+    let head = json!({ "const": format!("deltaq/{name}") });
+    let properties = schema["properties"].as_object_mut().into_iter();
+    properties.for_each(|properties| _ = properties.shift_insert(0, "schema".into(), head.clone()));
     schema["required"].as_array_mut().into_iter().for_each(|required| required.insert(0, "schema".into()));
     schema
 }
