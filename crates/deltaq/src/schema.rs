@@ -6,17 +6,19 @@ use scene::format::{CONSTANTS, Content, FORMAT, Key, REMOVAL, SCENE};
 use serde_json::{Map, Value, json};
 
 /// Those of answers, all of them.
-const ANSWERS: [fn() -> Value; 11] = [
+const ANSWERS: [fn() -> Value; 13] = [
     schema_of::<crate::connect_command::Connected>,
     schema_of::<crate::ensemble_command::AllMembers>,
     schema_of::<crate::judge_command::AllJudged>,
     schema_of::<crate::linearize_command::Linearized>,
+    schema_of::<crate::prove_command::Proved>,
     schema_of::<crate::show_command::List>,
     schema_of::<crate::show_command::Shown>,
     schema_of::<crate::solve_command::Solved>,
     schema_of::<fit::Designed>,
     schema_of::<fit::Fitted>,
     schema_of::<integrals::Answer>,
+    schema_of::<pages::Verdicts>,
     schema_of::<review::Reviewed>,
 ];
 
