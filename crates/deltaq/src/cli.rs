@@ -101,6 +101,11 @@ pub enum Command {
     Fit(FitArguments),
     /// Plan the recording that separates two formulations best, or determines a number best.
     Design(DesignArguments),
+    /// Print the JSON schema of an answer.
+    Schema {
+        /// The answer, such as `solve`; without it all kinds are listed.
+        kind: Option<String>,
+    },
     /// Print completions for a shell.
     Completions {
         /// The shell.

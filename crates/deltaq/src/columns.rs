@@ -4,9 +4,11 @@ use std::collections::HashSet;
 
 use anyhow::{Result, bail};
 use equations::{Equations, Outputs};
+use indexmap::IndexMap;
 use motion::{ErrorEstimate, Sensitivities};
 use scene::{Scene, table_cell};
-use serde_json::{Map, Value, json};
+use schemars::JsonSchema;
+use serde::Serialize;
 
 /// Most numbers of an answer that are in memory at once: with their JSON they fit into 2 GB.
 pub const MOST_NUMBERS: usize = 12_000_000;
@@ -38,32 +40,31 @@ impl Columns {
         self.names()[1..].iter().map(|name| format!("error {name}")).collect()
     }
 
-    /// Adds the columns to an object: one list of numbers per name.
-    pub fn write(&self, object: &mut Value, rows: &[Outputs]) {
-        object["coordinates"] = named_columns(&self.coordinates, rows, |r| &r.coordinates);
-        object["velocities"] = named_columns(&self.coordinates, rows, |r| &r.velocities);
-        object["multipliers"] = named_columns(&self.multipliers, rows, |r| &r.multipliers);
+    /// The columns: one list of numbers per name.
+    pub fn table(&self, rows: &[Outputs]) -> Table<Vec<f64>> {
+        self.lists(rows, [|r| &r.coordinates, |r| &r.velocities, |r| &r.multipliers])
     }
 
-    /// The error estimates up to each time, as an object in the same way.
-    pub fn errors(&self, rows: &[ErrorEstimate]) -> Value {
-        json!({
-            "coordinates": named_columns(&self.coordinates, rows, |r| &r.coordinates),
-            "velocities": named_columns(&self.coordinates, rows, |r| &r.velocities),
-            "multipliers": named_columns(&self.multipliers, rows, |r| &r.multipliers),
-        })
+    /// The error estimates up to each time, in the same way.
+    pub fn errors(&self, rows: &[ErrorEstimate]) -> Table<Vec<f64>> {
+        self.lists(rows, [|r| &r.coordinates, |r| &r.velocities, |r| &r.multipliers])
+    }
+
+    fn lists<R>(&self, rows: &[R], [q, v, multipliers]: [fn(&R) -> &[f64]; 3]) -> Table<Vec<f64>> {
+        Table {
+            coordinates: named_columns(&self.coordinates, rows, q),
+            velocities: named_columns(&self.coordinates, rows, v),
+            multipliers: named_columns(&self.multipliers, rows, multipliers),
+        }
     }
 
     /// The error estimates of one whole motion: one number per name.
-    pub fn whole_errors(&self, estimate: &ErrorEstimate) -> Value {
-        let of = |names: &[String], errors: &[f64]| -> Value {
-            names.iter().cloned().zip(errors.iter().map(|error| json!(error))).collect::<Map<_, _>>().into()
-        };
-        json!({
-            "coordinates": of(&self.coordinates, &estimate.coordinates),
-            "velocities": of(&self.coordinates, &estimate.velocities),
-            "multipliers": of(&self.multipliers, &estimate.multipliers),
-        })
+    pub fn whole_errors(&self, estimate: &ErrorEstimate) -> Table<f64> {
+        Table {
+            coordinates: named(&self.coordinates, &estimate.coordinates),
+            velocities: named(&self.coordinates, &estimate.velocities),
+            multipliers: named(&self.multipliers, &estimate.multipliers),
+        }
     }
 
     /// Those of [`derivative_row`]: `dx/dm`, `error dx/dm`.
@@ -76,17 +77,36 @@ impl Columns {
         derived.names.iter().flat_map(by).collect()
     }
 
-    /// The derivatives by each number and their error estimates, as an object by its name.
-    pub fn derivatives(&self, derived: &Sensitivities) -> Value {
-        let of = |k: usize| {
-            let (mut value, mut errors) = (json!({}), json!({}));
-            self.write(&mut value, &derived.derivatives.iter().map(|row| row[k].clone()).collect::<Vec<_>>());
-            self.write(&mut errors, &derived.errors.iter().map(|row| row[k].clone()).collect::<Vec<_>>());
-            value["error_estimates"] = errors;
-            value
-        };
-        derived.names.iter().enumerate().map(|(k, name)| (name.clone(), of(k))).collect::<Map<_, _>>().into()
+    /// The derivatives by each number and their error estimates, by its name.
+    pub fn derivatives(&self, derived: &Sensitivities) -> IndexMap<String, Derivatives> {
+        let of =
+            |rows: &[Vec<Outputs>], k: usize| self.table(&rows.iter().map(|row| row[k].clone()).collect::<Vec<_>>());
+        let both = |k: usize| Derivatives { of: of(&derived.derivatives, k), error_estimates: of(&derived.errors, k) };
+        derived.names.iter().enumerate().map(|(k, name)| (name.clone(), both(k))).collect()
     }
+}
+
+/// Numbers by name.
+pub type Numbers = IndexMap<String, f64>;
+
+/// Something for each column of a motion: a list, a number a time, or one number.
+#[derive(Serialize, JsonSchema)]
+pub struct Table<T> {
+    /// By coordinate.
+    coordinates: IndexMap<String, T>,
+    /// Rates of coordinates.
+    velocities: IndexMap<String, T>,
+    /// Multipliers or costates of the formulation.
+    multipliers: IndexMap<String, T>,
+}
+
+/// Derivatives of all columns by a number.
+#[derive(Serialize, JsonSchema)]
+pub struct Derivatives {
+    #[serde(flatten)]
+    of: Table<Vec<f64>>,
+    /// What the two runs differ by up to each time.
+    error_estimates: Table<Vec<f64>>,
 }
 
 /// The derivatives at one time by each number, and their error estimates, each after a comma.
@@ -97,9 +117,14 @@ pub fn derivative_row(derived: &Sensitivities, i: usize) -> String {
 }
 
 /// One list of numbers per name.
-pub fn named_columns<R>(names: &[String], rows: &[R], row: fn(&R) -> &[f64]) -> Value {
-    let column = |i: usize| rows.iter().map(|r| row(r)[i]).collect::<Vec<f64>>();
-    names.iter().enumerate().map(|(i, name)| (name.clone(), json!(column(i)))).collect::<Map<_, _>>().into()
+pub fn named_columns<R>(names: &[String], rows: &[R], row: fn(&R) -> &[f64]) -> IndexMap<String, Vec<f64>> {
+    let column = |i: usize| rows.iter().map(|r| row(r)[i]).collect();
+    names.iter().enumerate().map(|(i, name)| (name.clone(), column(i))).collect()
+}
+
+/// One number per name.
+pub fn named(names: impl IntoIterator<Item = impl ToString>, numbers: &[f64]) -> Numbers {
+    names.into_iter().map(|name| name.to_string()).zip(numbers.iter().copied()).collect()
 }
 
 /// The error estimates up to one time, between commas.

@@ -1,12 +1,10 @@
 //! `deltaq compare`: formulations of the user's scenes, compared.
 
 use anyhow::{Context, Result, ensure};
-use comparison::words::at_most;
 use comparison::{Comparison, Extent, Fits};
 use console::Term;
 use motion::{Settings, choices_among};
 use scene::Scene;
-use serde_json::{Value, json};
 
 use crate::cli::CompareArguments;
 use crate::solve_command::limited;
@@ -16,7 +14,7 @@ use pages::scene_files;
 use pages::{summary, verdicts};
 use program::TextOrJson;
 use program::write_all;
-use program::{pretty, print};
+use program::{print, typed};
 
 /// Prints a summary of each scene as soon as it is compared; or returns pages or verdicts, or writes pages
 /// and pictures to a folder and says so. Nothing is computed before every scene has been read.
@@ -36,13 +34,13 @@ pub(crate) fn run(arguments: &CompareArguments, quiet: bool) -> Result<String> {
     let as_json = arguments.output.format == TextOrJson::Json;
     let as_pages = arguments.output.out.is_some() || arguments.markdown;
     let watch = Watch::begin(quiet)?;
-    let (mut files, mut value, mut before) = (Vec::new(), verdicts(&[]), String::new());
+    let (mut files, mut all, mut before) = (Vec::new(), verdicts(&[], true), String::new());
     let mut sound = Ok(());
     for scene in scenes {
         let mut answer = |comparison: &mut Comparison| -> Result<String> {
             if as_json {
-                value["scenes"][&comparison.scene.name] = json_of(comparison);
-                return Ok(pretty("compare", &value));
+                all.scenes.extend(verdicts(std::slice::from_ref(comparison), true).scenes);
+                return typed(&all);
             }
             Ok(before.clone() + &summary(comparison, width)?)
         };
@@ -70,7 +68,7 @@ pub(crate) fn run(arguments: &CompareArguments, quiet: bool) -> Result<String> {
     }
     let pages = files.iter().filter(|file| file.path.extension().is_some_and(|e| e == "md"));
     let text = match &arguments.output.out {
-        _ if as_json => pretty("compare", &value),
+        _ if as_json => typed(&all)?,
         Some(folder) => format!("{} files in {}\n", files.len(), folder.display()),
         None => pages.map(|page| page.text.clone() + "\n").collect(),
     };
@@ -116,24 +114,4 @@ fn compared(
     }
     comparison.fit(arguments.fits(), settings)?;
     Ok(comparison)
-}
-
-/// The verdicts on a scene, with largest gaps, error estimates and what fits came to.
-fn json_of(comparison: &Comparison) -> Value {
-    let mut value = verdicts(std::slice::from_ref(comparison));
-    let mut scene = value["scenes"][&comparison.scene.name].take();
-    scene["contradictions"] = comparison.contradictions().iter().map(ToString::to_string).collect();
-    for (i, pair) in comparison.pairs.iter().enumerate() {
-        let found = &mut scene["pairs"][i];
-        (found["largest"], found["estimates"]) = (json!(pair.gap.largest), json!(pair.gap.estimates));
-    }
-    for (i, fit) in comparison.fits.iter().enumerate() {
-        let Some(fitted) = &fit.fitted else { continue };
-        let found = &mut scene["fits"][i];
-        found["constants"] = fitted.constants.iter().map(|(name, c)| (name.clone(), json!(c))).collect();
-        let told = |gap: f64| json!(if fitted.is_settled() { gap } else { at_most(gap) });
-        (found["largest"], found["by half"]) = (told(fitted.gap.largest), told(fitted.by_half));
-        (found["settled"], found["starts"]) = (json!(fitted.is_settled()), json!(fitted.starts));
-    }
-    scene
 }

@@ -1,13 +1,16 @@
 //! `deltaq connect`: motions between two points.
 
 use anyhow::Result;
+use indexmap::IndexMap;
 use motion::{Aim, Connection, Connections, SecondVariation, Settings, connect};
 use scene::Scene;
-use serde_json::{Map, Value, json};
+use schemars::JsonSchema;
+use serde::Serialize;
 
 use crate::cli::ConnectArguments;
+use crate::columns::{Numbers, named};
 use crate::solve_command::{choice, limited};
-use program::{Answer, TextOrJson, parallel, pretty};
+use program::{Answer, TextOrJson, parallel, typed};
 
 /// Motions that are printed in text; JSON has all.
 const PRINTED: usize = 30;
@@ -31,7 +34,7 @@ pub(crate) fn run(arguments: &ConnectArguments) -> Result<Answer> {
     });
     let text = match arguments.format {
         TextOrJson::Text => text(&scene, name, &aim, &found),
-        TextOrJson::Json => pretty("connect", &json_of(&scene, name, &aim, &found)),
+        TextOrJson::Json => typed(&Connected::of(&scene, name, &aim, &found))?,
     };
     Ok(Answer { text, complaint, ..Answer::default() })
 }
@@ -117,55 +120,117 @@ fn one(number: usize, motion: &Connection, found: &Connections, aim: &Aim) -> St
     text
 }
 
-fn json_of(scene: &Scene, formulation: &str, aim: &Aim, found: &Connections) -> Value {
-    let named = |values: &[f64]| -> Map<String, Value> {
-        found.unknowns.iter().cloned().zip(values.iter().map(|&x| finite(x))).collect()
-    };
-    let to = |values: &mut dyn Iterator<Item = f64>| -> Map<String, Value> {
-        aim.to.iter().map(|(name, _)| name.clone()).zip(values.map(|x| json!(x))).collect()
-    };
-    let motion = |motion: &Connection| {
-        let velocities = scene.system.coordinates.iter().map(|c| format!("{}'", c.name));
-        let velocities: Map<String, Value> = velocities.zip(motion.start.v.iter().map(|&v| json!(v))).collect();
-        let times = motion.conjugate.as_ref().map(|times| {
-            let each = times.iter();
-            each.map(|time| json!({ "t": time.t, "error": finite(time.error), "multiplicity": time.multiplicity }))
-                .collect::<Vec<_>>()
-        });
-        json!({
-            "unknowns": named(&motion.unknowns),
-            "errors": named(&motion.errors),
-            "velocities": velocities,
-            "action": motion.action[0],
-            "action_error": motion.action[1],
-            "residuals": to(&mut motion.residuals.iter().copied()),
-            "condition": finite(motion.condition),
-            "isolated": motion.is_isolated(),
-            "conjugate_times": times,
-            "minimum": motion.is_minimum,
-            "second_variation": motion.second_variation.words(),
-            "starts": motion.starts,
-            "by_half": motion.by_half,
-        })
-    };
-    json!({
-        "scene": scene.name,
-        "formulation": formulation,
-        "from": scene.start.t,
-        "at": aim.t,
-        "to": to(&mut aim.to.iter().map(|(_, q)| *q)),
-        "unknowns": found.unknowns,
-        "starts": aim.starts,
-        "motions": found.found.iter().map(motion).collect::<Vec<_>>(),
-        "failures": found.failures.iter().map(|(why, starts)| json!({ "why": why, "starts": starts })).collect::<Vec<_>>(),
-        "every_constant": found.every_constant,
-        "none": found.none,
-        "runs": found.runs[0],
-        "with_derivatives": found.runs[1],
-    })
+/// Motions between two points: `deltaq connect --format json`.
+#[derive(Serialize, JsonSchema)]
+#[schemars(rename = "connect/2")]
+pub(crate) struct Connected<'a> {
+    scene: &'a str,
+    formulation: &'a str,
+    /// Time of the start.
+    from: f64,
+    /// Time of the end.
+    at: f64,
+    /// Coordinates at the end.
+    to: Numbers,
+    /// Free start velocities, free constants.
+    unknowns: &'a [String],
+    starts: usize,
+    /// By rising action.
+    motions: Vec<Found>,
+    /// Why starts led nowhere.
+    failures: Vec<Failure<'a>>,
+    /// Whether every mu0 gives the same motions, so that none is unknown.
+    every_constant: bool,
+    /// Why there is no motion at all; null elsewhere.
+    none: Option<&'a str>,
+    /// Motions integrated in the search.
+    runs: usize,
+    /// Those among them that carried derivatives.
+    with_derivatives: usize,
 }
 
-/// A number, or null for what is unbounded.
-fn finite(x: f64) -> Value {
-    if x.is_finite() { json!(x) } else { Value::Null }
+#[derive(Serialize, JsonSchema)]
+struct Found {
+    unknowns: Numbers,
+    /// How far the unknowns may be wrong; null where nothing is known.
+    #[schemars(with = "IndexMap<String, Option<f64>>")]
+    errors: Numbers,
+    /// All velocities at the start.
+    velocities: Numbers,
+    /// The integral of L over time.
+    action: f64,
+    /// Error of its quadrature.
+    action_error: f64,
+    /// What the end is missed by.
+    residuals: Numbers,
+    /// Condition number of the end by the unknowns, in units of the problem.
+    #[schemars(with = "Option<f64>")]
+    condition: f64,
+    /// Whether no other motion is beside it.
+    isolated: bool,
+    /// Rising; null where the unknowns are dependent at all times.
+    conjugate_times: Option<Vec<ConjugateTime>>,
+    /// Whether the action has a local minimum, as far as conjugate times tell; null where that is not known.
+    minimum: Option<bool>,
+    /// What the second variation of the action says, in words.
+    second_variation: &'static str,
+    /// How many starts led here.
+    starts: usize,
+    /// Whether the first half of the starts leads here.
+    by_half: bool,
+}
+
+#[derive(Serialize, JsonSchema)]
+struct ConjugateTime {
+    t: f64,
+    #[schemars(with = "Option<f64>")]
+    error: f64,
+    multiplicity: usize,
+}
+
+#[derive(Serialize, JsonSchema)]
+struct Failure<'a> {
+    why: &'a str,
+    starts: usize,
+}
+
+impl<'a> Connected<'a> {
+    fn of(scene: &'a Scene, formulation: &'a str, aim: &Aim, found: &'a Connections) -> Self {
+        let ends = || aim.to.iter().map(|(name, _)| name);
+        let conjugate = |time: &motion::ConjugateTime| ConjugateTime {
+            t: time.t,
+            error: time.error,
+            multiplicity: time.multiplicity,
+        };
+        let motion = |motion: &Connection| Found {
+            unknowns: named(&found.unknowns, &motion.unknowns),
+            errors: named(&found.unknowns, &motion.errors),
+            velocities: named(scene.system.coordinates.iter().map(|c| format!("{}'", c.name)), &motion.start.v),
+            action: motion.action[0],
+            action_error: motion.action[1],
+            residuals: named(ends(), &motion.residuals),
+            condition: motion.condition,
+            isolated: motion.is_isolated(),
+            conjugate_times: motion.conjugate.as_ref().map(|times| times.iter().map(conjugate).collect()),
+            minimum: motion.is_minimum,
+            second_variation: motion.second_variation.words(),
+            starts: motion.starts,
+            by_half: motion.by_half,
+        };
+        Connected {
+            scene: &scene.name,
+            formulation,
+            from: scene.start.t,
+            at: aim.t,
+            to: named(ends(), &aim.to.iter().map(|(_, q)| *q).collect::<Vec<_>>()),
+            unknowns: &found.unknowns,
+            starts: aim.starts,
+            motions: found.found.iter().map(motion).collect(),
+            failures: found.failures.iter().map(|(why, starts)| Failure { why, starts: *starts }).collect(),
+            every_constant: found.every_constant,
+            none: found.none.as_deref(),
+            runs: found.runs[0],
+            with_derivatives: found.runs[1],
+        }
+    }
 }

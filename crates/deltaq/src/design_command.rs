@@ -3,9 +3,9 @@
 use std::fmt::Write;
 
 use anyhow::{Context, Result, bail};
-use fit::{Aim, Best, Design, Deviations, EXCLUDED, Film, Point, Question, design_value, significance};
+use fit::{Aim, Best, Design, Designed, Deviations, EXCLUDED, Film, Point, Question, significance};
 use motion::Settings;
-use program::{Answer, TextOrJson, parallel, pretty};
+use program::{Answer, TextOrJson, parallel, typed};
 use scene::Scene;
 
 use crate::cli::DesignArguments;
@@ -41,7 +41,7 @@ pub fn run(arguments: &DesignArguments) -> Result<Answer> {
     let found = Found { scene: &scene, films: &films, design: &design, best };
     Ok(match arguments.format {
         TextOrJson::Text => found.text(),
-        TextOrJson::Json => pretty("design", &design_value(&scene, &films, &design, &found.best)),
+        TextOrJson::Json => typed(&Designed::of(&scene, &films, &design, &found.best))?,
     }
     .into())
 }

@@ -14,6 +14,7 @@ use crate::cli::{EnsembleArguments, Format, MotionArguments};
 use crate::columns::MOST_NUMBERS;
 use crate::solve_command::{choice, settings, times};
 use members::Members;
+pub(crate) use output::Ensemble as AllMembers;
 use output::{Answers, Outcome, Seconds};
 use program::{Answer, AtomicWriter, ResumableFile, parallel};
 use resume::resume;
@@ -76,12 +77,13 @@ pub(crate) fn run(arguments: &EnsembleArguments, quiet: bool) -> Result<Answer> 
     while reads_on && answers.done < members.count() {
         bar.set_position(answers.done as u64);
         let next = (answers.done + chunk).min(members.count());
-        let text: String = outcomes(answers.done..next).iter().map(|outcome| answers.add(outcome)).collect();
+        let text =
+            outcomes(answers.done..next).iter().map(|outcome| answers.add(outcome)).collect::<Result<String>>()?;
         reads_on = sink.write(&text)?;
     }
     bar.finish_and_clear();
     let complaint = answers.complaint();
-    reads_on = reads_on && sink.write(&answers.end(&seconds))?;
+    reads_on = reads_on && sink.write(&answers.end(&seconds)?)?;
     let file = if reads_on { sink.close()? } else { None };
     let text = file.map_or(String::new(), |path| format!("{} members in {}\n", members.count(), path.display()));
     Ok(Answer { text, complaint, ..Answer::default() })

@@ -4,11 +4,11 @@ use std::fmt::Write;
 
 use anyhow::{Context, Error, Result, bail};
 use fit::{
-    Deviations, Estimate, Film, Fit, FitError, Question, ROBUST, Row, Verdict, fit_formulations, fit_value,
-    formulations, quantity,
+    Deviations, Estimate, Film, Fit, FitError, Fitted, Question, ROBUST, Row, Verdict, fit_formulations, formulations,
+    quantity,
 };
 use motion::Settings;
-use program::{Answer, TextOrJson, parallel, pretty, write_all};
+use program::{Answer, TextOrJson, parallel, typed, write_all};
 use scene::table_text;
 
 use crate::cli::FitArguments;
@@ -51,7 +51,7 @@ pub fn run(arguments: &FitArguments) -> Result<Answer> {
     let complaint = complaint(&rows);
     let text = match arguments.format {
         TextOrJson::Text => text(&films, &rows),
-        TextOrJson::Json => pretty("fit", &fit_value(&scene, &films, &rows)),
+        TextOrJson::Json => typed(&Fitted::of(&scene, &films, &rows))?,
     };
     Ok(Answer { text, complaint, ..Answer::default() })
 }

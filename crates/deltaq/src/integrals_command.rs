@@ -4,7 +4,7 @@ use std::path::Path;
 
 use anyhow::Result;
 use integrals::{Integrals, Reversed, reversible_scene};
-use program::{Answer, File, TextOrJson, keep, pretty, write_all};
+use program::{Answer, File, TextOrJson, keep, pretty, typed, write_all};
 
 use scene::Number;
 
@@ -26,7 +26,7 @@ pub fn run(arguments: &IntegralsArguments, quiet: bool) -> Result<Answer> {
     let found = Integrals::find(&scene, &choice, arguments.degree.into(), &arguments.names)?;
     let text = match arguments.format {
         TextOrJson::Text => found.to_string(),
-        TextOrJson::Json => pretty("integrals", &found.value()),
+        TextOrJson::Json => typed(&found.answer())?,
     };
     let mut complaint = None;
     if let Some(folder) = &arguments.certificates {

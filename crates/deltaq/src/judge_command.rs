@@ -3,10 +3,12 @@
 use std::fmt::Write;
 
 use anyhow::{Context, Result, bail};
-use judge::{Judgement, Number, Order, Samples, judge, order};
-use program::{Answer, TextOrJson, pretty};
+use indexmap::IndexMap;
+use judge::{Drift, Judgement, Law, Left, Misfit, Number, Order, Samples, judge, order};
+use program::{Answer, TextOrJson, typed};
 use scene::table_text;
-use serde_json::{Value, json};
+use schemars::JsonSchema;
+use serde::Serialize;
 
 use crate::cli::JudgeArguments;
 
@@ -49,8 +51,8 @@ pub fn run(arguments: &JudgeArguments) -> Result<Answer> {
             text
         }
         TextOrJson::Json => {
-            let motions: Vec<Value> = judgements.iter().map(|(file, j)| value(file, j)).collect();
-            pretty("judge", &json!({ "scene": scene.name, "motions": motions, "order": order.map(order_value) }))
+            let motions = judgements.iter().map(|(file, j)| Judged::of(file, j)).collect();
+            typed(&AllJudged { scene: &scene.name, motions, order })?
         }
     };
     Ok(Answer { text, complaint, ..Answer::default() })
@@ -110,24 +112,64 @@ fn table(file: &str, j: &Judgement) -> String {
     text
 }
 
-fn value(file: &str, j: &Judgement) -> Value {
-    let of = |n: Option<Number>| n.map(|n| json!({ "value": n.value, "error": n.error }));
-    let found: serde_json::Map<String, Value> =
-        numbers(j).into_iter().map(|(name, _, n)| (name.to_string(), json!(of(n)))).collect();
-    let laws = j.laws.iter().map(|l| json!({ "law": l.law.name(), "residual": l.residual, "with": l.with }));
-    let constraints = j.constraints.iter().map(|(m, r, p)| json!({ "largest": m, "rms": r, "parts": p }));
-    let drifts = j.drifts.iter().map(|d| json!({ "name": d.name, "start": d.start, "largest": d.largest }));
-    json!({
-        "file": file, "samples": j.samples, "step": j.step,
-        "law": j.law().map(|l| l.name()), "fitting": j.fitting.iter().map(|l| l.name()).collect::<Vec<_>>(),
-        "laws": laws.collect::<Vec<_>>(), "scale": j.scale, "noise": j.noise, "numbers": found,
-        "misfits": j.misfits.iter().map(|m| {
-            json!({ "name": m.name, "value": m.by.value, "error": m.by.error, "residual": m.residual })
-        }).collect::<Vec<_>>(),
-        "constraints": constraints.collect::<Vec<_>>(), "drifts": drifts.collect::<Vec<_>>(),
-    })
+/// Which law a program integrates: `deltaq judge --format json`.
+#[derive(Serialize, JsonSchema)]
+#[schemars(rename = "judge/1")]
+pub(crate) struct AllJudged<'a> {
+    scene: &'a str,
+    motions: Vec<Judged<'a>>,
+    order: Option<Order>,
 }
 
-fn order_value(o: Order) -> Value {
-    json!({ "order": o.order, "t": o.t, "distances": o.distances })
+#[derive(Serialize, JsonSchema)]
+struct Judged<'a> {
+    file: &'a str,
+    /// That were looked at.
+    samples: usize,
+    /// Mean distance of two samples.
+    step: f64,
+    /// The first of those that fit; null for none.
+    law: Option<Law>,
+    /// Laws that these samples cannot tell from one another.
+    fitting: &'a [Law],
+    laws: &'a [Left],
+    /// Forces, rms, in the metric of the masses.
+    scale: f64,
+    /// By how much two orders of differences differ.
+    noise: f64,
+    /// Null where the motion does not show it.
+    numbers: IndexMap<&'static str, Option<Number>>,
+    /// Parameters that are off, by this part of themselves, and forces that the scene lacks, in their units, where
+    /// one alone leaves less by far than the numbers of Chetaev's law.
+    misfits: &'a [Misfit],
+    constraints: Vec<Constraint>,
+    drifts: &'a [Drift],
+}
+
+#[derive(Serialize, JsonSchema)]
+struct Constraint {
+    largest: f64,
+    rms: f64,
+    /// Of its parts, rms.
+    parts: f64,
+}
+
+impl<'a> Judged<'a> {
+    fn of(file: &'a str, j: &'a Judgement) -> Self {
+        let constraint = |&(largest, rms, parts): &(f64, f64, f64)| Constraint { largest, rms, parts };
+        Judged {
+            file,
+            samples: j.samples,
+            step: j.step,
+            law: j.law(),
+            fitting: &j.fitting,
+            laws: &j.laws,
+            scale: j.scale,
+            noise: j.noise,
+            numbers: numbers(j).into_iter().map(|(name, _, number)| (name, number)).collect(),
+            misfits: &j.misfits,
+            constraints: j.constraints.iter().map(constraint).collect(),
+            drifts: &j.drifts,
+        }
+    }
 }

@@ -58,6 +58,7 @@ fn run(cli: Cli) -> Result<Answer> {
             clap_complete::generate(shell, &mut Cli::command(), "deltaq", &mut text);
             String::from_utf8(text)?
         }
+        Command::Schema { kind } => schema::of_answer(kind.as_deref())?,
         Command::Man { command } => manual(command.as_deref())?,
         Command::Integrals(arguments) => return integrals_command::run(&arguments, quiet),
         Command::Design(arguments) => return design_command::run(&arguments),

@@ -3,11 +3,29 @@
 use anyhow::Result;
 use comparison::{certificate, holds_beside_numbers, membership};
 use mechanics::Domain;
-use serde_json::json;
+use schemars::JsonSchema;
+use serde::Serialize;
 
 use crate::cli::ProveArguments;
-use pages::{membership::value as membership_value, membership_sentence};
-use program::{Answer, TextOrJson, file, keep, pretty};
+use pages::membership::{Decision, Word};
+use pages::membership_sentence;
+use program::{Answer, TextOrJson, file, keep, pretty, typed};
+
+/// What came of `deltaq prove --format json`.
+#[derive(Serialize, JsonSchema)]
+#[schemars(rename = "prove/1")]
+pub(crate) struct Proved {
+    /// Whether some multipliers make the vakonomic motion Chetaev's.
+    #[serde(flatten)]
+    decision: Decision,
+    /// Of which starts this is certified: this one, or almost every one, of its leaf and branch where that has to be
+    /// said.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    domain: Option<String>,
+    /// The file that was written.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    certificate: Option<String>,
+}
 
 /// Writes the certificate; where there is none, says what is known instead.
 ///
@@ -26,27 +44,26 @@ pub fn run(arguments: &ProveArguments) -> Result<Answer> {
                 true => Domain::of(&scene.system).almost_every("start"),
                 false => "this start".into(),
             };
-            let told = |file: &str| match format {
+            let file = out.display();
+            let told = match format {
                 TextOrJson::Text => {
                     let what = "no μ₀ makes the vakonomic motion Chetaev's";
                     let from = if *almost_every { format!(" from {domain}") } else { String::new() };
                     format!("{}: {what}{from}: proved (order {order}); the certificate is in {file}\n", scene.name)
                 }
                 TextOrJson::Json => {
-                    let found = json!({
-                        "answer": "none", "proved": true, "domain": domain, "order": order, "certificate": file,
-                    });
-                    pretty("prove", &found)
+                    let certificate = Some(file.to_string());
+                    typed(&Proved { decision: Decision::none(order), domain: Some(domain), certificate })?
                 }
             };
-            return Ok(keep(Some(out), text, told)?.into());
+            return Ok(keep(Some(out), text, |_| told)?.into());
         }
     };
     let found = membership(&scene, scene.start.t + scene.duration).transpose();
     let text = match (format, file(Some(out))) {
         (TextOrJson::Json, Some(_)) => {
-            let unconstrained = json!({ "answer": "unconstrained" });
-            pretty("prove", &found.as_ref().map_or(unconstrained, |found| membership_value(Some(found))))
+            let decision = found.as_ref().map_or(Decision::word(Word::Unconstrained), Decision::of);
+            typed(&Proved { decision, domain: None, certificate: None })?
         }
         _ => String::new(),
     };

@@ -4,8 +4,8 @@ use std::fmt::Write;
 use std::io::Read;
 
 use anyhow::{Context, Result};
-use program::{Answer, TextOrJson, pretty};
-use review::{Asked, Numbers, Review, Verdict, review};
+use program::{Answer, TextOrJson, typed};
+use review::{Asked, Numbers, Review, Reviewed, Verdict, review};
 use scene::table_text;
 
 use crate::cli::ReviewArguments;
@@ -34,7 +34,7 @@ pub fn run(arguments: &ReviewArguments) -> Result<Answer> {
     let found = review(&scene, &file, &text, &Asked { formulation, wheres, tolerance: arguments.tolerance })?;
     let text = match arguments.format {
         TextOrJson::Text => words(&scene.name, &file, &found, formulation.title),
-        TextOrJson::Json => pretty("review", &found.value(&scene.name, &file)),
+        TextOrJson::Json => typed(&Reviewed { scene: &scene.name, file: &file, found: &found })?,
     };
     let undecided = || format!("nothing can be told: {}", found.notes.join("; "));
     let complaint = (found.verdict == Verdict::Undecided).then(undecided);

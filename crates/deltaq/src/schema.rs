@@ -1,7 +1,41 @@
-//! The schema of scene files for editors, from the reader's own table.
+//! The schemas of scene files, from the reader's own table, and of answers, from their types.
 
+use anyhow::{Result, bail};
+use program::schema_of;
 use scene::format::{CONSTANTS, Content, FORMAT, Key, REMOVAL, SCENE};
 use serde_json::{Map, Value, json};
+
+/// Those of answers, all of them.
+const ANSWERS: [fn() -> Value; 13] = [
+    schema_of::<crate::connect_command::Connected>,
+    schema_of::<crate::ensemble_command::AllMembers>,
+    schema_of::<crate::judge_command::AllJudged>,
+    schema_of::<crate::linearize_command::Linearized>,
+    schema_of::<crate::prove_command::Proved>,
+    schema_of::<crate::show_command::List>,
+    schema_of::<crate::show_command::Shown>,
+    schema_of::<crate::solve_command::Solved>,
+    schema_of::<fit::Designed>,
+    schema_of::<fit::Fitted>,
+    schema_of::<integrals::Answer>,
+    schema_of::<pages::Verdicts>,
+    schema_of::<review::Reviewed>,
+];
+
+/// The schema of the answer of this kind, or the names of all: `urn:deltaq:KIND:VERSION`.
+///
+/// # Errors
+/// A kind that there is not.
+pub(crate) fn of_answer(kind: Option<&str>) -> Result<String> {
+    let all = ANSWERS.map(|schema| schema());
+    let names = all.iter().map(|schema| schema["$id"].as_str().unwrap_or_default());
+    let kinds: Vec<&str> = names.filter_map(|name| name.split(':').nth(2)).collect();
+    let Some(kind) = kind else { return Ok(kinds.join("\n") + "\n") };
+    match all.iter().zip(&kinds).find(|(_, own)| **own == kind) {
+        Some((schema, _)) => Ok(format!("{schema:#}\n")),
+        None => bail!("there is no answer `{kind}`; known: {}", kinds.join(", ")),
+    }
+}
 
 /// JSON Schema, draft 2020-12.
 pub(crate) fn schema() -> Value {

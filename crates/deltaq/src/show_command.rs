@@ -12,11 +12,11 @@ use motion::{
     choices_among, code, derive_at, derive_in_form, equations_text, forms, prepare, setting, shared_text, system_text,
 };
 use scene::Scene;
-use serde_json::json;
+use schemars::JsonSchema;
+use serde::Serialize;
 
 use crate::cli::ShowArguments;
-use program::TextOrJson;
-use program::pretty;
+use program::{TextOrJson, typed};
 
 /// The built-in scenes, then those of the pages about the literature, a line each.
 pub(crate) fn list(format: TextOrJson) -> Result<String> {
@@ -25,12 +25,79 @@ pub(crate) fn list(format: TextOrJson) -> Result<String> {
     };
     let scenes = scene::catalogue::GROUPS.into_iter().flat_map(of).collect::<Result<Vec<_>>>()?;
     let line = |(_, scene): &(_, Scene)| format!("{:<24} {} ({})\n", scene.name, scene.title, scene.source);
-    let entry =
-        |(group, s): &(_, Scene)| json!({ "name": s.name, "title": s.title, "source": s.source, "group": group });
     Ok(match format {
         TextOrJson::Text => scenes.iter().map(line).collect(),
-        TextOrJson::Json => pretty("list", &json!({ "scenes": scenes.iter().map(entry).collect::<Vec<_>>() })),
+        TextOrJson::Json => {
+            let of = |(group, s): (_, Scene)| Listed { name: s.name, title: s.title, source: s.source, group };
+            typed(&List { scenes: scenes.into_iter().map(of).collect() })?
+        }
     })
+}
+
+/// The built-in scenes: `deltaq list --format json`.
+#[derive(Serialize, JsonSchema)]
+#[schemars(rename = "list/1")]
+pub(crate) struct List {
+    scenes: Vec<Listed>,
+}
+
+#[derive(Serialize, JsonSchema)]
+struct Listed {
+    name: String,
+    title: String,
+    source: String,
+    group: &'static str,
+}
+
+/// Equations of a scene: `deltaq show --format json`; formulas are plain text, or LaTeX with --latex.
+#[derive(Serialize, JsonSchema)]
+#[schemars(rename = "show/1")]
+pub(crate) struct Shown<'a> {
+    scene: &'a str,
+    title: &'a str,
+    source: &'a str,
+    lagrangian: String,
+    /// Each is zero.
+    constraints: Vec<String>,
+    /// Names in the Lagrangian and the constraints, with what they stand for: parts that are shared, where these
+    /// would be long without. Later ones may contain earlier ones.
+    shared: Vec<[String; 2]>,
+    integrability: String,
+    /// Times at which every method ends a step.
+    breakpoints: &'a [f64],
+    formulations: Vec<ShownFormulation<'a>>,
+}
+
+#[derive(Serialize, JsonSchema)]
+struct ShownFormulation<'a> {
+    label: &'a str,
+    formulation: &'static str,
+    /// Name of the removal, of removed-constraint equations.
+    removal: Option<&'a str>,
+    /// What `deltaq show` prints; null where the formulation refuses the scene.
+    equations: Option<&'a str>,
+    refused: Option<&'a str>,
+    /// The form that is integrated unless another one is asked for, and why; null where there is none.
+    form: Option<ShownForm<'a>>,
+}
+
+impl<'a> ShownFormulation<'a> {
+    fn of((choice, derived, integrated): &'a (Choice, Result<String, String>, Option<ChosenForm>)) -> Self {
+        ShownFormulation {
+            label: &choice.label,
+            formulation: choice.formulation.name,
+            removal: choice.removal.as_ref().map(|removal| &removal.name[..]),
+            equations: derived.as_deref().ok(),
+            refused: derived.as_ref().err().map(String::as_str),
+            form: integrated.as_ref().map(|form| ShownForm { name: form.name, because: &form.why }),
+        }
+    }
+}
+
+#[derive(Serialize, JsonSchema)]
+struct ShownForm<'a> {
+    name: &'static str,
+    because: &'a str,
 }
 
 /// Equations of more bytes than this are printed only where they are asked for.
@@ -98,23 +165,17 @@ pub(crate) fn run(arguments: &ShowArguments) -> Result<String> {
         let given = [&[scene.system.lagrangian], &scene.system.constraints[..]].concat();
         let (shared, mut constraints) = shared_text(g, &given, arguments.latex);
         let lagrangian = constraints.remove(0);
-        let entry = |(choice, derived, integrated): &(Choice, Result<String, String>, Option<ChosenForm>)| {
-            let removal = choice.removal.as_ref().map(|removal| &removal.name);
-            let (equations, refused) = (derived.as_ref().ok(), derived.as_ref().err());
-            json!({
-                "label": choice.label, "formulation": choice.formulation.name, "removal": removal,
-                "equations": equations, "refused": refused,
-                "form": integrated.as_ref().map(|form| json!({ "name": form.name, "because": form.why })),
-            })
-        };
-        return Ok(pretty(
-            "show",
-            &json!({
-                "scene": scene.name, "title": scene.title, "source": scene.source, "lagrangian": lagrangian,
-                "constraints": constraints, "shared": shared, "integrability": integrability, "breakpoints": scene.system.breakpoints,
-                "formulations": equations.iter().map(entry).collect::<Vec<_>>(),
-            }),
-        ));
+        return typed(&Shown {
+            scene: &scene.name,
+            title: &scene.title,
+            source: &scene.source,
+            lagrangian,
+            constraints,
+            shared,
+            integrability,
+            breakpoints: &scene.system.breakpoints,
+            formulations: equations.iter().map(ShownFormulation::of).collect(),
+        });
     }
     let source = if scene.source.is_empty() { String::new() } else { format!("{}\n", scene.source) };
     let mut text = format!("{}\n{source}\n{}", scene.title, system_text(&scene.system, style));

@@ -7,22 +7,25 @@ use std::time::Duration;
 use anyhow::{Context, Result, bail, ensure};
 use discrete::Composition;
 use equations::{Formulation, Outputs};
+use indexmap::IndexMap;
 use integrals::watched;
 use integrate::{Interrupt, Projection};
 use mechanics::{Constancy, ConstantsRule, Observables, Removal, Watched};
 use motion::{
-    Choice, ErrorEstimate, Form, Motion, STEP_LIMIT, Setting, Settings, Steps, default_constants, equidistant,
-    error_estimates, formulation_in, removal, removal_names, removals, sensitivities, setting, solve_by_steps,
-    solve_choice,
+    Choice, ErrorEstimate, Form, STEP_LIMIT, Setting, Settings, Steps, default_constants, equidistant, error_estimates,
+    formulation_in, removal, removal_names, removals, sensitivities, setting, solve_by_steps, solve_choice,
 };
 use scene::Scene;
-use serde_json::{Map, Value, json};
+use schemars::JsonSchema;
+use serde::Serialize;
 
 use crate::cli::{Format, FreeArguments, Limits, MotionArguments, SolveArguments};
-use crate::columns::{Columns, MOST_NUMBERS, derivative_row, error_row, header, named_columns, row};
+use crate::columns::{
+    Columns, Derivatives, MOST_NUMBERS, Numbers, Table, derivative_row, error_row, header, named, named_columns, row,
+};
 use motion::Stepping;
 use program::parallel;
-use program::{Answer, complain, pretty};
+use program::{Answer, complain, typed};
 
 /// Times at which invariants are sampled, less one: those of error estimates.
 const SAMPLES: usize = 200;
@@ -102,17 +105,149 @@ pub(crate) fn run(arguments: &SolveArguments, quiet: bool) -> Result<Answer> {
             header(&names)? + &rows.map(line).collect::<String>()
         }
         Format::Json => {
-            let mut value = json_of(&scene, &choice, &mut motion, &grid)?;
-            (value["status"], value["cause"], value["times"]) = (json!(status), json!(complaint), json!(reached));
-            (value["error_estimate"], value["error_estimates"]) = (json!(estimate.absolute), columns.errors(&so_far));
-            columns.write(&mut value, &rows);
-            derived.iter().for_each(|derived| value["sensitivities"] = columns.derivatives(derived));
-            value["observables"] = named_columns(program.names(), &observed, |row| row);
-            drop((rows, so_far, observed, motion));
-            pretty("solve", &value)
+            let invariants = motion.invariant_drift(&grid)?.into_iter().map(|(name, start, drift)| {
+                let constant = motion.breaches.iter().all(|breach| breach.name != name);
+                (name, Invariant { start, drift, constant })
+            });
+            let answer = Solved {
+                invariants: invariants.collect(),
+                scene: &scene.name,
+                formulation: choice.formulation.name,
+                removal: choice.removal.as_ref().map(|removal| &removal.name[..]),
+                end: motion.end(),
+                free_constants: named(motion::constant_names(&motion.equations), &motion.constants),
+                projection: Projections { count: motion.projection.projections, largest: motion.projection.largest },
+                work: Work {
+                    steps: motion.work.steps,
+                    rejected: motion.work.rejected,
+                    evaluations: motion.work.evaluations,
+                    orders: motion.work.orders,
+                },
+                method: motion.method.as_ref().map(|m| Stepper { name: m.method.name(), why: &m.why }),
+                form: Evaluated {
+                    name: motion.form.chosen.name,
+                    because: &motion.form.chosen.why,
+                    why: &motion.form.why,
+                    fallbacks: motion.form.fallbacks,
+                },
+                charts: motion.charts.iter().map(|chart| Chart { from: chart.t, by: chart.by }).collect(),
+                seconds: Seconds {
+                    derive: motion.seconds.derive,
+                    compile: motion.seconds.compile,
+                    integrate: motion.seconds.integrate,
+                },
+                status,
+                cause: complaint.as_deref(),
+                times: &reached,
+                error_estimate: estimate.absolute,
+                error_estimates: columns.errors(&so_far),
+                columns: columns.table(&rows),
+                sensitivities: derived.as_ref().map(|derived| columns.derivatives(derived)),
+                observables: named_columns(program.names(), &observed, |row| row),
+            };
+            typed(&answer)?
         }
     };
     Ok(Answer { text, complaint, ..Answer::default() })
+}
+
+/// A motion: `deltaq solve --format json`.
+#[derive(Serialize, JsonSchema)]
+#[schemars(rename = "solve/2")]
+pub(crate) struct Solved<'a> {
+    scene: &'a str,
+    formulation: &'a str,
+    /// Name of the removal, of removed-constraint equations.
+    removal: Option<&'a str>,
+    /// Time that the motion reached, s.
+    end: f64,
+    /// What the start leaves open, by name.
+    free_constants: Numbers,
+    /// Value at the start, and the largest difference from it.
+    invariants: IndexMap<String, Invariant>,
+    /// Projections onto the constraint, and the largest.
+    projection: Projections,
+    work: Work,
+    /// The time-stepping method, and why it was taken; null in equal steps.
+    method: Option<Stepper<'a>>,
+    /// The form that was integrated.
+    form: Evaluated<'a>,
+    /// Where pivots became small, and by what the motion went on from that time, s.
+    charts: Vec<Chart>,
+    /// Seconds of the clock.
+    seconds: Seconds,
+    #[schemars(extend("enum" = ["completed", "stopped", "untrusted"]))]
+    status: &'static str,
+    /// Why it is not completed or not to be trusted.
+    cause: Option<&'a str>,
+    /// Times, s; ascending as asked for.
+    times: &'a [f64],
+    /// Of the whole motion, in the kinetic metric; null where there is no motion.
+    #[schemars(with = "Option<f64>")]
+    error_estimate: f64,
+    /// Of each coordinate, velocity and multiplier, in its unit: the largest difference of the two runs up to
+    /// each time.
+    error_estimates: Table<Vec<f64>>,
+    #[serde(flatten)]
+    columns: Table<Vec<f64>>,
+    /// Where derivatives are asked for: those of all columns by each number, by its name.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    sensitivities: Option<IndexMap<String, Derivatives>>,
+    /// What the scene wants to see besides.
+    observables: IndexMap<String, Vec<f64>>,
+}
+
+#[derive(Serialize, JsonSchema)]
+struct Invariant {
+    start: f64,
+    drift: f64,
+    /// False where the drift of an expected invariant exceeds its error estimate.
+    constant: bool,
+}
+
+#[derive(Serialize, JsonSchema)]
+struct Projections {
+    count: usize,
+    largest: f64,
+}
+
+#[derive(Serialize, JsonSchema)]
+struct Work {
+    steps: usize,
+    rejected: usize,
+    evaluations: usize,
+    orders: usize,
+}
+
+#[derive(Serialize, JsonSchema)]
+struct Stepper<'a> {
+    name: &'static str,
+    why: &'a str,
+}
+
+#[derive(Serialize, JsonSchema)]
+struct Evaluated<'a> {
+    name: &'static str,
+    /// Why this form.
+    because: &'a str,
+    /// How the equations of an instant are solved, and why.
+    why: &'a [String],
+    /// How often the plain way stood in.
+    fallbacks: usize,
+}
+
+#[derive(Serialize, JsonSchema)]
+struct Chart {
+    from: f64,
+    #[schemars(extend("enum" = ["multipliers", "canonical momenta"]))]
+    by: &'static str,
+}
+
+#[derive(Serialize, JsonSchema)]
+struct Seconds {
+    derive: f64,
+    compile: f64,
+    integrate: f64,
 }
 
 /// What is not done by then has a progress bar.
@@ -257,40 +392,4 @@ pub(crate) fn times(text: &str, scene: &Scene) -> Result<Vec<f64>> {
         }
     }
     Ok(times)
-}
-
-/// Everything about a motion but where it was and how far it is right; invariants are taken at `times`.
-fn json_of(scene: &Scene, choice: &Choice, motion: &mut Motion, times: &[f64]) -> Result<Value> {
-    let invariants: Map<String, Value> = motion
-        .invariant_drift(times)?
-        .into_iter()
-        .map(|(name, start, drift)| {
-            let constant = motion.breaches.iter().all(|breach| breach.name != name);
-            (name, json!({ "start": start, "drift": drift, "constant": constant }))
-        })
-        .collect();
-    let constants: Map<String, Value> =
-        motion::constant_names(&motion.equations).into_iter().zip(motion.constants.iter().map(|&c| json!(c))).collect();
-    Ok(json!({
-        "scene": scene.name,
-        "formulation": choice.formulation.name,
-        "removal": choice.removal.as_ref().map(|r| &r.name),
-        "end": motion.end(),
-        "free_constants": constants,
-        "invariants": invariants,
-        "projection": { "count": motion.projection.projections, "largest": motion.projection.largest },
-        "work": {
-            "steps": motion.work.steps, "rejected": motion.work.rejected, "evaluations": motion.work.evaluations,
-            "orders": motion.work.orders,
-        },
-        "method": motion.method.as_ref().map(|m| json!({ "name": m.method.name(), "why": m.why })),
-        "form": {
-            "name": motion.form.chosen.name, "because": motion.form.chosen.why, "why": motion.form.why,
-            "fallbacks": motion.form.fallbacks,
-        },
-        "charts": motion.charts.iter().map(|c| json!({ "from": c.t, "by": c.by })).collect::<Vec<_>>(),
-        "seconds": {
-            "derive": motion.seconds.derive, "compile": motion.seconds.compile, "integrate": motion.seconds.integrate
-        },
-    }))
 }

@@ -3,7 +3,7 @@
 
 use integrals::Integrals;
 use motion::{Choice, sensitivities, setting};
-use review::{Asked, Mend, Verdict, mends};
+use review::{Asked, Mend, Reviewed, Verdict, mends};
 use serde_json::{Value, json};
 
 use crate::controls;
@@ -30,7 +30,7 @@ pub(crate) fn review(subject: &Subject, question: &Question) -> Result<Value, Re
     let mends =
         if found.verdict == Verdict::Wrong { mends(&subject.scene, &question.theirs, &asked) } else { Vec::new() };
     let mend = |m: &Mend| json!({ "line": m.line, "column": m.column, "length": m.term.chars().count(), "message": format!("`{}` {}", m.term, m.fault) });
-    let mut answer = found.value(&subject.scene.name, "yours");
+    let mut answer = json!(Reviewed { scene: &subject.scene.name, file: "yours", found: &found });
     answer["mends"] = mends.iter().map(mend).collect();
     Ok(answer)
 }

@@ -4,6 +4,8 @@ use std::sync::{Mutex, PoisonError};
 
 use motion::over_threads;
 use motion::shooting::spread;
+use schemars::JsonSchema;
+use serde::Serialize;
 
 use crate::{Design, EXCLUDED, FitError, Point};
 
@@ -14,9 +16,11 @@ const FIRST_STEP: f64 = 0.25;
 const LAST_STEP: f64 = 1.0 / 64.0;
 
 /// Result of a search for the best film.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct Best {
     /// Films of the scene's own numbers, which may lie outside the bounds.
+    #[serde(serialize_with = "crate::json::found")]
+    #[schemars(with = "Option<Point>")]
     pub own: Result<Point, FitError>,
     /// The best one, verified from twice as many starts.
     pub best: Point,

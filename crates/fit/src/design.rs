@@ -17,6 +17,8 @@ use equations::Formulation;
 use motion::shooting::least_from;
 use motion::{CHETAEV, Choice, choices_among};
 use scene::Scene;
+use schemars::JsonSchema;
+use serde::Serialize;
 
 use crate::known::beside_chetaev;
 use crate::least::{Stage, least};
@@ -86,29 +88,37 @@ pub struct Design {
 }
 
 /// A number that is chosen.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct Chosen {
     /// As it is written: `x@2`.
+    #[serde(rename = "name")]
     pub label: String,
     /// The bounds.
+    #[serde(flatten, serialize_with = "crate::json::ends")]
+    #[schemars(with = "crate::json::Ends")]
     pub ends: [f64; 2],
     /// The scene's own number.
     pub own: f64,
 }
 
 /// What films of one d show.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct Point {
     /// The chosen numbers.
     pub at: Vec<f64>,
     /// The least χ² of the second formulation, or the standard error; infinite where films do not show it.
+    #[schemars(with = "Option<f64>")]
     pub value: f64,
     /// Numbers of the second formulation at its least χ².
+    #[serde(serialize_with = "crate::json::numbers")]
+    #[schemars(with = "Vec<crate::json::Number>")]
     pub numbers: Vec<(String, f64)>,
     /// Minima that the search for it saw.
     pub minima: usize,
     /// The least χ² from the first so many starts: half of those asked for, all, and twice as many where
     /// these were tried; empty for a standard error.
+    #[serde(serialize_with = "crate::json::by_starts")]
+    #[schemars(with = "Vec<crate::json::ByStarts>")]
     pub by_starts: Vec<(usize, f64)>,
     /// Combinations of unknowns that such films do not show.
     pub hidden: Vec<String>,

@@ -1,13 +1,15 @@
 //! A film as a table: times, and observed columns.
 
 use scene::{Scene, Table};
+use schemars::JsonSchema;
+use serde::Serialize;
 use symbolic::Expr;
 
 use crate::FitError;
 use crate::quantity::{split, unit_of};
 
 /// A column of a film.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct Column {
     /// Its name: that of an entry of `[film]`, or an expression in `(q, v, t)` and parameters.
     pub name: String,

@@ -1,6 +1,8 @@
 //! One formulation fitted to films: estimates with intervals, and tests on residuals.
 
 use motion::shooting::{Minimum, least_from};
+use schemars::JsonSchema;
+use serde::Serialize;
 
 use crate::distribution::normal_tails;
 use crate::profile::{NORMAL, Profile};
@@ -18,16 +20,19 @@ const QUADRATIC: f64 = 0.05;
 const PROFILE_STEPS: usize = 5;
 
 /// An unknown as it is estimated.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct Estimate {
     /// Its name, `x@2` for the second film's own.
     pub name: String,
     /// The estimate.
     pub value: f64,
-    /// Standard error to first order.
+    /// Standard error to first order; null where no film shows it.
+    #[schemars(with = "Option<f64>")]
     pub error: f64,
     /// The interval that covers with 95 %; infinite, or to the bound, where χ² does not rise enough or
     /// motions cannot be followed.
+    #[serde(flatten, serialize_with = "crate::json::ends")]
+    #[schemars(with = "crate::json::Ends")]
     pub interval: [f64; 2],
     /// Whether the ends are by the profile, where standard errors would be wrong.
     pub profiled: bool,
@@ -45,7 +50,7 @@ impl Estimate {
 }
 
 /// A formulation fitted to films.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct Fit {
     /// The estimates.
     pub estimates: Vec<Estimate>,
@@ -66,10 +71,13 @@ pub struct Fit {
     /// How many of these led to the least minimum.
     pub reached: usize,
     /// The least χ² that the first half of the starts leads to; infinite where they lead nowhere.
+    #[schemars(with = "Option<f64>")]
     pub by_half: f64,
     /// Samples of a beginning of the films that excludes it, and the significance.
+    #[serde(skip)]
     pub excluded_by: Option<(usize, f64)>,
     /// The residuals.
+    #[serde(skip)]
     pub residuals: Vec<Residual>,
 }
 

@@ -66,7 +66,7 @@ pub use error::FitError;
 pub use film::{Column, Deviations, Film};
 pub use fit::{Estimate, Fit, fit, profile};
 pub use identifiability::Identifiability;
-pub use json::{design_value, fit_value};
+pub use json::{Designed, Fitted};
 pub use planned::Sampling;
 pub use problem::{Problem, Residual};
 pub use quantity::{quantity, unit};

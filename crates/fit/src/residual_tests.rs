@@ -1,6 +1,8 @@
 //! Tests whether residuals are independent, normal and of variance one, as they are for the right
 //! formulation, numbers and standard deviations.
 
+use schemars::JsonSchema;
+use serde::Serialize;
 use symbolic::SplitMix;
 
 use crate::distribution::{chi_squared_tail, normal_tails};
@@ -20,7 +22,7 @@ const DOUBTED: [f64; 2] = [1e-10, 1e-2];
 const ORDERS: usize = 30_000;
 
 /// A test and what it found.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct ResidualTest {
     /// Its name: `chi squared`, `runs of x`, `whiteness of x`, `largest`.
     pub name: String,

@@ -1,12 +1,11 @@
-//! Answers in words and as one JSON value.
+//! Answers in words.
 
 use std::fmt::{self, Display, Formatter};
 
 use mechanics::{Domain, System};
 use motion::numbers::at_most;
-use serde_json::{Value, json};
 
-use crate::{Cyclic, Density, Found, Integrals, Measure, Multiplier, Open, Printed, Reduction, Reversed};
+use crate::{Density, Found, Integrals, Measure, Multiplier, Open, Printed, Reduction, Reversed};
 
 /// What integrals of degree `below + 1` are called.
 pub(crate) fn degree(below: usize) -> &'static str {
@@ -84,7 +83,7 @@ impl Integrals {
     }
 }
 
-fn kind(integral: &Printed) -> &'static str {
+pub(crate) fn kind(integral: &Printed) -> &'static str {
     match integral {
         _ if integral.is_energy => "energy",
         _ if integral.is_moving_energy => "moving energy",
@@ -135,12 +134,12 @@ fn multiplier_lines(system: &System, reductions: &Result<Vec<Reduction>, Open>) 
     lines
 }
 
-fn names(system: &System, places: &[usize]) -> Vec<String> {
+pub(crate) fn names(system: &System, places: &[usize]) -> Vec<String> {
     places.iter().map(|&i| system.coordinates[i].name.clone()).collect()
 }
 
 /// The product in the names of the scene.
-fn factor_words(system: &System, density: &Density) -> String {
+pub(crate) fn factor_words(system: &System, density: &Density) -> String {
     let power = |base: String, exponent: String| match &exponent[..] {
         "0" => None,
         "1" => Some(base),
@@ -155,7 +154,7 @@ fn factor_words(system: &System, density: &Density) -> String {
     if factors.is_empty() { "1".into() } else { factors.join(" ") }
 }
 
-fn density_words(system: &System, density: &Density) -> String {
+pub(crate) fn density_words(system: &System, density: &Density) -> String {
     let free: Vec<String> = density.free.iter().map(|&i| format!("{}'", system.coordinates[i].name)).collect();
     let factor = factor_words(system, density);
     let product = if factor == "1" { "dq ds".into() } else { format!("{factor} dq ds") };
@@ -220,89 +219,5 @@ impl Reversed {
         }));
         why.dedup();
         (cells, why.join("; "))
-    }
-}
-
-impl Integrals {
-    /// As the schema of `deltaq integrals --format json` describes it.
-    pub fn value(&self) -> Value {
-        let system = &self.scene.system;
-        let measure = self.reversed.as_ref().map(|found| match &found.measure {
-            Measure::None { proved } => json!({ "answer": "none", "proved": proved }),
-            Measure::Local { density, cyclic } => {
-                let density = density.as_ref().map(|density| density_words(system, density));
-                let mut value = json!({ "answer": "local", "density": density });
-                if let Some(Cyclic { places, proved }) = cyclic {
-                    value["none_free_of"] = json!(names(system, places));
-                    value["proved"] = json!(proved);
-                }
-                value
-            }
-            Measure::Open(open) => json!({ "answer": "open", "reason": open.to_string() }),
-        });
-        let multipliers = self.reversed.as_ref().map(|found| match &found.reductions {
-            Err(open) => json!({ "reason": open.to_string() }),
-            Ok(found) => found
-                .iter()
-                .map(|found| {
-                    let mut value = json!({ "over": names(system, &found.over), "answer": "none" });
-                    if let Multiplier::Local(factor) = &found.multiplier {
-                        value["answer"] = "local".into();
-                        value["factor"] = json!(factor.as_ref().map(|factor| factor_words(system, factor)));
-                    }
-                    value
-                })
-                .collect(),
-        });
-        let count = |(i, found): (usize, &Result<Found, Open>)| match found {
-            Err(open) => json!({ "degree": i + 1, "answer": "open", "reason": open.to_string() }),
-            Ok(found) => json!({
-                "degree": found.degree,
-                "answer": if found.none_proved() { "none" } else if found.settled { "local" } else { "open" },
-                "at_most": found.count,
-                "trivial": found.trivial,
-                "order": found.order,
-            }),
-        };
-        let counts =
-            self.reversed.as_ref().map(|found| found.integrals.iter().enumerate().map(count).collect::<Vec<_>>());
-        let ansatz = match &self.ansatz {
-            Err(open) => json!({ "reason": open.to_string() }),
-            Ok(found) => {
-                let printed = found.printed.iter().enumerate().map(|(i, integral)| {
-                    let mut value = json!({
-                        "kind": kind(integral), "degree": integral.degree, "expression": integral.text,
-                    });
-                    match &self.drifts {
-                        Ok(drifts) => value["drift"] = json!(drifts[i].of_terms()),
-                        Err(why) => value["no_motion"] = json!(why),
-                    }
-                    value
-                });
-                json!({
-                    "functions": found.functions,
-                    "coordinates": found.names,
-                    "spatial_degree": found.spatial,
-                    "dimension": found.dimension,
-                    "printed": printed.collect::<Vec<_>>(),
-                    "unprinted": found.unprinted,
-                })
-            }
-        };
-        let invariant = |(name, held): &(String, bool)| json!({ "name": name, "constant": held });
-        let invariants = match &self.invariants {
-            Ok(invariants) => json!(invariants.iter().map(invariant).collect::<Vec<_>>()),
-            Err(open) => json!({ "reason": open.to_string() }),
-        };
-        json!({
-            "scene": self.scene.name,
-            "formulation": self.formulation,
-            "domain": Domain::of(system).almost_every("place"),
-            "measure": measure,
-            "multipliers": multipliers,
-            "polynomials": counts,
-            "ansatz": ansatz,
-            "invariants": invariants,
-        })
     }
 }

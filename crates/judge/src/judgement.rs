@@ -2,6 +2,8 @@
 
 use review::Law;
 use scene::Scene;
+use schemars::JsonSchema;
+use serde::Serialize;
 
 use crate::balance::{Balance, Instant};
 use crate::laws::{FirstOrder, Misfit, as_force, first_order, left_out, misfits, vakonomic};
@@ -10,18 +12,19 @@ use crate::substituted::substituted;
 use crate::{JudgeError, Samples};
 
 /// Residual of a law on the motion.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct Left {
     /// The law.
     pub law: Law,
     /// Residual of the balance of forces and of the rate of the constraint, rms, in `√E/T`.
+    #[schemars(with = "Option<f64>")]
     pub residual: f64,
     /// Fitted numbers: `mu0_1 = …`, the removal.
     pub with: String,
 }
 
 /// A quantity that should not move, and how far it does.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct Drift {
     /// Its name.
     pub name: String,

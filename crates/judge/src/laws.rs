@@ -1,6 +1,8 @@
 //! Each law as what it leaves of the balance of forces, `r = S⁻¹ (E − Q)` at each sample.
 
 use nalgebra::{DMatrix, DVector};
+use schemars::JsonSchema;
+use serde::Serialize;
 
 use crate::balance::Instant;
 use crate::differences::{derivative, halfway};
@@ -104,11 +106,12 @@ fn with_numbers(instants: &[Instant], with: [bool; 2]) -> FirstOrder {
 }
 
 /// A number of the scene that is another in the motion, or a force that the scene lacks.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct Misfit {
     /// `m`, a parameter, or `force along x`.
     pub name: String,
     /// Its part of the parameter, or the force.
+    #[serde(flatten)]
     pub by: Number,
     /// What Chetaev's law leaves with it, rms, in `√E/T`.
     pub residual: f64,

@@ -1,9 +1,12 @@
 //! The order of a method in its step, from motions of one start.
 
+use schemars::JsonSchema;
+use serde::Serialize;
+
 use crate::Samples;
 
 /// What three motions of one start say about the method that made them.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct Order {
     /// The time at which they are compared, the last that all have.
     pub t: f64,

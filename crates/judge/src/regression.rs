@@ -1,12 +1,14 @@
 //! Linear least squares with errors that hold where residuals depend on their neighbours in time.
 
 use nalgebra::{DMatrix, DVector};
+use schemars::JsonSchema;
+use serde::Serialize;
 
 /// Runs of neighbouring rows whose sums of scores count as independent.
 const BLOCKS: usize = 20;
 
 /// An estimate with its standard error.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct Number {
     /// The estimate.
     pub value: f64,

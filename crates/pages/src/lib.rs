@@ -28,4 +28,4 @@ pub use summary::summary;
 pub use sweep_page::{Swept, sweep_files, with_unit};
 pub use table::Table;
 pub use tables::verdict_words;
-pub use verdicts::{difference_of_verdicts, verdicts};
+pub use verdicts::{SceneVerdicts, Verdicts, difference_of_verdicts, verdicts};

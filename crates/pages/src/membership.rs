@@ -1,9 +1,10 @@
 //! Words for the decisions: is there a `μ₀` with which the vakonomic motion is Chetaev's, and the like.
 
 use comparison::words::decisions;
-use comparison::{Answer, Comparison, Decided, Membership};
+use comparison::{Answer, Comparison, Membership};
 use motion::SolveError;
-use serde_json::{Value, json};
+use schemars::JsonSchema;
+use serde::Serialize;
 
 use crate::table::Table;
 
@@ -36,34 +37,64 @@ pub(crate) fn table(comparison: &Comparison) -> Table {
     table
 }
 
-/// For machines: every family and motion asked about, with the answer.
-pub(crate) fn values(comparison: &Comparison) -> Value {
-    let label = |i: usize| comparison.runs[i].choice.label.clone();
-    let of = |decided: &Decided| {
-        let mut value = value(Some(&decided.outcome));
-        value["family"] = label(decided.family).into();
-        value["motion"] = label(decided.curve).into();
-        value
-    };
-    comparison.decided.iter().map(of).collect()
+/// A decision for machines.
+#[derive(Serialize, JsonSchema)]
+pub struct Decision {
+    answer: Word,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    proved: Option<bool>,
+    /// Of the Taylor coefficient that shows it, or up to which they agree; null where there are none.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    order: Option<Option<usize>>,
+    /// Of the set of constants.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    dimension: Option<usize>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    because: Option<String>,
 }
 
-/// For machines: the answer, its order and the dimension of the set; null where there is no constraint.
-pub fn value(outcome: Option<&Result<Membership, SolveError>>) -> Value {
-    let membership = match outcome {
-        None => return Value::Null,
-        Some(Err(error)) => return json!({ "answer": "undecided", "because": error.to_string() }),
-        Some(Ok(membership)) => membership,
-    };
-    let dimension = membership.dimension();
-    match membership.answer() {
-        Answer::NoneProved { order } => json!({ "answer": "none", "proved": true, "order": order }),
-        Answer::None { unproved } => json!({ "answer": "none", "proved": false, "because": unproved }),
-        Answer::SomeProved => json!({ "answer": "some", "proved": true, "dimension": dimension }),
-        Answer::Some { order, .. } => {
-            json!({ "answer": "some", "proved": false, "order": order, "dimension": dimension })
+/// Whether some constants of a family give a motion.
+#[derive(Clone, Copy, Serialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum Word {
+    /// No constants give it.
+    None,
+    /// Some do.
+    Some,
+    /// Neither is shown.
+    Undecided,
+    /// The scene has no constraint, and every motion is one of both.
+    Unconstrained,
+}
+
+impl Decision {
+    /// The answer in a word.
+    pub fn word(answer: Word) -> Self {
+        Decision { answer, proved: None, order: None, dimension: None, because: None }
+    }
+
+    /// None, proved at this order.
+    pub fn none(order: usize) -> Self {
+        Decision { proved: Some(true), order: Some(Some(order)), ..Decision::word(Word::None) }
+    }
+
+    /// The answer, its order and the dimension of the set.
+    pub fn of(outcome: &Result<Membership, SolveError>) -> Self {
+        let membership = match outcome {
+            Err(error) => return Decision { because: Some(error.to_string()), ..Decision::word(Word::Undecided) },
+            Ok(membership) => membership,
+        };
+        let dimension = Some(membership.dimension());
+        let some = |proved, order| Decision { proved: Some(proved), order, dimension, ..Decision::word(Word::Some) };
+        match membership.answer() {
+            Answer::NoneProved { order } => Decision::none(order),
+            Answer::None { unproved } => {
+                Decision { proved: Some(false), because: Some(unproved), ..Decision::word(Word::None) }
+            }
+            Answer::SomeProved => some(true, None),
+            Answer::Some { order, .. } => some(false, Some(order)),
+            Answer::Undecided => Decision::word(Word::Undecided),
         }
-        Answer::Undecided => json!({ "answer": "undecided" }),
     }
 }
 

@@ -5,7 +5,11 @@ use std::fmt::{self, Display, Formatter};
 use std::io::{ErrorKind, Write, stderr, stdout};
 
 use anyhow::{Context, Result};
-use serde_json::Value;
+use schemars::generate::SchemaSettings;
+use schemars::transform::RecursiveTransform;
+use schemars::{JsonSchema, Schema};
+use serde::Serialize;
+use serde_json::{Value, json};
 
 /// How a command ended: the text to print, and whether it can be trusted.
 #[derive(Default)]
@@ -75,6 +79,34 @@ impl Display for Unwritten {
     }
 }
 
+/// An answer as JSON for readers, with an end of line; first the name `KIND/N` of its schema, which is that of
+/// the type.
+///
+/// # Errors
+/// A map whose keys are no text.
+pub fn typed<T: Serialize + JsonSchema>(answer: &T) -> Result<String> {
+    Ok(headed(&T::schema_name(), serde_json::to_string_pretty(answer)? + "\n"))
+}
+
+/// The JSON schema of what [`typed`] prints of a type, draft 2020-12: no field more, none less.
+pub fn schema_of<T: JsonSchema>() -> Value {
+    let settings = SchemaSettings::draft2020_12().for_serialize().with_transform(RecursiveTransform(closed));
+    let (name, mut schema) = (T::schema_name(), settings.into_generator().into_root_schema_for::<T>().to_value());
+    schema["$id"] = format!("urn:deltaq:{}", name.replace('/', ":")).into();
+    let head = json!({ "const": format!("deltaq/{name}") });
+    let properties = schema["properties"].as_object_mut().into_iter();
+    properties.for_each(|properties| _ = properties.shift_insert(0, "schema".into(), head.clone()));
+    schema["required"].as_array_mut().into_iter().for_each(|required| required.insert(0, "schema".into()));
+    schema
+}
+
+fn closed(schema: &mut Schema) {
+    if schema.get("properties").is_some() && schema.get("additionalProperties").is_none() {
+        schema.insert("additionalProperties".into(), false.into());
+    }
+    schema.remove("format");
+}
+
 /// An object as JSON for readers, with an end of line; first its file of `docs/schemas`, and the version.
 /// Coordinates are in the order of the scene, verdicts and proofs by name.
 pub fn pretty(kind: &str, object: &Value) -> String {
@@ -96,15 +128,18 @@ fn printed(kind: &str, object: &Value) -> String {
     } else {
         1
     };
+    headed(&format!("{kind}/{version}"), format!("{object:#}\n"))
+}
+
+fn headed(schema: &str, mut text: String) -> String {
     // JSON leaves some of what [`plain`] takes out
     let is_raw = |c: char| c.is_control() && c != '\n';
-    let mut text = format!("{object:#}\n");
     if text.contains(is_raw) {
         text = text.chars().fold(String::new(), |text, c| {
             if is_raw(c) { text + &format!("\\u{:04x}", c as u32) } else { text + c.encode_utf8(&mut [0; 4]) }
         });
     }
-    let head = format!("{{\n  \"schema\": \"deltaq/{kind}/{version}\",");
+    let head = format!("{{\n  \"schema\": \"deltaq/{schema}\",");
     // in place: an answer may take half of the memory
     text.reserve_exact(head.len());
     text.replace_range(..1, &head);

@@ -14,7 +14,7 @@ pub mod parallel;
 pub mod priority_queue;
 mod resumable_file;
 
-pub use answer::{Answer, Unwritten, complain, plain, pretty, print, sorted};
+pub use answer::{Answer, Unwritten, complain, plain, pretty, print, schema_of, sorted, typed};
 pub use atomic_writer::{AtomicWriter, file, keep, may_replace};
 pub use ending::{exit_code, finish, parse};
 pub use files::{File, is_own, write_all, write_own};

@@ -1,13 +1,14 @@
 //! Films of motions, fitted.
 
 use fit::{
-    Aim, Design, Deviations, Film, FitError, Question, ROBUST, Range, Row, Sampling, Unknown, design_value,
-    fit_formulations, fit_value, profile,
+    Aim, Design, Designed, Deviations, Film, FitError, Fitted, Question, ROBUST, Range, Row, Sampling, Unknown,
+    fit_formulations, profile,
 };
 use integrate::Interrupt;
 use motion::Settings;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
+use serde_json::json;
 
 use crate::arrays::{Array, Floats, array};
 use crate::background::whole;
@@ -157,7 +158,7 @@ impl System {
             let mut own = films;
             let question = Question { unknowns: &unknowns, law: &law, starts, robust, settings, threads: 0 };
             let rows = fit_formulations(&scene, &mut own, &question, &wanted)?;
-            let answer = fit_value(&scene, &own, &rows).to_string();
+            let answer = json!(Fitted::of(&scene, &own, &rows)).to_string();
             Ok::<_, FitError>((rows, answer, own))
         };
         let (rows, answer, films) = background::run(py, &interrupt, work)?.map_err(refused)?;
@@ -206,7 +207,7 @@ impl System {
             let question = Question { unknowns: &unknowns, law: &law, starts, robust: None, settings, threads: 0 };
             let design = Design::new(&scene, &films, &question, &over, &aim)?;
             let best = design.best(points, threads)?;
-            Ok(design_value(&scene, &films, &design, &best).to_string())
+            Ok(json!(Designed::of(&scene, &films, &design, &best)).to_string())
         };
         background::run(py, &Interrupt::default(), work)?.map_err(refused)
     }

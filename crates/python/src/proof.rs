@@ -5,6 +5,7 @@ use integrals::{Integrals, NoAnswer, Open};
 use integrate::Interrupt;
 use pyo3::prelude::*;
 use scene::Number;
+use serde_json::json;
 
 use crate::system::System;
 use crate::{arguments, background, errors};
@@ -39,7 +40,7 @@ impl System {
             NoAnswer::Equations(fault) => errors::solve(fault),
             other => errors::DeltaqError::new_err(other.to_string()),
         })?;
-        Ok(found.value().to_string())
+        Ok(json!(found.answer()).to_string())
     }
 }
 

@@ -2,7 +2,8 @@
 
 use integrate::Interrupt;
 use pyo3::prelude::*;
-use review::{Asked, review, states};
+use review::{Asked, ReviewError, Reviewed, review, states};
+use serde_json::json;
 
 use crate::system::System;
 use crate::{arguments, background, errors};
@@ -25,8 +26,10 @@ impl System {
     ) -> PyResult<String> {
         let asked = Asked { formulation: arguments::formulation(formulation)?, wheres, tolerance };
         let (scene, interrupt) = (self.scene()?, Interrupt::default());
-        let work =
-            move || review(&scene, &file, &text, &asked).map(|found| found.value(&scene.name, &file).to_string());
+        let work = move || {
+            let found = review(&scene, &file, &text, &asked)?;
+            Ok::<_, ReviewError>(json!(Reviewed { scene: &scene.name, file: &file, found: &found }).to_string())
+        };
         background::run(py, &interrupt, work)?.map_err(|fault| errors::DeltaqError::new_err(fault.to_string()))
     }
 

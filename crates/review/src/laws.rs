@@ -1,8 +1,12 @@
 //! The laws by which motions and equations of motion are named, right ones and classic mistakes.
 
+use schemars::JsonSchema;
+use serde::Serialize;
+
 /// A law of motion of a system with constraints. `judge` finds the one of a motion, `review` that of
 /// equations.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
 pub enum Law {
     /// Chetaev's.
     Chetaev,

@@ -53,6 +53,7 @@ pub use mend::{Mend, mends};
 pub use monomials::Coefficient;
 pub use review::{Asked, Difference, Numbers, Review, Verdict, states};
 pub use substitution::SUBSTITUTION;
+pub use value::Reviewed;
 
 /// How equations are written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -1,6 +1,8 @@
 //! Where no mistake explains equations: in which terms of the velocities their accelerations differ, at one
 //! position.
 
+use schemars::JsonSchema;
+use serde::Serialize;
 use symbolic::{Bounded, Scalar};
 
 use crate::base::Base;
@@ -8,15 +10,17 @@ use crate::frame::Frame;
 use crate::number::{At, Number};
 
 /// The coefficient of a monomial of independent velocities in an acceleration, at the position of a state.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct Coefficient {
     /// The acceleration, `x''`.
     pub name: String,
     /// `1`, `phi'`, `phi'*x'`.
     pub monomial: String,
     /// In their equations.
+    #[schemars(with = "Option<f64>")]
     pub theirs: f64,
     /// In the right ones.
+    #[schemars(with = "Option<f64>")]
     pub right: f64,
 }
 

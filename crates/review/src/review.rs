@@ -1,10 +1,12 @@
 //! The verdict on somebody's equations, and what is wrong with them.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 use decision::exact::{FIELDS, Modular, in_field};
 use equations::Formulation;
 use scene::Scene;
+use schemars::JsonSchema;
+use serde::Serialize;
 use symbolic::{Bounded, Scalar, Symbol};
 
 use crate::ReviewError;
@@ -18,7 +20,8 @@ use crate::reading::{Line, Reading, read};
 use crate::theirs::in_theirs;
 
 /// Whether equations are right.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
 pub enum Verdict {
     /// The same accelerations from every start.
     Right,
@@ -29,7 +32,8 @@ pub enum Verdict {
 }
 
 /// By which numbers it was decided.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
 pub enum Numbers {
     /// Residues: a difference is proved; equality at all points would else be an accident.
     Field,
@@ -38,22 +42,25 @@ pub enum Numbers {
 }
 
 /// One acceleration of both sides.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct Difference {
     /// Its name, `x''`.
     pub name: String,
     /// By their equations.
+    #[schemars(with = "Option<f64>")]
     pub theirs: f64,
     /// By the right ones.
+    #[schemars(with = "Option<f64>")]
     pub right: f64,
 }
 
 /// A review.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct Review {
     /// Whether they are right.
     pub verdict: Verdict,
     /// Of which formulation they were to be.
+    #[serde(rename = "formulation")]
     pub asked: &'static str,
     /// How it was decided; none where nothing was.
     pub numbers: Option<Numbers>,
@@ -63,6 +70,8 @@ pub struct Review {
     /// Their constraints that do not hold where those of the scene do.
     pub broken: Vec<String>,
     /// A state, in their variables, at which accelerations differ; the start of the scene, if they do there.
+    #[serde(serialize_with = "crate::value::named")]
+    #[schemars(with = "BTreeMap<String, f64>")]
     pub state: Vec<(String, f64)>,
     /// Whether it is the start.
     pub at_start: bool,

@@ -1,21 +1,23 @@
 //! What became of the members, for machines.
 
-use anyhow::Result;
+use anyhow::{Context, Result};
 use equations::{Equations, Outputs};
+use indexmap::IndexMap;
 use motion::{Choice, ErrorEstimate, MemberMotion};
 use scene::Scene;
-use serde_json::{Map, Value, json};
+use schemars::JsonSchema;
+use serde::Serialize;
 
 use super::members::Members;
 use crate::cli::Format;
-use crate::columns::{Columns, header, print, quoted, row};
-use program::pretty;
+use crate::columns::{Columns, Numbers, Table, header, named, print, quoted, row};
+use program::typed;
 
 /// Members that a complaint describes.
 const DESCRIBED: usize = 3;
 
 /// Wall-clock seconds spent.
-#[derive(Default)]
+#[derive(Default, Serialize, JsonSchema)]
 pub(super) struct Seconds {
     pub(super) derive: f64,
     pub(super) start: f64,
@@ -106,25 +108,36 @@ impl<'a> Answers<'a> {
         if self.format == Format::Csv {
             return header(&self.names());
         }
-        let value = json!({
-            "scene": self.scene.name,
-            "formulation": self.choice.formulation.name,
-            "removal": self.choice.removal.as_ref().map(|r| &r.name),
-        });
-        Ok(pretty("ensemble", &value).trim_end_matches("\n}\n").to_string() + ",\n  \"members\": [")
+        Ok(self.around(&Seconds::default())?[0].clone())
+    }
+
+    /// What stands before the members and behind them; they are written one by one.
+    fn around(&self, seconds: &Seconds) -> Result<[String; 2]> {
+        const BETWEEN: &str = "\"members\": [";
+        let whole = typed(&Ensemble {
+            scene: &self.scene.name,
+            formulation: self.choice.formulation.name,
+            removal: self.choice.removal.as_ref().map(|removal| &removal.name[..]),
+            members: Vec::new(),
+            count: STATUSES.into_iter().zip(self.statuses).collect(),
+            seconds,
+        })?;
+        let (head, end) = whole.split_once(BETWEEN).context("an ensemble without members")?;
+        Ok([format!("{head}{BETWEEN}"), format!("\n  {end}")])
     }
 
     /// The next member.
-    pub(super) fn add(&mut self, outcome: &Outcome) -> String {
+    pub(super) fn add(&mut self, outcome: &Outcome) -> Result<String> {
         let text = match self.format {
             Format::Csv => self.rows(self.done, outcome),
             Format::Json => {
                 let comma = if self.done == 0 { "" } else { "," };
-                format!("{comma}\n{:#}", self.object(outcome)).replace('\n', "\n    ")
+                let member = serde_json::to_string_pretty(&self.object(outcome))?;
+                format!("{comma}\n{member}").replace('\n', "\n    ")
             }
         };
         self.count(outcome.status, outcome.cause.as_deref());
-        text
+        Ok(text)
     }
 
     /// Counts the next member.
@@ -158,22 +171,20 @@ impl<'a> Answers<'a> {
         self.times.iter().zip(outcome.outputs()).map(|(&t, now)| format!("{begin}{},{end}", row(t, now))).collect()
     }
 
-    fn object(&self, outcome: &Outcome) -> Value {
+    fn object<'b>(&'b self, outcome: &'b Outcome) -> Member<'b> {
         let rows = outcome.outputs();
-        let values = self.members.names.iter().cloned().zip(self.members.row(self.done).into_iter().map(|x| json!(x)));
         let run = outcome.motion.as_ref().map(|motion| &motion.run);
-        let mut value = json!({
-            "set": values.collect::<Map<_, _>>(),
-            "status": outcome.status,
-            "cause": outcome.cause,
-            "times": &self.times[..rows.len()],
-            "error_estimate": outcome.error_estimate(),
-            "error_estimates": outcome.estimate().map(|estimate| self.columns.whole_errors(estimate)),
-            "steps": run.map(|run| run.work.steps),
-            "alone": run.and_then(|run| run.alone.as_ref()),
-        });
-        self.columns.write(&mut value, rows);
-        value
+        Member {
+            set: named(&self.members.names, &self.members.row(self.done)),
+            status: outcome.status,
+            cause: outcome.cause.as_deref(),
+            times: &self.times[..rows.len()],
+            error_estimate: outcome.error_estimate(),
+            error_estimates: outcome.estimate().map(|estimate| self.columns.whole_errors(estimate)),
+            steps: run.map(|run| run.work.steps),
+            alone: run.and_then(|run| run.alone.as_deref()),
+            columns: self.columns.table(rows),
+        }
     }
 
     /// Which members are not to be trusted to the end.
@@ -193,17 +204,42 @@ impl<'a> Answers<'a> {
     }
 
     /// What stands behind the members.
-    pub(super) fn end(&self, seconds: &Seconds) -> String {
-        if self.format == Format::Csv {
-            return String::new();
-        }
-        let counts: Map<String, Value> =
-            STATUSES.iter().zip(self.statuses).map(|(name, count)| (name.to_string(), json!(count))).collect();
-        let Seconds { start, derive, integrate } = seconds;
-        let value = json!({
-            "count": counts,
-            "seconds": { "start": start, "derive": derive, "integrate": integrate },
-        });
-        format!("\n  ],{:#}\n", value).replacen("],{", "],", 1)
+    pub(super) fn end(&self, seconds: &Seconds) -> Result<String> {
+        if self.format == Format::Csv { Ok(String::new()) } else { Ok(self.around(seconds)?[1].clone()) }
     }
+}
+
+/// Many motions: `deltaq ensemble --format json`.
+#[derive(Serialize, JsonSchema)]
+#[schemars(rename = "ensemble/1")]
+pub(crate) struct Ensemble<'a> {
+    scene: &'a str,
+    formulation: &'a str,
+    /// Name of the removal, of removed-constraint equations.
+    removal: Option<&'a str>,
+    members: Vec<Member<'a>>,
+    /// Members by status.
+    count: IndexMap<&'static str, usize>,
+    /// Seconds of the clock.
+    seconds: &'a Seconds,
+}
+
+#[derive(Serialize, JsonSchema)]
+struct Member<'a> {
+    /// What this member differs by.
+    set: Numbers,
+    #[schemars(extend("enum" = STATUSES))]
+    status: &'static str,
+    cause: Option<&'a str>,
+    /// Times, s; ascending as asked for.
+    times: &'a [f64],
+    /// Of the coordinates, in the kinetic metric; null where there is no motion.
+    error_estimate: Option<f64>,
+    /// Of each coordinate, velocity and multiplier, in its unit; null where there is no motion.
+    error_estimates: Option<Table<f64>>,
+    steps: Option<usize>,
+    /// Why it was integrated alone, if it was.
+    alone: Option<&'a str>,
+    #[serde(flatten)]
+    columns: Table<Vec<f64>>,
 }

@@ -121,7 +121,7 @@ impl Results {
     }
 
     pub(crate) fn verdicts(&self) -> Value {
-        let mut verdicts = verdicts(&self.comparisons);
+        let mut verdicts = json!(verdicts(&self.comparisons, false));
         for (name, words) in self.parts.iter().filter_map(|part| part.verdicts.clone()) {
             verdicts[name] = words;
         }
