@@ -115,8 +115,7 @@ pub struct Point {
     pub numbers: Vec<(String, f64)>,
     /// Minima that the search for it saw.
     pub minima: usize,
-    /// The least χ² from the first so many starts: half of those asked for, all, and twice as many where
-    /// these were tried; empty for a standard error.
+    /// The least χ² from half of the starts, all, and twice as many if tried; empty for a standard error.
     #[serde(serialize_with = "crate::json::by_starts")]
     #[schemars(with = "Vec<crate::json::ByStarts>")]
     pub by_starts: Vec<(usize, f64)>,

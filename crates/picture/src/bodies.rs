@@ -343,7 +343,8 @@ impl Sheet {
         Trace { lines, dots: Vec::new() }.path() + &circles
     }
 
-    /// Each name beside its path, where it covers the least of all paths and names and is far from other paths.
+    /// Each name beside its path, where it covers the least of all paths and names and is far from other
+    /// paths.
     fn names(&self, out: &mut String, named: &[(&Bodies, Vec<Place>)]) {
         let Extent { width: right, height } = self.extent;
         let mut covered: Vec<Place> = named.iter().flat_map(|(_, path)| path).copied().collect();

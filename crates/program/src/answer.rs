@@ -79,8 +79,8 @@ impl Display for Unwritten {
     }
 }
 
-/// An answer as JSON for readers, with an end of line; first the name `KIND/N` of its schema, which is that of
-/// the type.
+/// An answer as JSON for readers, with an end of line; first the name `KIND/N` of its schema, which is that
+/// of the type.
 ///
 /// # Errors
 /// A map whose keys are no text.

@@ -3,8 +3,8 @@
 //! A key is names and a year in one word, as `LewisMurray1995`, wherever it stands: in links of Markdown
 //! (`[Lewis & Murray 1995](references.bib#LewisMurray1995)`), on front pages of crates, in data.
 //!
-//! A statement that is cited, as `Theorem 4(d)`, is a heading of the theory. Pages outside of the theory link it,
-//! and the number of the heading to which they link is the one that they name.
+//! A statement that is cited, as `Theorem 4(d)`, is a heading of the theory. Pages outside of the theory
+//! link it, and the number of the heading to which they link is the one that they name.
 
 use std::collections::BTreeSet;
 
