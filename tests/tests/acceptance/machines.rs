@@ -168,7 +168,7 @@ fn bodies_move_as_formulas_by_hand_in_every_formulation() {
 #[test]
 fn built_in_scenes_are_not_remarkable() {
     for (name, text) in scene::catalogue::GROUPS.into_iter().flat_map(|(_, group)| group) {
-        let remarks = Scene::remarks::<f64>(name, text, &[]).unwrap_or_else(|e| panic!("{e}"));
+        let (_, remarks) = Scene::remarks::<f64>(name, text, &[]).unwrap_or_else(|e| panic!("{e}"));
         let slips = |remark: &scene::SceneError| remark.to_string().contains("the contact of `ball` slips on `cone`");
         match *name {
             "ball-in-cone-as-printed" => assert!(remarks.len() == 1 && slips(&remarks[0]), "{remarks:?}"),
