@@ -86,7 +86,8 @@ pub(crate) fn wheel() -> Result<Outcome> {
         let folders = python.parent().map(PathBuf::from).into_iter().chain(std::env::split_paths(&others));
         maturin.env("PATH", std::env::join_paths(folders)?);
     }
-    succeed(maturin.arg("--interpreter").arg(&python).current_dir(CRATE))?;
+    maturin.arg("--interpreter").arg(&python).current_dir(CRATE);
+    succeed(maturin.env(OWN_BACKEND.0, OWN_BACKEND.1))?;
     let mut made = Vec::new();
     for file in std::fs::read_dir(&wheels).with_context(|| wheels.display().to_string())? {
         let file = file?;
