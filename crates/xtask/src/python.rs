@@ -100,14 +100,11 @@ pub(crate) fn wheel() -> Result<Outcome> {
 }
 
 /// The source distribution, in this folder.
-pub(crate) fn source_distribution(folder: &Path) -> Result<PathBuf> {
-    succeed(maturin(&environment()?).args(["sdist", "--out"]).arg(folder))?;
-    let files = std::fs::read_dir(folder)?.filter_map(|file| file.ok().map(|file| file.path()));
-    let mut packed = files.filter(|path| path.extension().is_some_and(|ending| ending == "gz"));
-    packed.next().context("maturin made no source distribution")
+pub(crate) fn source_distribution(folder: &Path) -> Result<Outcome> {
+    succeed(maturin(&environment()?).args(["sdist", "--out"]).arg(folder))
 }
 
-/// maturin in the folder of the crate. It would warn that it is not the backend: it is asked by the one that is.
+/// maturin in the folder of the crate. It would warn that it is not the backend: the one that is asks it.
 fn maturin(python: &Path) -> Command {
     let mut maturin = outside(python);
     maturin.args(["-m", "maturin"]).current_dir(CRATE).env("MATURIN_NO_MISSING_BUILD_BACKEND_WARNING", "1");
@@ -191,9 +188,8 @@ fn module(python: &Path) -> Result<Module> {
     let site = empty(target.join("python-module"))?;
     let folder = site.join("deltaq");
     std::fs::create_dir_all(&folder).with_context(|| folder.display().to_string())?;
-    let mut metadata = maturin(python);
-    metadata.args(["pep517", "write-dist-info", "--metadata-directory"]).arg(&site);
-    succeed(metadata.arg("--interpreter").arg(python).stdout(Stdio::null()))?;
+    let arguments = ["pep517", "write-dist-info", "--interpreter"];
+    succeed(maturin(python).args(arguments).arg(python).arg("--metadata-directory").arg(&site).stdout(Stdio::null()))?;
     for file in std::fs::read_dir(SOURCES).context(SOURCES)? {
         let file = file.context(SOURCES)?;
         if file.path().is_file() {
