@@ -48,20 +48,13 @@ fn of_motion(subject: &Subject, choice: &Choice, controls: &[Value], question: &
     let numbers: Vec<(&str, &str)> = controls.iter().filter_map(|control| number(control, choice)).collect();
     let end = setting(&subject.scene).end;
     let derived = |numbers: &[(&str, &str)]| rows(subject, choice, numbers, end, question);
-    let found = derived(&numbers).or_else(|error| {
-        let error = match error {
-            Lacking::Motion(words) => return Err(words),
-            Lacking::Number(words) => words,
-        };
-        let alone: Vec<_> = numbers.iter().map(|number| derived(&[*number])).collect();
+    let found = derived(&numbers).unwrap_or_else(|error| {
+        let alone: Vec<_> = numbers.iter().map(|number| derived(&[*number]).flatten()).collect();
         if alone.iter().all(Result::is_err) {
             return Err(error);
         }
         let rows = numbers.iter().zip(alone).map(|((name, unit), found)| {
-            found.unwrap_or_else(|lacking| {
-                let (Lacking::Motion(words) | Lacking::Number(words)) = lacking;
-                vec![json!({ "name": name, "unit": unit, "refused": words })]
-            })
+            found.unwrap_or_else(|refused| vec![json!({ "name": name, "unit": unit, "refused": refused })])
         });
         Ok(rows.flatten().collect())
     });
@@ -71,31 +64,25 @@ fn of_motion(subject: &Subject, choice: &Choice, controls: &[Value], question: &
     }
 }
 
-/// Why there are no derivatives: of the motion, or of a number.
-enum Lacking {
-    Motion(String),
-    Number(String),
-}
-
-/// A row per number, or why there is none.
+/// A row per number, or why the motion has none; an error if a number is refused.
 fn rows(
     subject: &Subject,
     choice: &Choice,
     numbers: &[(&str, &str)],
     end: f64,
     question: &Question,
-) -> Result<Vec<Value>, Lacking> {
+) -> Result<Result<Vec<Value>, String>, String> {
     let names: Vec<&str> = numbers.iter().map(|(name, _)| *name).collect();
     let found = sensitivities(&subject.scene, choice, &names, &[end], &settings(question));
-    let found = found.map_err(|error| Lacking::Number(error.to_string()))?;
+    let found = found.map_err(|error| error.to_string())?;
     if let Some(complaint) = found.complaint() {
-        return Err(Lacking::Motion(complaint));
+        return Ok(Err(complaint));
     }
     let at_end = found.derivatives.into_iter().flatten().zip(found.errors.into_iter().flatten());
     let rows = numbers.iter().zip(at_end).map(|((name, unit), (by, error))| {
         json!({ "name": name, "unit": unit, "by": by.coordinates, "error": error.coordinates })
     });
-    Ok(rows.collect())
+    Ok(Ok(rows.collect()))
 }
 
 /// The name and unit of a number that a motion depends on, apart from the duration and from what a search

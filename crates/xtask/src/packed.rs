@@ -62,7 +62,7 @@ pub(crate) fn used() -> Result<Outcome> {
     })?;
     let environment = folder.join("environment");
     let fresh = environment.join(if cfg!(windows) { "Scripts/python.exe" } else { "bin/python" });
-    timed("source distribution", &mut || python::source_distribution(folder))?;
+    timed("source distribution", &mut || python::source_distribution(folder).and_then(|_| only(folder, "gz")))?;
     timed("module from it", &mut || {
         let distribution = only(folder, "gz")?;
         succeed(outside(python::interpreter()?.0).args(["-m", "venv"]).arg(&environment))?;

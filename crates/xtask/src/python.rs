@@ -4,7 +4,7 @@ use std::collections::hash_map::DefaultHasher;
 use std::env::consts::{DLL_PREFIX, DLL_SUFFIX};
 use std::hash::{Hash, Hasher};
 use std::path::{Path, PathBuf};
-use std::process::{Child, Stdio};
+use std::process::{Child, Command, Stdio};
 use std::sync::OnceLock;
 use std::time::Instant;
 
@@ -24,8 +24,6 @@ const WHEEL_REQUIREMENTS: &str = "crates/xtask/wheel.txt";
 const GLIBC: u32 = 28;
 /// What of stubs the module itself cannot have.
 const STUBTEST: &str = "stubtest.txt";
-/// maturin would warn that it is not the backend: it is asked by the one that is.
-const OWN_BACKEND: (&str, &str) = ("MATURIN_NO_MISSING_BUILD_BACKEND_WARNING", "1");
 /// The oldest Python for which the module is built.
 const OLDEST: (u32, u32) = (3, 11);
 /// Where a Python is looked for.
@@ -77,8 +75,8 @@ pub(crate) fn wheel() -> Result<Outcome> {
     let (clock, target) = (Instant::now(), target()?);
     let python = make(&target, "wheel", Path::new(WHEEL_REQUIREMENTS))?;
     let wheels = empty(target.join("wheels"))?;
-    let mut maturin = outside(&python);
-    maturin.args(["-m", "maturin", "build", "--release", "--sdist", "--quiet", "--out"]).arg(&wheels);
+    let mut maturin = maturin(&python);
+    maturin.args(["build", "--release", "--sdist", "--quiet", "--out"]).arg(&wheels);
     if IS_GLIBC {
         maturin.args(["--zig", "--compatibility", &format!("manylinux_2_{GLIBC}")]);
         // maturin asks the first `python3` for zig
@@ -86,7 +84,7 @@ pub(crate) fn wheel() -> Result<Outcome> {
         let folders = python.parent().map(PathBuf::from).into_iter().chain(std::env::split_paths(&others));
         maturin.env("PATH", std::env::join_paths(folders)?);
     }
-    succeed(maturin.arg("--interpreter").arg(&python).current_dir(CRATE))?;
+    succeed(maturin.arg("--interpreter").arg(&python))?;
     let mut made = Vec::new();
     for file in std::fs::read_dir(&wheels).with_context(|| wheels.display().to_string())? {
         let file = file?;
@@ -102,13 +100,15 @@ pub(crate) fn wheel() -> Result<Outcome> {
 }
 
 /// The source distribution, in this folder.
-pub(crate) fn source_distribution(folder: &Path) -> Result<PathBuf> {
-    let mut maturin = outside(environment()?);
-    maturin.args(["-m", "maturin", "sdist", "--out"]).arg(folder).current_dir(CRATE);
-    succeed(maturin.env(OWN_BACKEND.0, OWN_BACKEND.1))?;
-    let files = std::fs::read_dir(folder)?.filter_map(|file| file.ok().map(|file| file.path()));
-    let mut packed = files.filter(|path| path.extension().is_some_and(|ending| ending == "gz"));
-    packed.next().context("maturin made no source distribution")
+pub(crate) fn source_distribution(folder: &Path) -> Result<Outcome> {
+    succeed(maturin(&environment()?).args(["sdist", "--out"]).arg(folder))
+}
+
+/// maturin in the folder of the crate. It would warn that it is not the backend: the one that is asks it.
+fn maturin(python: &Path) -> Command {
+    let mut maturin = outside(python);
+    maturin.args(["-m", "maturin"]).current_dir(CRATE).env("MATURIN_NO_MISSING_BUILD_BACKEND_WARNING", "1");
+    maturin
 }
 
 /// Prints what auditwheel finds in a wheel: it has to be symbols of [`GLIBC`] or of an older one.
@@ -188,10 +188,8 @@ fn module(python: &Path) -> Result<Module> {
     let site = empty(target.join("python-module"))?;
     let folder = site.join("deltaq");
     std::fs::create_dir_all(&folder).with_context(|| folder.display().to_string())?;
-    let mut metadata = outside(python);
-    metadata.args(["-m", "maturin", "pep517", "write-dist-info", "--metadata-directory"]).arg(&site);
-    metadata.arg("--interpreter").arg(python).current_dir(CRATE).stdout(Stdio::null());
-    succeed(metadata.env(OWN_BACKEND.0, OWN_BACKEND.1))?;
+    let arguments = ["pep517", "write-dist-info", "--interpreter"];
+    succeed(maturin(python).args(arguments).arg(python).arg("--metadata-directory").arg(&site).stdout(Stdio::null()))?;
     for file in std::fs::read_dir(SOURCES).context(SOURCES)? {
         let file = file.context(SOURCES)?;
         if file.path().is_file() {
