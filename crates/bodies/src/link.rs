@@ -65,11 +65,11 @@ impl Maker<'_> {
     /// From the second point to the first, in space if they stand on different bases.
     fn gap(&self, [first, second]: &[(Written, Written); 2]) -> Result<String, Fault> {
         let place = |(name, point): &(Written, Written)| -> Result<(Option<usize>, String), Fault> {
-            if name.text == "space" {
-                return Ok((None, crate::text::vector(&point.text)));
+            match self.machine.find(name) {
+                Ok(i) => Ok((self.placed(i).base, self.point(i, &point.text))),
+                Err(_) if name.text == "space" => Ok((None, crate::text::vector(&point.text))),
+                Err(fault) => Err(fault),
             }
-            let i = self.machine.find(name)?;
-            Ok((self.placed(i).base, self.point(i, &point.text)))
         };
         let (one, two) = (place(first)?, place(second)?);
         let seen = |(base, at)| if one.0 == two.0 { String::clone(at) } else { self.in_space(base, at) };

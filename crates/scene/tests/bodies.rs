@@ -204,3 +204,16 @@ fn no_text_of_bodies_panics() {
         drop(Scene::parse("arm", &text));
     }
 }
+
+/// A body of that name comes before space itself.
+#[test]
+fn a_body_may_be_called_space() {
+    let named = |name: &str| {
+        let text = ARM.replace("[body.wheel]", &format!("[body.{name}]")).replace("\"wheel\"", &format!("\"{name}\""));
+        let between = format!("between = {{ arm = [1, 0, 0], {name} = [0, 0, 1] }}");
+        let text = text.replace(&format!("shape = \"{name}\""), "shape = \"wheel\"");
+        let scene = Scene::parse("arm", &text.replace("joint = \"cart\"", &between)).unwrap_or_else(|e| panic!("{e}"));
+        scene.system.graph.plain(scene.system.lagrangian)
+    };
+    assert_eq!(named("space"), named("spare"));
+}

@@ -73,8 +73,7 @@ fn configurations(title: &str, given: &str, names: [&str; 2], bodies: &str, expe
 fn closed_loops_find_their_start_and_name_all_configurations() {
     let a = 0.7_f64;
     let crank = [a.cos(), a.sin()];
-    // crank 1, coupler 2.2, rocker 1.6, frame 2
-    let four_bars = r#"
+    let driven = r#"
 [body.crank]
 joint = { hinge = "z", angle = "a" }
 mass = 1
@@ -84,6 +83,9 @@ on = "crank"
 joint = { hinge = "z", angle = "b - a", at = [1, 0] }
 mass = 1
 inertia = [0, 0, 0.1]
+"#;
+    // crank 1, coupler 2.2, rocker 1.6, frame 2
+    let four_bars = r#"
 [body.rocker]
 joint = { hinge = "z", angle = "c", at = [2, 0] }
 inertia = [0, 0, 0.2]
@@ -92,26 +94,17 @@ between = { coupler = [2.2, 0], rocker = [1.6, 0] }
 "#;
     let pins = circles(crank, 2.2, [2.0, 0.0], 1.6);
     let angles = pins.map(|[x, y]| [(y - crank[1]).atan2(x - crank[0]), y.atan2(x - 2.0)]);
-    configurations("four bars", "a = { start = 0.7 }\n", ["b", "c"], four_bars, angles);
+    configurations("four bars", "a = { start = 0.7 }\n", ["b", "c"], &[driven, four_bars].concat(), angles);
     let slider = r#"
-[body.crank]
-joint = { hinge = "z", angle = "a" }
-mass = 1
-inertia = [0, 0, 0.1]
-[body.rod]
-on = "crank"
-joint = { hinge = "z", angle = "b - a", at = [1, 0] }
-mass = 1
-inertia = [0, 0, 0.1]
 [body.piston]
 joint = { slider = "x", shift = "s" }
 mass = 0.5
 [loop.pin]
-between = { rod = [2.5, 0], piston = [0, 0] }
+between = { coupler = [2.5, 0], piston = [0, 0] }
 "#;
     let (b, reach) = (-(crank[1] / 2.5).asin(), (2.5_f64 * 2.5 - crank[1] * crank[1]).sqrt());
     let places = [[b, crank[0] + reach], [-std::f64::consts::PI - b, crank[0] - reach]];
-    configurations("slider-crank", "a = { start = 0.7 }\n", ["b", "s"], slider, places);
+    configurations("slider-crank", "a = { start = 0.7 }\n", ["b", "s"], &[driven, slider].concat(), places);
     // two arms of 0.15 behind kingpins 1.2 apart, 0.3 inwards, and a tie rod; the left one is steered by 0.2
     let rod = 1.2 - 2.0 * 0.15 * 0.3_f64.sin();
     let ackermann = format!(

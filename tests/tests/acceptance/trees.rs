@@ -72,7 +72,7 @@ fn planar(n: usize, [at, own]: [f64; 2], is_driven: bool) -> [Scene; 2] {
             }
         };
         write!(bodies, "[body.l{i}]\n{joint}\nmass = 2\ninertia = [0, 0, 0.1]\n").unwrap_or_default();
-        write!(contacts, "c{i} = {{ of = \"l{i}\", law = \"blade\" }}\n").unwrap_or_default();
+        writeln!(contacts, "c{i} = {{ of = \"l{i}\", law = \"blade\" }}").unwrap_or_default();
         write!(lagrangian, " + {x}'^2 + {y}'^2 + 0.05*a{i}'^2").unwrap_or_default();
         writeln!(rows, "\"{y}'*cos(a{i}) - {x}'*sin(a{i})\", ").unwrap_or_default();
     }

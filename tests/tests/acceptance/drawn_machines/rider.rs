@@ -22,7 +22,8 @@ pub(super) fn rider(seed: u64) -> Machine {
     let hub = "at = \"[q0, q1, 0] + rotation(zx, q2, q3)*[0, 0, 0.3]\"\nrotation = \"rotation(zxy, q2, q3";
     let (axis, on_fork) = (V::new(1.1, 0.0, -0.3), V::new(1.02, 0.0, 0.05));
     let seat = V::new(0.1, 0.0, 0.5);
-    let parts: [(String, Option<usize>, Vec<Step>, f64, V, [f64; 4]); 5] = [
+    type Part = (String, Option<usize>, Vec<Step>, f64, V, [f64; 4]);
+    let parts: [Part; 5] = [
         (
             format!("{hub}, q{rear})\"\nshape = \"wheel\"\nsize = [0.3]\n"),
             None,
