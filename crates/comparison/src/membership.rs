@@ -65,8 +65,8 @@ impl Membership {
         self.theorem.is_some() || self.section.as_ref().is_some_and(|section| section.proved)
     }
 
-    /// The dimension of the set by ranks modulo two primes, where these grow no more, or leave less than numbers
-    /// tell.
+    /// The dimension of the set by ranks modulo two primes, where these grow no more, or leave less than
+    /// numbers tell.
     pub(crate) fn ranked(&self) -> Option<usize> {
         let (all, in_numbers) = (self.decision.constants.len(), self.decision.set.dimension());
         match self.proof.this_start {

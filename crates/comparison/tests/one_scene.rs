@@ -22,8 +22,8 @@ fn particle(constraint: &str, time: &str) -> Comparison {
     compared("particle", &scene)
 }
 
-/// The disc turns at a constant rate by Chetaev; that the vakonomic one does not is said of it, and its motion
-/// is as good as before.
+/// The disc turns at a constant rate by Chetaev; that the vakonomic one does not is said of it, and its
+/// motion is as good as before.
 #[test]
 fn an_integral_of_one_formulation_is_a_finding_about_another() {
     let disc = |more: &str| {
@@ -38,8 +38,8 @@ fn an_integral_of_one_formulation_is_a_finding_about_another() {
     assert_eq!(told.contradictions(), Vec::new());
 }
 
-/// Numbers of a coefficient that almost cancel: 1/3 − 0.3333333333333333 is 3e-17 and not zero, and so is proved
-/// to be, where motions are the same in all digits.
+/// Numbers of a coefficient that almost cancel: 1/3 − 0.3333333333333333 is 3e-17 and not zero, and so is
+/// proved to be, where motions are the same in all digits.
 #[test]
 fn a_coefficient_is_what_is_written() {
     let small = particle("z' - (1/3 - 0.3333333333333333)*x*y'", "");
@@ -71,7 +71,8 @@ fn an_estimate_that_has_grown_is_not_rest() {
     assert_eq!(first, format!("Same: Chetaev and vakonomic. Not seen in numbers: {because}."));
 }
 
-/// A pulse of e^{-30·25/9} at w = 1/3 turns y' into a force on w for every μ₀ but 0, under all digits: ranks see it.
+/// A pulse of e^{-30·25/9} at w = 1/3 turns y' into a force on w for every μ₀ but 0, under all digits:
+/// ranks see it.
 #[test]
 fn a_multiplier_that_round_off_frees_is_not_free() {
     let of = |factor: &str| {

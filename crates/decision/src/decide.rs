@@ -308,8 +308,8 @@ fn judge(
     }
     let free: Vec<DVector<f64>> =
         (0..last).filter(|&k| svd.values[k] <= limit).map(|k| svd.right.row(k).transpose()).collect();
-    // is there one whose effect would be lost in noise? Whatever its part among quiet ones: these are orthonormal,
-    // and known to half of their digits
+    // is there one whose effect would be lost in noise? Whatever its part among quiet ones: these are
+    // orthonormal, and known to half of their digits
     let quiet = |k: &Column| (TOO_LOUD * k.size / (CERTAINTY * k.noise)).min(f64::EPSILON.sqrt().recip());
     let heard = DMatrix::from_fn(last, free.len(), |i, j| quiet(&known[i]) * free[j][i]);
     let loud = SingularValues::of(&heard).values.iter().any(|part| *part < 1.0);

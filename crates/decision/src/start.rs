@@ -164,8 +164,8 @@ impl ExactStart {
         })
     }
 
-    /// How many rows of expressions of `g` in parameters, time and positions are independent at the start: the
-    /// rank in two fields; `None` where they do not agree, or a number has no image.
+    /// How many rows of expressions of `g` in parameters, time and positions are independent at the start:
+    /// the rank in two fields; `None` where they do not agree, or a number has no image.
     pub fn rank(&self, g: &Graph, rows: &[Vec<Expr>]) -> Option<usize> {
         let parameters = self.system.parameters.iter().map(|p| p.symbol);
         let inputs: Vec<Symbol> = parameters.chain([self.system.time]).chain(self.system.positions()).collect();

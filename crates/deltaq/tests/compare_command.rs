@@ -224,7 +224,8 @@ fn a_compare_that_fails_leaves_nothing() {
     assert_eq!(output.status.code(), Some(2), "{}", text(&output.stderr));
 }
 
-/// A motion whose estimate is doubted from the start has no bound for its gap, and no infinite one is printed.
+/// A motion whose estimate is doubted from the start has no bound for its gap, and no infinite one is
+/// printed.
 #[test]
 fn what_has_no_bound_is_not_known() {
     let folder = tempfile::tempdir().expect("a folder");

@@ -58,7 +58,8 @@ pub struct Growth {
     /// At the start, as long as brackets are short: all directions are reached at its end, if that of the
     /// generic one is there.
     pub start: Vec<usize>,
-    /// Whether these are as many as there can be, or are counted in exact numbers; else round-off may hide more.
+    /// Whether these are as many as there can be, or are counted in exact numbers; else round-off may hide
+    /// more.
     pub exact: bool,
 }
 

@@ -26,7 +26,8 @@ fn a_tenth_of_each_kind_is_thorough() {
     assert_eq!([0, 1, 2].map(|i| batch.thorough(i)), [0, 20, 40]);
 }
 
-/// Two growth vectors that round-off hid, a decision on the first moments only, errors of a way back that add up.
+/// Two growth vectors that round-off hid, a decision on the first moments only, errors of a way back that
+/// add up.
 #[test]
 fn systems_that_failed_once_fail_no_more() {
     let batch = Batch { seed: 72, kinds: Kind::ALL.to_vec() };

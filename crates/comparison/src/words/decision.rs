@@ -29,8 +29,8 @@ fn is_every(membership: &Membership) -> bool {
     membership.dimension() == membership.decision.constants.len()
 }
 
-/// For which `μ₀` two motions are different, and for which the same, in a few words after a comma; none without
-/// constraints, which have no `μ₀`.
+/// For which `μ₀` two motions are different, and for which the same, in a few words after a comma; none
+/// without constraints, which have no `μ₀`.
 pub(super) fn in_brief(comparison: &Comparison) -> [String; 2] {
     let own = match comparison.scene.system.constraints.len() {
         0 => String::new(),
