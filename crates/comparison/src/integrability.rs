@@ -9,8 +9,8 @@ use symbolic::{Expr, Graph};
 
 use motion::SolveError;
 
-/// Frobenius' test ([`integrability_by_brackets`]), with [`integrals_by_ranks`] where brackets cannot tell:
-/// of what [`System::without_exact_constraints`] leaves.
+/// Frobenius' test ([`integrability_by_brackets`]), with [`integrals_by_ranks`] where brackets cannot
+/// tell: of what [`System::without_exact_constraints`] leaves.
 ///
 /// # Errors
 /// [`SolveError`] for dependent constraints.

@@ -241,17 +241,6 @@ impl<'a> Pairing<'a> {
         Ok(Some(LeadingTerm { exponent, coefficient: term.coefficient, length, from, reach, proved }))
     }
 
-    /// The least mismatch over all constants by Taylor series at the start; no more than that up to `end`.
-    /// See [`Question::least_by_series`].
-    ///
-    /// # Errors
-    /// [`SolveError::Decision`] where an expression cannot be evaluated.
-    pub fn least_by_series(&self, end: f64) -> Result<Option<f64>, SolveError> {
-        let (system, start) = (&self.scene.system, &self.scene.start);
-        let question = self.question()?;
-        Ok(question.least_by_series(system, start, end - start.t))
-    }
-
     /// Names of the constants of the family.
     pub fn constants(&self) -> &[String] {
         self.family.constants()

@@ -37,10 +37,11 @@
 //! noise: *not contained*. Else *contained*, of the dimension of the directions whose rows are noise;
 //! *undecided* if the noise is over 1e-6 of the curve's own acceleration, unless that is round-off of what
 //! balances at rest. This is judged up to several times within the run: if no constants fit up to one of
-//! these, none fit at all; otherwise the longest time with low enough noise counts ([`Decision::until`]).
-//! `r` constants can make `r` derivatives of the mismatch zero, so that after a part `x` of the run it may
-//! have grown to `x^r` of its size at the end: there, *contained* needs noise that much lower. The least-norm
-//! element is the first guess for fits.
+//! these, none fit at all; otherwise the longest time with low enough noise counts ([`Decision::until`]),
+//! or that with the least where none is low enough. Noise is too high if some direction of the set is lost
+//! in its own. `r` constants can make `r` derivatives of the mismatch zero, so that after a part `x` of
+//! the run it may have grown to `x^r` of its size at the end: there, *contained* needs noise that much
+//! lower. The least-norm element is the first guess for fits.
 //!
 //! **Proved over a finite field** ([`Question::prove`]). Taylor coefficients `y_k = O_k c + y₀_k` at the
 //! start are algebraic in the scene's numbers. For fractions, roots of unity and sines, cosines, exponentials

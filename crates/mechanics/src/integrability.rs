@@ -236,14 +236,13 @@ fn by_brackets(system: &System, state: &State, end: f64, ranks: ExactRank) -> Re
         all if all == most => (all, true),
         some => ranks(g, fields).map_or((some, false), |exact| (exact, true)),
     };
-    let (mut generic, mut at_start) = (vec![fields.len()], vec![rank_at_start(&fields, fields.len())]);
-    let mut newest = admissible.clone();
-    let mut rank = fields.len();
+    // each field adds a direction
+    let (mut generic, mut newest) = (vec![fields.len()], admissible.clone());
     // rounded numbers may cancel, and differ in digits that they have not got
     let mut open = (!g.are_exact(&system.constraints)).then_some(Undecided::AtPoints);
-    while rank < space.len() {
-        let mut added = Vec::new();
+    while fields.len() < space.len() {
         for z in brackets(g, &space, &admissible, &newest, depth == 0) {
+            let rank = fields.len();
             if rank == space.len() {
                 break;
             }
@@ -261,8 +260,6 @@ fn by_brackets(system: &System, state: &State, end: f64, ranks: ExactRank) -> Re
             // where pieces end, it may be another one on which it is not zero
             let is_seen = verdicts.iter().any(|v| matches!(v, Vanishing::No { .. }));
             if found > Some(rank) || is_seen && g.ends_of_pieces(&z).is_empty() {
-                rank += 1;
-                added.push(z);
                 continue;
             }
             fields.pop();
@@ -270,21 +267,21 @@ fn by_brackets(system: &System, state: &State, end: f64, ranks: ExactRank) -> Re
                 open = open.max(Some(if found.is_none() { Undecided::NoPoint } else { Undecided::AtPoints }));
             }
         }
-        if added.is_empty() {
+        newest = fields[generic[depth]..].to_vec();
+        if newest.is_empty() {
             break;
         }
         depth += 1;
-        newest = added;
-        generic.push(rank);
-        at_start.push(rank_at_start(&fields, rank));
+        generic.push(fields.len());
     }
-    let left = space.len() - rank;
+    let left = space.len() - fields.len();
     let integrals = exact + left;
     Ok(match open {
         _ if integrals == 0 => {
             // fields that add a direction at almost every place need not be those that do at the start
+            let mut at_start: Vec<_> = generic.iter().map(|&rank| rank_at_start(&fields[..rank], rank)).collect();
             if at_start.iter().map(|(rank, _)| rank).ne(&generic) {
-                at_start = growth_at_start(g, &space, &admissible, &rank_at_start);
+                at_start = growth_at_start(g, &space, &admissible, rank_at_start);
             }
             let (start, certain): (Vec<usize>, Vec<bool>) = at_start.into_iter().unzip();
             let exact = certain.into_iter().all(|certain| certain);
@@ -316,7 +313,7 @@ fn growth_at_start(
     g: &Graph,
     space: &[Symbol],
     admissible: &[Vec<Expr>],
-    rank_at_start: &dyn Fn(&[Vec<Expr>], usize) -> (usize, bool),
+    rank_at_start: impl Fn(&[Vec<Expr>], usize) -> (usize, bool),
 ) -> Vec<(usize, bool)> {
     let mut ranks = vec![rank_at_start(admissible, admissible.len())];
     let (mut all, mut newest) = (admissible.to_vec(), admissible.to_vec());
