@@ -32,16 +32,17 @@ impl SingularValues {
             let SingularValues { left, values, right } = Self::of(&matrix.transpose());
             return SingularValues { left: right.transpose(), values, right: left.transpose() };
         }
+        let u = matrix.clone();
         pulp::Arch::new().dispatch(
             #[inline(always)]
-            || Self::by_rotations(matrix),
+            move || Self::by_rotations(u), // can be called once only, and so is inlined
         )
     }
 
     #[inline(always)]
-    fn by_rotations(matrix: &DMatrix<f64>) -> Self {
-        let n = matrix.ncols();
-        let (mut u, mut v) = (matrix.clone(), DMatrix::identity(n, n));
+    fn by_rotations(mut u: DMatrix<f64>) -> Self {
+        let n = u.ncols();
+        let mut v = DMatrix::identity(n, n);
         let mut squares: Vec<f64> = u.column_iter().map(|column| column.norm_squared()).collect();
         for _ in 0..SWEEPS {
             let mut turned = false;
@@ -59,7 +60,7 @@ impl SingularValues {
                 for m in [&mut u, &mut v] {
                     let rows = m.nrows();
                     let (before, after) = m.as_mut_slice().split_at_mut(j * rows);
-                    for (x, y) in before[i * rows..][..rows].iter_mut().zip(after) {
+                    for (x, y) in before[i * rows..][..rows].iter_mut().zip(&mut after[..rows]) {
                         (*x, *y) = (*x * cosine - *y * sine, *x * sine + *y * cosine);
                     }
                 }
@@ -75,7 +76,7 @@ impl SingularValues {
         let unit = |&i: &usize| if lengths[i] > 0.0 { u.column(i) / lengths[i] } else { u.column(i).into_owned() };
         let columns: Vec<DVector<f64>> = order.iter().map(unit).collect();
         SingularValues {
-            left: DMatrix::from_fn(matrix.nrows(), n, |r, k| columns[k][r]),
+            left: DMatrix::from_fn(u.nrows(), n, |r, k| columns[k][r]),
             values: DVector::from_iterator(n, order.iter().map(|&i| lengths[i])),
             right: DMatrix::from_fn(n, n, |k, c| v[(c, order[k])]),
         }

@@ -41,8 +41,14 @@ pub(crate) fn round_off(runs: &mut dyn TwoRuns) -> RoundOff {
     if is_small(&looked, &looser, &sizes, BETWEEN) {
         return RoundOff::Small;
     }
-    let (mut looked, looser, sizes) = looked_at(runs, LOOKS);
-    closer(runs, &mut looked);
+    // runs that keep few instants have no more of them
+    let (looked, looser, sizes) = if runs.equidistant(LOOKS) == runs.equidistant(FEW) {
+        (looked, looser, sizes)
+    } else {
+        let (mut looked, looser, sizes) = looked_at(runs, LOOKS);
+        closer(runs, &mut looked);
+        (looked, looser, sizes)
+    };
     let found = rates_of(runs, &looked, &looser, &sizes);
     if !matches!(found, RoundOff::Counts(_)) {
         return found;

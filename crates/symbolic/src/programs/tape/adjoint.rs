@@ -42,7 +42,15 @@ impl Tape {
         assert_eq!(r.len(), self.registers, "the workspace of another tape");
         r[..self.inputs].copy_from_slice(inputs);
         let mut sizes: Vec<f64> = r.iter().map(|x| x.abs()).collect();
-        let steps = self.body.iter().map(|&instruction| Step::new(instruction, r)).collect::<Vec<Step>>();
+        let mut steps = Vec::with_capacity(self.body.len());
+        let recorded = &mut steps;
+        Dual::vectorize(
+            #[inline(always)]
+            move || {
+                let (all, r) = (recorded, r); // can be called once only, and so is inlined
+                all.extend(self.body.iter().map(|&instruction| Step::new(instruction, r)));
+            },
+        );
         steps.iter().flat_map(|step| step.results).for_each(|(to, _)| sizes[to as usize] = 0.0);
         Recorded { steps, sizes, inputs: self.inputs }
     }
@@ -50,6 +58,7 @@ impl Tape {
 
 impl Step {
     /// Evaluates one instruction, with an operand along each of three directions.
+    #[inline(always)]
     fn new(instruction: Instruction, r: &mut [f64]) -> Step {
         let (local, operands, [to, second]) = instruction.apart();
         let mut duals = [Dual::from_f64(0.0); 5];
@@ -131,8 +140,23 @@ impl Recorded {
         combinations.chunks(LANES).flat_map(|some| self.sweep(some, sizes).into_iter().take(some.len())).collect()
     }
 
-    /// Up to eight combinations at once, from the last instruction to the first.
+    /// Up to eight combinations at once.
     fn sweep(&self, combinations: &[Vec<(usize, f64)>], sizes: &[f64]) -> [f64; LANES] {
+        let mut sums = Lanes([0.0; LANES]);
+        let all = &mut sums;
+        Lanes::vectorize(
+            #[inline(always)]
+            move || {
+                let sums = all; // can be called once only, and so is inlined
+                *sums = self.backwards(combinations, sizes);
+            },
+        );
+        sums.0
+    }
+
+    /// From the last instruction to the first.
+    #[inline(always)]
+    fn backwards(&self, combinations: &[Vec<(usize, f64)>], sizes: &[f64]) -> Lanes {
         let zero = Lanes([0.0; LANES]);
         let mut adjoints = vec![zero; self.sizes.len()];
         for (lane, combination) in combinations.iter().enumerate() {
@@ -140,21 +164,15 @@ impl Recorded {
                 adjoints[self.inputs + output].0[lane] += factor;
             }
         }
-        let mut sums = [0.0; LANES];
-        let mut add = |adjoint: Lanes, size: f64| {
-            sums.iter_mut()
-                .zip(adjoint.0)
-                .for_each(|(sum, slope)| *sum += if slope == 0.0 { 0.0 } else { slope.abs() * size });
-        };
+        let mut sums = zero;
         for step in self.steps.iter().rev() {
-            let [one, two] = step.results.map(|(to, size)| {
-                let adjoint = std::mem::replace(&mut adjoints[to as usize], zero);
-                add(adjoint, size);
-                adjoint
-            });
+            let [(first, of_first), (second, of_second)] = step.results;
+            let one = std::mem::replace(&mut adjoints[first as usize], zero);
+            let two = std::mem::replace(&mut adjoints[second as usize], zero);
             if one == zero && two == zero {
                 continue;
             }
+            sums = sums + one.share(of_first) + two.share(of_second);
             for (operand, [by_one, by_two]) in step.operands {
                 if by_one != 0.0 || by_two != 0.0 {
                     let [a, b] = [Lanes::from_f64(by_one), Lanes::from_f64(by_two)];
@@ -164,7 +182,14 @@ impl Recorded {
             }
         }
         let all = sizes.iter().chain(&self.sizes[self.inputs..]);
-        adjoints.into_iter().zip(all).for_each(|(adjoint, &size)| add(adjoint, size));
-        sums
+        adjoints.into_iter().zip(all).fold(sums, |sums, (adjoint, &size)| sums + adjoint.share(size))
+    }
+}
+
+impl Lanes {
+    /// `|slope| size`, of no slope 0.
+    #[inline(always)]
+    fn share(self, size: f64) -> Lanes {
+        Lanes(std::array::from_fn(|l| if self.0[l] == 0.0 { 0.0 } else { self.0[l].abs() * size }))
     }
 }
