@@ -32,6 +32,7 @@ const ANSWERS: [&[&str]; 20] = [
         "--starts=1",
     ],
     &["design", "heisenberg", "--tell=vakonomic,chetaev", "--film=9Hz,1mm,1s", "--free=x',y'", "--starts=1"],
+    &["schema", "solve"],
     &["completions", "bash"],
     &["man"],
     &["help", "solve"],
