@@ -36,8 +36,8 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! The feature `program`, on by default, builds the command `deltaq` and brings `integrals` (measures, integrals,
-//! certificates as JSON); a library does without: `default-features = false`.
+//! The feature `program`, on by default, builds the command `deltaq` and brings `integrals` (measures,
+//! integrals, certificates as JSON); a library does without: `default-features = false`.
 
 #[cfg(feature = "program")]
 pub use integrals;

@@ -135,8 +135,9 @@ struct Point<'a> {
     zero_vectors: usize,
     /// Eigenvalues with a real part above their error.
     unstable: usize,
-    /// The same number, 'or more' where errors leave others open; 'like t^j' where an eigenvalue on the imaginary
-    /// axis has too few eigenvectors; 'undecided' where errors leave it open or all eigenvalues are zero.
+    /// The same number, 'or more' where errors leave others open; 'like t^j' where an eigenvalue on the
+    /// imaginary axis has too few eigenvectors; 'undecided' where errors leave it open or all eigenvalues
+    /// are zero.
     growing: String,
     /// Eigenvalues on the imaginary axis that cannot be told from a multiple one with too few eigenvectors.
     chains: Vec<Chain>,

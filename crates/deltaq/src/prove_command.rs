@@ -19,8 +19,8 @@ pub(crate) struct Proved {
     /// Whether some multipliers make the vakonomic motion Chetaev's.
     #[serde(flatten)]
     decision: Decision,
-    /// Of which starts this is certified: this one, or almost every one, of its leaf and branch where that has to be
-    /// said.
+    /// Of which starts this is certified: this one, or almost every one, of its leaf and branch where that
+    /// has to be said.
     #[serde(skip_serializing_if = "Option::is_none")]
     domain: Option<String>,
     /// The file that was written.

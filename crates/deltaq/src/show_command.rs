@@ -59,8 +59,8 @@ pub(crate) struct Shown<'a> {
     lagrangian: String,
     /// Each is zero.
     constraints: Vec<String>,
-    /// Names in the Lagrangian and the constraints, with what they stand for: parts that are shared, where these
-    /// would be long without. Later ones may contain earlier ones.
+    /// Names in the Lagrangian and the constraints, with what they stand for: parts that are shared, where
+    /// these would be long without. Later ones may contain earlier ones.
     shared: Vec<[String; 2]>,
     integrability: String,
     /// Times at which every method ends a step.

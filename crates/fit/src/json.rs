@@ -60,7 +60,8 @@ struct Formulation<'a> {
     words: String,
     /// Formulations that these films cannot tell it from.
     from: &'a [String],
-    /// How many times as long a film excludes it, if each of these is right; null where none up to 8 times does.
+    /// How many times as long a film excludes it, if each of these is right; null where none up to 8 times
+    /// does.
     needs: &'a [Option<f64>],
     /// By how much it is excluded, or would be; null otherwise.
     sigmas: Option<f64>,

@@ -78,8 +78,8 @@ pub(crate) enum Proof {
     /// No f does that, near almost every point.
     #[serde(rename = "no multiplier")]
     NoMultiplier { free: Vec<String> },
-    /// At most this many integrals are polynomials of this degree in the velocities, with terms two, four, ... degrees
-    /// lower.
+    /// At most this many integrals are polynomials of this degree in the velocities, with terms two, four,
+    /// ... degrees lower.
     Bound {
         degree: usize,
         free: Vec<String>,
@@ -128,8 +128,8 @@ struct ImagesOfExponents {
     e: u64,
 }
 
-/// The system, and the start or a point that was drawn, in scalar formulas: every number as it was taken. Fields are
-/// in the order of the alphabet, in which the digest is taken.
+/// The system, and the start or a point that was drawn, in scalar formulas: every number as it was taken.
+/// Fields are in the order of the alphabet, in which the digest is taken.
 #[derive(Serialize, JsonSchema)]
 struct Scene {
     constraints: Vec<String>,

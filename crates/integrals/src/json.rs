@@ -15,14 +15,14 @@ pub struct Answer<'a> {
     formulation: &'a str,
     /// Where answers hold: almost every place, or those of the leaf and branch of the start.
     domain: String,
-    /// Whether Chetaev's motion has an invariant measure exp(sigma(q)) dq dp, smooth and positive near almost every
-    /// point; null for another formulation.
+    /// Whether Chetaev's motion has an invariant measure exp(sigma(q)) dq dp, smooth and positive near
+    /// almost every point; null for another formulation.
     measure: Option<AnswerOfMeasure>,
-    /// Whether dtau = f dt makes Chetaev's motion over some of the coordinates Hamilton's, for each choice of these
-    /// that has a motion of its own; null for another formulation.
+    /// Whether dtau = f dt makes Chetaev's motion over some of the coordinates Hamilton's, for each choice
+    /// of these that has a motion of its own; null for another formulation.
     multipliers: Option<OrOpen<Vec<AnswerOfMultiplier>>>,
-    /// Integrals that are polynomials in the velocities, near almost every point, degree by degree; null for another
-    /// formulation than Chetaev's.
+    /// Integrals that are polynomials in the velocities, near almost every point, degree by degree; null for
+    /// another formulation than Chetaev's.
     polynomials: Option<Vec<Polynomials>>,
     ansatz: OrOpen<AnswerOfAnsatz<'a>>,
     /// The scene's own, or why none was tried.

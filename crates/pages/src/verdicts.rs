@@ -97,8 +97,8 @@ struct FitNumbers {
     /// By name; compare only.
     #[schemars(with = "IndexMap<String, Option<f64>>")]
     constants: IndexMap<String, f64>,
-    /// Largest gap that is left, kinetic metric, the least that was found; to one digit, rounded up, if not settled;
-    /// compare only.
+    /// Largest gap that is left, kinetic metric, the least that was found; to one digit, rounded up, if not
+    /// settled; compare only.
     #[schemars(with = "Option<f64>")]
     largest: f64,
     /// The same from the first half of the starts; compare only.
@@ -111,7 +111,8 @@ struct FitNumbers {
     starts: usize,
 }
 
-/// All verdicts of all scenes; with their numbers, which depend on the machine in their last digits, if wanted.
+/// All verdicts of all scenes; with their numbers, which depend on the machine in their last digits, if
+/// wanted.
 pub fn verdicts(comparisons: &[Comparison], with_numbers: bool) -> Verdicts {
     let scenes = comparisons.iter().map(|c| (c.scene.name.clone(), scene(c, with_numbers)));
     Verdicts { thresholds: comparison::THRESHOLDS, scenes: scenes.collect() }

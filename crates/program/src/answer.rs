@@ -79,8 +79,8 @@ impl Display for Unwritten {
     }
 }
 
-/// An answer as JSON for readers, with an end of line; first the name `KIND/N` of its schema, which is that of
-/// the type.
+/// An answer as JSON for readers, with an end of line; first the name `KIND/N` of its schema, which is that
+/// of the type.
 ///
 /// # Errors
 /// A map whose keys are no text.
@@ -122,8 +122,8 @@ impl Transform for Closed {
     }
 }
 
-/// An object of the evidence as JSON for readers, with an end of line; first its file of `docs/schemas`, version 1.
-/// Verdicts are by name.
+/// An object of the evidence as JSON for readers, with an end of line; first its file of `docs/schemas`,
+/// version 1. Verdicts are by name.
 pub fn pretty(kind: &str, object: &Value) -> String {
     if kind == "verdicts" {
         return printed(kind, &sorted(object.clone()));
