@@ -2,15 +2,13 @@
 
 use std::collections::BTreeSet;
 
-use serde_json::{Map, Value, json};
-
 use symbolic::Evaluator;
 
 use crate::exact::{Echelon, Exact, Jet, Modular, PARTS, TRIED, in_any_field, inverse};
 use crate::family::CostateRate;
 use crate::flow::inputs;
 use crate::order_by_order::order;
-use crate::plain_scene::{PlainScene, named};
+use crate::plain_scene::PlainScene;
 use crate::proof::Question;
 use crate::random_start::at_random;
 use crate::series::SeriesStart;
@@ -79,39 +77,6 @@ impl Images {
             exponents: Modular::exponents(),
             roots: roots(evaluator.evaluate(&numbers).iter().filter_map(Jet::exact)),
         })
-    }
-
-    /// Fields of a certificate.
-    pub fn fields(&self) -> Map<String, Value> {
-        let (order, circle, neper) = self.exponents;
-        let of = |name: &str, value: Value| (name.to_owned(), value);
-        Map::from_iter([
-            of("prime", self.prime.into()),
-            of("unity", json!(self.unity)),
-            of("exponents", json!({ "order": order, "e^i": circle, "e": neper })),
-            of("roots", named(&self.roots).into()),
-        ])
-    }
-}
-
-impl Certificate {
-    /// As its schema describes it; `set` are the numbers that were set, as they were written.
-    pub fn value(&self, set: &[(String, String)]) -> Value {
-        let mut value = json!({
-            "scene": self.scene.value(),
-            "digest": self.scene.digest(),
-            "almost_every_start": self.almost_every_start,
-            "order": self.order,
-            "rows": self.rows,
-            "minor": self.minor,
-            "divided_by": named(&self.divided_by),
-            "set": named(set),
-            "completed": self.completed,
-            "motion": named(&self.motion),
-            "reactions": self.reactions,
-        });
-        value.as_object_mut().into_iter().for_each(|value| value.extend(self.images.fields()));
-        value
     }
 }
 

@@ -105,7 +105,7 @@ pub use exact::Flaw;
 pub use family::Family;
 pub use leading::LeadingDifference;
 pub use order_by_order::NoSeries;
-pub use plain_scene::{PlainScene, named};
+pub use plain_scene::PlainScene;
 pub use proof::{Finding, NoConstants, Proof, Question};
 pub use random_start::at_random;
 pub use section::Section;

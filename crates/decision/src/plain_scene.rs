@@ -1,9 +1,5 @@
 //! The system and start of a proof as plain scalar formulas, which a small reader can parse.
 
-use std::fmt::Write;
-
-use serde_json::{Map, Value, json};
-
 use crate::exact::Modular;
 use crate::series::SeriesStart;
 use crate::start::ExactStart;
@@ -91,36 +87,6 @@ impl PlainScene {
     pub fn at_random_point(start: &ExactStart, point: &SeriesStart<Modular>) -> Result<Self, String> {
         Ok(PlainScene { velocities: Vec::new(), ..PlainScene::new(start, point, &[], true)? })
     }
-
-    /// As certificates have it, every object sorted by name.
-    pub fn value(&self) -> Value {
-        let mut value = json!({
-            "coordinates": self.coordinates,
-            "parameters": named(&self.parameters),
-            "lagrangian": self.lagrangian,
-            "constraints": self.constraints,
-            "forces": named(&self.forces),
-            "time": self.time,
-            "positions": named(&self.positions),
-            "velocities": named(&self.velocities),
-        });
-        value.sort_all_objects();
-        value
-    }
-
-    /// SHA-256 of [`PlainScene::value`] as JSON without spaces.
-    pub fn digest(&self) -> String {
-        let mut text = String::from("sha256:");
-        for byte in hmac_sha256::Hash::hash(self.value().to_string().as_bytes()) {
-            let _ = write!(text, "{byte:02x}");
-        }
-        text
-    }
-}
-
-/// An object of these names.
-pub fn named<T: Clone + Into<Value>>(pairs: &[(String, T)]) -> Map<String, Value> {
-    pairs.iter().map(|(name, x)| (name.clone(), x.clone().into())).collect()
 }
 
 /// Whether a number in it is a quotient with the denominator of π, and no multiple of π.

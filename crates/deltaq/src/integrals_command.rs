@@ -4,7 +4,7 @@ use std::path::Path;
 
 use anyhow::Result;
 use integrals::{Integrals, Reversed, reversible_scene};
-use program::{Answer, File, TextOrJson, keep, pretty, typed, write_all};
+use program::{Answer, File, TextOrJson, keep, typed, write_all};
 
 use scene::Number;
 
@@ -43,10 +43,9 @@ fn write_certificates(arguments: &IntegralsArguments, found: &Integrals, folder:
     let (mut files, mut missing) = (Vec::new(), Vec::new());
     for (name, certificate) in found.certificates(&arguments.scene.set.written())? {
         match certificate {
-            Ok(value) => files.push(File {
-                path: format!("{}-{name}.json", found.scene.name).into(),
-                text: pretty("integrals-certificate", &value),
-            }),
+            Ok(certified) => {
+                files.push(File { path: format!("{}-{name}.json", found.scene.name).into(), text: typed(&certified)? })
+            }
             Err(open) => missing.push(format!("no certificate of `{name}`: {open}")),
         }
     }

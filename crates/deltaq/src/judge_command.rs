@@ -139,8 +139,8 @@ struct Judged<'a> {
     noise: f64,
     /// Null where the motion does not show it.
     numbers: IndexMap<&'static str, Option<Number>>,
-    /// Parameters that are off, by this part of themselves, and forces that the scene lacks, in their
-    /// units, where one alone leaves less by far than the numbers of Chetaev's law.
+    /// Parameters that are off, by this part of themselves, and forces that the scene lacks, in their units,
+    /// where one alone leaves less by far than the numbers of Chetaev's law.
     misfits: &'a [Misfit],
     constraints: Vec<Constraint>,
     drifts: &'a [Drift],

@@ -36,9 +36,11 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! The feature `program`, on by default, builds the command `deltaq`; a library does without:
-//! `default-features = false`.
+//! The feature `program`, on by default, builds the command `deltaq` and brings `integrals` (measures,
+//! integrals, certificates as JSON); a library does without: `default-features = false`.
 
+#[cfg(feature = "program")]
+pub use integrals;
 pub use {comparison, mechanics, motion, scene, symbolic};
 
 pub use comparison::{Comparison, Gap, Membership, Verdict, compare, compare_motions, compare_unfitted, membership};

@@ -2,6 +2,7 @@
 
 use anyhow::Result;
 use comparison::{certificate, holds_beside_numbers, membership};
+use integrals::NoMultipliers;
 use mechanics::Domain;
 use schemars::JsonSchema;
 use serde::Serialize;
@@ -9,7 +10,7 @@ use serde::Serialize;
 use crate::cli::ProveArguments;
 use pages::membership::{Decision, Word};
 use pages::membership_sentence;
-use program::{Answer, TextOrJson, file, keep, pretty, typed};
+use program::{Answer, TextOrJson, file, keep, typed};
 
 /// What came of `deltaq prove --format json`.
 #[derive(Serialize, JsonSchema)]
@@ -39,7 +40,7 @@ pub fn run(arguments: &ProveArguments) -> Result<Answer> {
         Ok(certificate) => {
             holds_beside_numbers(&scene)?;
             let order = certificate.order;
-            let text = pretty("certificate", &certificate.value(&given.set.written()));
+            let text = typed(&NoMultipliers::of(&certificate, &given.set.written()))?;
             let domain = match almost_every {
                 true => Domain::of(&scene.system).almost_every("start"),
                 false => "this start".into(),

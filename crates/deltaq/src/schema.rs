@@ -6,7 +6,7 @@ use scene::format::{CONSTANTS, Content, FORMAT, Key, REMOVAL, SCENE};
 use serde_json::{Map, Value, json};
 
 /// Those of answers, all of them.
-const ANSWERS: [fn() -> Value; 13] = [
+const ANSWERS: [fn() -> Value; 15] = [
     schema_of::<crate::connect_command::Connected>,
     schema_of::<crate::ensemble_command::AllMembers>,
     schema_of::<crate::judge_command::AllJudged>,
@@ -18,6 +18,8 @@ const ANSWERS: [fn() -> Value; 13] = [
     schema_of::<fit::Designed>,
     schema_of::<fit::Fitted>,
     schema_of::<integrals::Answer>,
+    schema_of::<integrals::Certified>,
+    schema_of::<integrals::NoMultipliers>,
     schema_of::<pages::Verdicts>,
     schema_of::<review::Reviewed>,
 ];

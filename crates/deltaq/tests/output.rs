@@ -8,7 +8,7 @@ use crate::support::{all_may_be_left, answer, command, commands, elsewhere, none
 const BAD: &str = concat!(env!("CARGO_TARGET_TMPDIR"), "/bad.toml");
 
 /// One call of every command.
-const ANSWERS: [&[&str]; 20] = [
+const ANSWERS: [&[&str]; 21] = [
     &["new"],
     &["check", "sledge"],
     &["solve", "sledge", "-f", "chetaev", "--times", "0,1"],
@@ -32,6 +32,7 @@ const ANSWERS: [&[&str]; 20] = [
         "--starts=1",
     ],
     &["design", "heisenberg", "--tell=vakonomic,chetaev", "--film=9Hz,1mm,1s", "--free=x',y'", "--starts=1"],
+    &["schema", "solve"],
     &["completions", "bash"],
     &["man"],
     &["help", "solve"],

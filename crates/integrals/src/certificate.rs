@@ -1,12 +1,12 @@
 //! Certificates of answers, which `validation/proof/verify.py` checks.
 
 use decision::exact::{Modular, in_any_field, inverse};
-use decision::{ExactStart, Images, PlainScene, SeriesStart, named};
+use decision::{ExactStart, Images, PlainScene, SeriesStart};
 use mechanics::System;
 use motion::CHETAEV;
-use serde_json::{Map, Value, json};
 use symbolic::Fraction;
 
+use crate::certified::{Certified, Common, Exponents, Proof};
 use crate::flag::Flag;
 use crate::killing::Killing;
 use crate::local::{Reversible, at_random};
@@ -16,7 +16,7 @@ use crate::{Density, Found, Integrals, Measure, Multiplier, NoAnswer, Open, word
 const SEED: u64 = 0x17e6_0005;
 
 /// A certificate by the name of what it is about, or why there is none.
-pub type Certificate = (String, Result<Value, Open>);
+pub type Certificate = (String, Result<Certified, Open>);
 
 /// What certificates of a scene share.
 struct Question<'a> {
@@ -43,17 +43,25 @@ impl Integrals {
             match &found.measure {
                 Measure::None { proved: true } => all.push(("measure".into(), question.no_measure(&reversible))),
                 Measure::Local { density: Some(density), .. } => {
-                    all.push(("measure".into(), question.of("measure", |_| Ok(question.density(density)))));
+                    all.push((
+                        "measure".into(),
+                        question.of(|_| {
+                            let (free, density) = question.density(density);
+                            Ok(Proof::Measure { free, density })
+                        }),
+                    ));
                 }
                 _ => {}
             }
             for (i, reduction) in found.reductions.iter().flatten().enumerate() {
                 let certificate = match &reduction.multiplier {
                     Multiplier::None => {
-                        let free = question.velocities(&reduction.over);
-                        question.of("no multiplier", |_| Ok(Map::from_iter([("free".into(), free.clone())])))
+                        question.of(|_| Ok(Proof::NoMultiplier { free: question.velocities(&reduction.over) }))
                     }
-                    Multiplier::Local(Some(factor)) => question.of("multiplier", |_| Ok(question.density(factor))),
+                    Multiplier::Local(Some(factor)) => question.of(|_| {
+                        let (free, density) = question.density(factor);
+                        Ok(Proof::Multiplier { free, density })
+                    }),
                     Multiplier::Local(None) => continue,
                 };
                 all.push((format!("multiplier-{}", i + 1), certificate));
@@ -63,8 +71,8 @@ impl Integrals {
             }
         }
         for (i, printed) in self.ansatz.iter().flat_map(|found| &found.printed).enumerate() {
-            let text = || Map::from_iter([("integral".into(), printed.text.clone().into())]);
-            all.push((format!("integral-{}", i + 1), question.of("integral", |_| Ok(text()))));
+            let proof = |_: &_| Ok(Proof::Integral { integral: printed.text.clone() });
+            all.push((format!("integral-{}", i + 1), question.of(proof)));
         }
         Ok(all)
     }
@@ -72,38 +80,31 @@ impl Integrals {
 
 impl Question<'_> {
     /// A certificate whose own fields are computed at a random point, of the first field where they can be.
-    fn of(
-        &self,
-        kind: &str,
-        compute: impl Fn(&SeriesStart<Modular>) -> Result<Map<String, Value>, Open>,
-    ) -> Result<Value, Open> {
+    fn of(&self, compute: impl Fn(&SeriesStart<Modular>) -> Result<Proof, Open>) -> Result<Certified, Open> {
         // whoever verifies them draws points on all leaves
-        if !self.system.on_positions.is_empty() && kind != "no measure" {
+        if !self.system.on_positions.is_empty() {
             let why = "it is about the leaf of constraints on positions, and certificates are about all leaves";
             return Err(Open::Other(why.into()));
         }
+        self.on_any_leaf(compute)
+    }
+
+    /// The same where the claim is about the leaf of the point as well.
+    fn on_any_leaf(&self, compute: impl Fn(&SeriesStart<Modular>) -> Result<Proof, Open>) -> Result<Certified, Open> {
         let at = |point: &SeriesStart<Modular>| {
             let scene = PlainScene::at_random_point(&self.start, point).map_err(Open::Other)?;
-            let mut value = Images::at(&self.start, point).map_err(Open::Other)?.fields();
-            value.extend(compute(point)?);
-            let common = [
-                ("kind", kind.into()),
-                ("digest", scene.digest().into()),
-                ("scene", scene.value()),
-                ("set", named(self.set).into()),
-            ];
-            value.extend(common.map(|(name, field): (_, Value)| (name.to_owned(), field)));
-            Ok(Value::from(value))
+            let images = Images::at(&self.start, point).map_err(Open::Other)?;
+            Ok(Certified { common: Common::of(&scene, &images, self.set), proof: compute(point)? })
         };
         in_any_field(|| at_random(&self.start, SEED, at))
     }
 
-    fn velocities(&self, places: &[usize]) -> Value {
-        places.iter().map(|&i| format!("{}'", self.system.coordinates[i].name)).collect::<Vec<_>>().into()
+    fn velocities(&self, places: &[usize]) -> Vec<String> {
+        places.iter().map(|&i| format!("{}'", self.system.coordinates[i].name)).collect()
     }
 
-    fn no_measure(&self, reversible: &Reversible) -> Result<Value, Open> {
-        self.of("no measure", |point| {
+    fn no_measure(&self, reversible: &Reversible) -> Result<Certified, Open> {
+        self.on_any_leaf(|point| {
             let flag = Flag::new(reversible, point, SEED, &[])?;
             let size = self.system.dimension() + 1;
             if flag.with_rates.len() < size {
@@ -117,29 +118,23 @@ impl Question<'_> {
             let minor = if rows.len() == size { inverse(&rows.concat(), size, Modular::one()) } else { None };
             let (_, minor) = minor.ok_or(Open::Accident)?;
             let (brackets, places) = needed(flag.free.len(), &flag.brackets, &places);
-            Ok(fields(json!({
-                "free": self.velocities(&flag.free),
-                "brackets": brackets,
-                "rows": places,
-                "minor": minor.value(),
-            })))
+            let free = self.velocities(&flag.free);
+            Ok(Proof::NoMeasure { free, brackets, rows: places, minor: minor.value() })
         })
     }
 
-    fn density(&self, density: &Density) -> Map<String, Value> {
+    fn density(&self, density: &Density) -> (Vec<String>, Exponents) {
         let text = |x: &Fraction| x.to_string();
         let angle = |(i, [sine, cosine]): &(usize, [Fraction; 2])| {
-            (self.system.coordinates[*i].name.clone(), json!([text(sine), text(cosine)]))
+            (self.system.coordinates[*i].name.clone(), [text(sine), text(cosine)])
         };
-        let angles: Map<String, Value> = density.of_angles.iter().map(angle).collect();
-        fields(json!({
-            "free": self.velocities(&density.free),
-            "density": { "metric": text(&density.of_metric), "angles": angles },
-        }))
+        let angles = density.of_angles.iter().map(angle).collect();
+        let metric = text(&density.of_metric);
+        (self.velocities(&density.free), Exponents { metric, angles })
     }
 
-    fn bound(&self, reversible: &Reversible, found: &Found) -> Result<Value, Open> {
-        self.of("bound", |point| {
+    fn bound(&self, reversible: &Reversible, found: &Found) -> Result<Certified, Open> {
+        self.of(|point| {
             let flag = Flag::new(reversible, point, SEED, &[])?;
             let killing = Killing::new(reversible, &flag, point, found.order, SEED)?;
             let kernel = killing.kernel(found.degree, true)?;
@@ -151,27 +146,18 @@ impl Question<'_> {
                     .zip(chart)
                     .enumerate()
                     .map(|(place, (exponents, &x))| (exponents, if place == 0 { q.coefficient(0) } else { x }));
-                let terms = terms.filter(|(_, x)| !x.is_zero()).map(|(exponents, x)| json!([exponents, x.value()]));
-                Value::from(terms.collect::<Vec<_>>())
+                terms.filter(|(_, x)| !x.is_zero()).map(|(exponents, x)| (exponents.clone(), x.value())).collect()
             });
             let names = self.system.coordinates.iter().map(|c| c.name.clone());
-            let chart: Map<String, Value> = names.zip(series).collect();
-            Ok(fields(json!({
-                "degree": found.degree,
-                "free": self.velocities(&flag.free),
-                "weights": ring.weights,
-                "order": kernel.order,
-                "chart": chart,
-                "bound": kernel.integrals.len(),
-            })))
+            Ok(Proof::Bound {
+                degree: found.degree,
+                free: self.velocities(&flag.free),
+                weights: ring.weights.clone(),
+                order: kernel.order,
+                chart: names.zip(series).collect(),
+                bound: kernel.integrals.len(),
+            })
         })
-    }
-}
-
-fn fields(value: Value) -> Map<String, Value> {
-    match value {
-        Value::Object(fields) => fields,
-        _ => Map::new(),
     }
 }
 

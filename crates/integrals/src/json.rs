@@ -21,8 +21,8 @@ pub struct Answer<'a> {
     /// Whether dtau = f dt makes Chetaev's motion over some of the coordinates Hamilton's, for each choice
     /// of these that has a motion of its own; null for another formulation.
     multipliers: Option<OrOpen<Vec<AnswerOfMultiplier>>>,
-    /// Integrals that are polynomials in the velocities, near almost every point, degree by degree; null
-    /// for another formulation than Chetaev's.
+    /// Integrals that are polynomials in the velocities, near almost every point, degree by degree; null for
+    /// another formulation than Chetaev's.
     polynomials: Option<Vec<Polynomials>>,
     ansatz: OrOpen<AnswerOfAnsatz<'a>>,
     /// The scene's own, or why none was tried.

@@ -43,6 +43,7 @@
 mod ansatz;
 mod answer;
 mod certificate;
+mod certified;
 mod density;
 mod flag;
 mod functions;
@@ -58,6 +59,7 @@ mod words;
 pub use ansatz::{Ansatz, Printed, ansatz, constants};
 pub use answer::{Integrals, NoAnswer, watched};
 pub use certificate::Certificate;
+pub use certified::{Certified, NoMultipliers};
 pub use density::Density;
 pub use json::Answer;
 pub use multiplier::{Multiplier, Reduction};

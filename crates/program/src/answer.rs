@@ -6,7 +6,7 @@ use std::io::{ErrorKind, Write, stderr, stdout};
 
 use anyhow::{Context, Result};
 use schemars::generate::SchemaSettings;
-use schemars::transform::RecursiveTransform;
+use schemars::transform::{Transform, transform_subschemas};
 use schemars::{JsonSchema, Schema};
 use serde::Serialize;
 use serde_json::{Value, json};
@@ -90,7 +90,7 @@ pub fn typed<T: Serialize + JsonSchema>(answer: &T) -> Result<String> {
 
 /// The JSON schema of what [`typed`] prints of a type, draft 2020-12: no field more, none less.
 pub fn schema_of<T: JsonSchema>() -> Value {
-    let settings = SchemaSettings::draft2020_12().for_serialize().with_transform(RecursiveTransform(closed));
+    let settings = SchemaSettings::draft2020_12().for_serialize().with_transform(Closed);
     let (name, mut schema) = (T::schema_name(), settings.into_generator().into_root_schema_for::<T>().to_value());
     schema["$id"] = format!("urn:deltaq:{}", name.replace('/', ":")).into();
     let head = json!({ "const": format!("deltaq/{name}") });
@@ -100,17 +100,32 @@ pub fn schema_of<T: JsonSchema>() -> Value {
     schema
 }
 
-fn closed(schema: &mut Schema) {
-    if schema.get("properties").is_some() && schema.get("additionalProperties").is_none() {
-        schema.insert("additionalProperties".into(), false.into());
+/// No field more; no formats, which say how numbers are stored.
+#[derive(Clone)]
+struct Closed;
+
+impl Transform for Closed {
+    fn transform(&mut self, schema: &mut Schema) {
+        transform_subschemas(self, schema);
+        schema.remove("format");
+        if schema.get("properties").is_none() || schema.get("additionalProperties").is_some() {
+            return;
+        }
+        let cases = schema.get_mut("oneOf").and_then(Value::as_array_mut);
+        let Some(cases) = cases else {
+            schema.insert("additionalProperties".into(), false.into());
+            return;
+        };
+        // each has the common fields besides its own
+        cases.iter_mut().filter_map(Value::as_object_mut).for_each(|case| _ = case.remove("additionalProperties"));
+        schema.insert("unevaluatedProperties".into(), false.into());
     }
-    schema.remove("format");
 }
 
-/// An object as JSON for readers, with an end of line; first its file of `docs/schemas`, and the version.
-/// Coordinates are in the order of the scene, verdicts and proofs by name.
+/// An object of the evidence as JSON for readers, with an end of line; first its file of `docs/schemas`,
+/// version 1. Verdicts are by name.
 pub fn pretty(kind: &str, object: &Value) -> String {
-    if matches!(kind, "verdicts" | "certificate" | "integrals-certificate") {
+    if kind == "verdicts" {
         return printed(kind, &sorted(object.clone()));
     }
     printed(kind, object)
@@ -123,12 +138,7 @@ pub fn sorted(mut object: Value) -> Value {
 }
 
 fn printed(kind: &str, object: &Value) -> String {
-    let version = if matches!(kind, "solve" | "linearize" | "certificate" | "compare" | "connect" | "fit" | "design") {
-        2
-    } else {
-        1
-    };
-    headed(&format!("{kind}/{version}"), format!("{object:#}\n"))
+    headed(&format!("{kind}/1"), format!("{object:#}\n"))
 }
 
 fn headed(schema: &str, mut text: String) -> String {

@@ -1,7 +1,7 @@
 //! Certificates that no constants make the vakonomic motion Chetaev's; measures and integrals.
 
 use comparison::{certificate, holds_beside_numbers};
-use integrals::{Integrals, NoAnswer, Open};
+use integrals::{Integrals, NoAnswer, NoMultipliers, Open};
 use integrate::Interrupt;
 use pyo3::prelude::*;
 use scene::Number;
@@ -25,7 +25,7 @@ impl System {
         sound.map_err(|contradicted| errors::DeltaqError::new_err(contradicted.to_string()))?;
         Ok(match found {
             Err(reason) => (None, Some(reason)),
-            Ok(found) => (Some(found.value(&self.set()).to_string()), None),
+            Ok(found) => (Some(json!(NoMultipliers::of(&found, &self.set())).to_string()), None),
         })
     }
 

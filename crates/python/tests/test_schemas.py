@@ -4,6 +4,7 @@ import json
 import subprocess
 import sys
 import tomllib
+from hashlib import sha256
 from pathlib import Path
 
 import pytest
@@ -90,6 +91,39 @@ def test_answers_are_as_described(kind, tmp_path):
             assert len(texts) > 1
         for text in texts:
             check(kind, text)
+
+
+# by kind and version: what its fields and types come to. Another value needs another version
+FIELDS = {
+    "certificate:2": "b3dfb921",
+    "compare:2": "92d81b9f",
+    "connect:2": "045ddad6",
+    "design:2": "1db8d87e",
+    "ensemble:1": "f3ebf153",
+    "fit:2": "ddb9c901",
+    "integrals-certificate:1": "2925dd44",
+    "integrals:1": "fce403a5",
+    "judge:1": "a179924b",
+    "linearize:2": "23ef4069",
+    "list:1": "2805792e",
+    "prove:1": "512b3a1d",
+    "review:1": "028cd46a",
+    "show:1": "00a2d3d8",
+    "solve:2": "1889c125",
+}
+
+
+def bare(schema):
+    """A schema without words."""
+    if isinstance(schema, dict):
+        return {name: bare(x) for name, x in schema.items() if name not in ("description", "title") or isinstance(x, dict)}
+    return [bare(x) for x in schema] if isinstance(schema, list) else schema
+
+
+def test_fields_and_types_change_only_with_the_version():
+    derived = [json.loads(answer("schema", kind)) for kind in answer("schema").split()]
+    digest = {s["$id"].removeprefix("urn:deltaq:"): sha256(json.dumps(bare(s), sort_keys=True).encode()).hexdigest()[:8] for s in derived}
+    assert digest == FIELDS
 
 
 def test_committed_verdicts_are_as_described():
