@@ -147,8 +147,8 @@ impl ScaledMatrices {
         })
     }
 
-    /// The ratio of the singular values of `A`, 1 where there is no constraint; where it is over `enough`, any
-    /// such number.
+    /// The ratio of the singular values of `A`, 1 where there is no constraint; where it is over `enough`,
+    /// any such number.
     fn check_constraints(&self, enough: f64) -> Result<f64, StartError> {
         if self.constraint_jacobian.nrows() == 0 {
             return Ok(1.0);
