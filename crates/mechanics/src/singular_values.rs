@@ -83,8 +83,7 @@ impl SingularValues {
     }
 
     /// A lower bound of the smallest one of a matrix with no more rows than columns, in a fraction of the
-    /// time:
-    /// `σ = 1/‖L⁻¹‖ ≥ 1/‖L⁻¹‖_F` for Cholesky's `L Lᵀ = A Aᵀ`, less the round-off of `A Aᵀ`. Zero says
+    /// time: `σ = 1/‖L⁻¹‖ ≥ 1/‖L⁻¹‖_F` for Cholesky's `L Lᵀ = A Aᵀ`, less the round-off of `A Aᵀ`. Zero says
     /// nothing.
     pub fn least_at_least(matrix: &DMatrix<f64>) -> f64 {
         let round_off = 4.0 * (matrix.nrows() + matrix.ncols()) as f64 * f64::EPSILON * matrix.norm_squared();

@@ -37,14 +37,13 @@ impl Dual {
     /// A function with this value and this derivative here.
     #[inline(always)]
     fn of(self, value: f64, derivative: f64) -> Dual {
-        let tangents = self.tangents.0.map(|x| if x == 0.0 { 0.0 } else { derivative * x });
-        Dual { value, tangents: Lanes(tangents) }
+        Dual { value, tangents: self.tangents.map(|x| if x == 0.0 { 0.0 } else { derivative * x }) }
     }
 
     /// `a ẋ + b ẏ`
     #[inline(always)]
     fn combined(a: f64, x: &Lanes, b: f64, y: &Lanes) -> Lanes {
-        Lanes(from_fn(|l| a * x.0[l] + b * y.0[l]))
+        x.zip(*y, |x, y| a * x + b * y)
     }
 }
 
@@ -195,9 +194,9 @@ impl Store<Dual> for Rows<'_> {
             let (mut value, mut sums) = (0.0, [Lanes([0.0; LANES]); 2]);
             for (a, b) in x.iter().zip(y.iter().rev()) {
                 value += a.value * b.value;
-                sums[0] = sums[0] + Lanes(a.tangents.0.map(|t| t * b.value));
+                sums[0] = sums[0] + a.tangents.map(|t| t * b.value);
                 if !square {
-                    sums[1] = sums[1] + Lanes(b.tangents.0.map(|t| t * a.value));
+                    sums[1] = sums[1] + b.tangents.map(|t| t * a.value);
                 }
             }
             let tangents = sums[0] + if square { sums[0] } else { sums[1] };

@@ -1,6 +1,5 @@
 //! Several numbers at once: the same expressions at several points, one per lane.
 
-use std::array::from_fn;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
 use super::scalar::{Product, SeriesScalar, Store, Task, Weights};
@@ -21,14 +20,21 @@ pub const LANES: usize = 8;
 pub struct Lanes(pub [f64; LANES]);
 
 impl Lanes {
+    /// By a loop: closures of array functions are not always inlined, and then take no vector instructions.
     #[inline(always)]
-    fn map(self, f: impl Fn(f64) -> f64) -> Self {
-        Lanes(from_fn(|l| f(self.0[l])))
+    pub(crate) fn map(mut self, f: impl Fn(f64) -> f64) -> Self {
+        for x in &mut self.0 {
+            *x = f(*x);
+        }
+        self
     }
 
     #[inline(always)]
-    fn zip(self, other: Self, f: impl Fn(f64, f64) -> f64) -> Self {
-        Lanes(from_fn(|l| f(self.0[l], other.0[l])))
+    pub(crate) fn zip(mut self, other: Self, f: impl Fn(f64, f64) -> f64) -> Self {
+        for l in 0..LANES {
+            self.0[l] = f(self.0[l], other.0[l]);
+        }
+        self
     }
 }
 

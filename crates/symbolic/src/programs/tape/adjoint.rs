@@ -190,6 +190,6 @@ impl Lanes {
     /// `|slope| size`, of no slope 0.
     #[inline(always)]
     fn share(self, size: f64) -> Lanes {
-        Lanes(std::array::from_fn(|l| if self.0[l] == 0.0 { 0.0 } else { self.0[l].abs() * size }))
+        self.map(|slope| if slope == 0.0 { 0.0 } else { slope.abs() * size })
     }
 }
