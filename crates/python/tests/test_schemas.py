@@ -105,10 +105,10 @@ FIELDS = {
     "integrals:1": "fce403a5",
     "judge:1": "a179924b",
     "linearize:2": "23ef4069",
-    "list:1": "2805792e",
+    "list:1": "63d317db",
     "prove:1": "512b3a1d",
     "review:1": "028cd46a",
-    "show:1": "00a2d3d8",
+    "show:1": "78073c3b",
     "solve:2": "1889c125",
 }
 
