@@ -5,7 +5,7 @@ use motion::shooting::{Minimum, least_from};
 use crate::distribution::normal_tails;
 use crate::profile::{NORMAL, Profile};
 use crate::residual_tests::{ResidualTest, residual_tests};
-use crate::search::{Found, search};
+use crate::search::{Excluding, Found, search};
 use crate::shown::{Near, Shown, moving, off_stationary, shown};
 use crate::{Film, FitError, Problem, Residual, Unknown};
 
@@ -67,8 +67,8 @@ pub struct Fit {
     pub reached: usize,
     /// The least χ² that the first half of the starts leads to; infinite where they lead nowhere.
     pub by_half: f64,
-    /// Samples of a beginning of the films that excludes it, and the significance.
-    pub excluded_by: Option<(usize, f64)>,
+    /// The beginning of the films that excludes the formulation.
+    pub excluded_by: Option<Excluding>,
     /// The residuals.
     pub residuals: Vec<Residual>,
 }
