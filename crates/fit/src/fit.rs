@@ -7,7 +7,7 @@ use serde::Serialize;
 use crate::distribution::normal_tails;
 use crate::profile::{NORMAL, Profile};
 use crate::residual_tests::{ResidualTest, residual_tests};
-use crate::search::{Found, search};
+use crate::search::{Excluding, Found, search};
 use crate::shown::{Near, Shown, moving, off_stationary, shown};
 use crate::{Film, FitError, Problem, Residual, Unknown};
 
@@ -73,9 +73,9 @@ pub struct Fit {
     /// The least χ² that the first half of the starts leads to; infinite where they lead nowhere.
     #[schemars(with = "Option<f64>")]
     pub by_half: f64,
-    /// Samples of a beginning of the films that excludes it, and the significance.
+    /// The beginning of the films that excludes the formulation.
     #[serde(skip)]
-    pub excluded_by: Option<(usize, f64)>,
+    pub excluded_by: Option<Excluding>,
     /// The residuals.
     #[serde(skip)]
     pub residuals: Vec<Residual>,

@@ -72,7 +72,7 @@ pub use problem::{Problem, Residual};
 pub use quantity::{quantity, unit};
 pub use question::{Question, ROBUST, formulations};
 pub use residual_tests::{ResidualTest, residual_tests, runs, whiteness};
-pub use search::{Found, search};
+pub use search::{Excluding, Found, search};
 pub use shown::{Shown, standard_errors};
 pub use unknown::{Prior, Unknown};
 pub use verdict::{Row, Verdict, significance, verdicts};

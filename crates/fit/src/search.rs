@@ -52,9 +52,12 @@ pub struct Found {
     pub minima: Vec<Minimum>,
     /// Number of starts that were followed: fewer than asked for if some coincide.
     pub starts: usize,
-    /// Samples of a beginning of the films that excludes it, and the significance.
-    pub excluded_by: Option<(usize, f64)>,
+    /// The beginning of the films that excludes the formulation.
+    pub excluded_by: Option<Excluding>,
 }
+
+/// Samples of a beginning of the films, and the significance at which it excludes a formulation.
+pub type Excluding = (usize, f64);
 
 /// The least minimum from several starts: the first is [`Problem::start`]; in the others unknowns for which
 /// `moves` says so are moved, by parts of their scales that no period fits; further ones are known before:
@@ -191,7 +194,7 @@ fn followed(
     starts: Vec<Minimum>,
     beside: Option<&(Problem, [Vec<f64>; 2])>,
     reason: &mut Option<String>,
-) -> Result<(Vec<Minimum>, Option<(usize, f64)>), FitError> {
+) -> Result<(Vec<Minimum>, Option<Excluding>), FitError> {
     let (mut part, mut starts, mut excluded_by) = (short, starts, None);
     for number in 0.. {
         for start in &mut starts {
