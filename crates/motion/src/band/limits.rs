@@ -61,8 +61,8 @@ pub(crate) const SAMPLES: usize = 200;
 pub(crate) const LOOKS: usize = 32;
 pub(crate) const FEW: usize = 4;
 
-/// So many ends of steps are looked at in addition, or all, a like number of steps apart: short steps are
-/// where rates are large.
+/// So many ends of steps are looked at in addition, or all: half of them a like number of steps apart, and
+/// those of the shortest, which are where rates are large.
 pub(crate) const ENDS: usize = 64;
 
 /// Number of instants at which sums of terms behind multipliers, and in members behind rates, are computed:

@@ -24,6 +24,6 @@ pub(crate) trait TwoRuns {
     /// Instants at which accumulated round-off is looked for, in the first chart: the start, then equidistant
     /// ones, so many or as many as there are.
     fn equidistant(&self, stretches: usize) -> Vec<f64>;
-    /// Further instants: some ends of steps, or all.
+    /// Further instants: some ends of steps, the shortest among them, or all.
     fn ends_of_steps(&self) -> Vec<f64>;
 }
