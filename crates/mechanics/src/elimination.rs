@@ -33,10 +33,14 @@ pub trait Entry:
     fn inverse(self) -> Option<Self>;
     /// What a pivot is chosen by; 0 for 0.
     fn weight(self) -> f64;
+    /// Whether products with it have no effect: not so of a 0 that may be off.
+    fn is_zero(self) -> bool {
+        self.weight() == 0.0
+    }
     /// Subtracts each factor times its row, rows as long as `into`.
     fn subtract_multiples(into: &mut [Self], factors: &[Self], rows: &[Self]) {
         let multiples = factors.iter().zip(rows.chunks_exact(into.len()));
-        for (&factor, row) in multiples.filter(|(factor, _)| factor.weight() != 0.0) {
+        for (&factor, row) in multiples.filter(|(factor, _)| !factor.is_zero()) {
             into.iter_mut().zip(row).for_each(|(x, &y)| *x = *x - factor * y);
         }
     }
@@ -68,6 +72,10 @@ impl Entry for Bounded {
         // what may be round-off is a pivot only where nothing else is
         if self.may_be_zero() { self.value.abs() * ROUNDED_WEIGHT } else { self.value.abs() }
     }
+
+    fn is_zero(self) -> bool {
+        self.value == 0.0 && self.magnitude == 0.0
+    }
 }
 
 /// Gauss–Jordan elimination of dense `rows`. `pick` is the policy: from the rows and the columns of pivots so
@@ -95,7 +103,7 @@ pub fn eliminate<E: Entry>(
         let pivot: Vec<E> = rows[done].iter().map(|&x| x * over).collect();
         for (_, row) in rows.iter_mut().enumerate().filter(|(i, _)| *i != done) {
             let factor = row[column];
-            if factor.weight() != 0.0 {
+            if !factor.is_zero() {
                 row.iter_mut().zip(&pivot).for_each(|(x, &p)| *x = *x - factor * p);
                 row[column] = E::ZERO;
             }

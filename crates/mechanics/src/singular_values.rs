@@ -32,17 +32,8 @@ impl SingularValues {
             let SingularValues { left, values, right } = Self::of(&matrix.transpose());
             return SingularValues { left: right.transpose(), values, right: left.transpose() };
         }
-        let u = matrix.clone();
-        pulp::Arch::new().dispatch(
-            #[inline(always)]
-            move || Self::by_rotations(u), // can be called once only, and so is inlined
-        )
-    }
-
-    #[inline(always)]
-    fn by_rotations(mut u: DMatrix<f64>) -> Self {
-        let n = u.ncols();
-        let mut v = DMatrix::identity(n, n);
+        let n = matrix.ncols();
+        let (mut u, mut v) = (matrix.clone(), DMatrix::identity(n, n));
         let mut squares: Vec<f64> = u.column_iter().map(|column| column.norm_squared()).collect();
         for _ in 0..SWEEPS {
             let mut turned = false;
@@ -58,9 +49,8 @@ impl SingularValues {
                 let cosine = 1.0 / tangent.hypot(1.0);
                 let sine = cosine * tangent;
                 for m in [&mut u, &mut v] {
-                    let rows = m.nrows();
-                    let (before, after) = m.as_mut_slice().split_at_mut(j * rows);
-                    for (x, y) in before[i * rows..][..rows].iter_mut().zip(&mut after[..rows]) {
+                    let (mut x, mut y) = m.columns_range_pair_mut(i, j);
+                    for (x, y) in x.iter_mut().zip(y.iter_mut()) {
                         (*x, *y) = (*x * cosine - *y * sine, *x * sine + *y * cosine);
                     }
                 }
