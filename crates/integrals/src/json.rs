@@ -188,7 +188,7 @@ impl Integrals {
         };
         Answer {
             scene: &self.scene.name,
-            formulation: &self.formulation,
+            formulation: self.formulation,
             domain: Domain::of(system).almost_every("place"),
             measure: reversed.map(|found| measure(&found.measure)),
             multipliers: reversed

@@ -32,12 +32,12 @@ impl Recombination {
         if system.constraints.len() < 2 {
             return Ok(None);
         }
-        let Some((jacobian, row_scale, ratio)) = nearly_dependent(system, state, NEARLY_DEPENDENT)? else {
+        let Some((scaled, ratio)) = nearly_dependent(system, state, NEARLY_DEPENDENT)? else {
             return Ok(None);
         };
         // Aᵀ = Q R, so that R⁻ᵀ A = Qᵀ
-        let inverse = jacobian.transpose().qr().r().try_inverse();
-        let matrix = inverse.map(|r| r.transpose() * DMatrix::from_diagonal(&row_scale));
+        let inverse = scaled.constraint_jacobian.transpose().qr().r().try_inverse();
+        let matrix = inverse.map(|r| r.transpose() * DMatrix::from_diagonal(&scaled.rows));
         Ok(matrix.filter(|t| t.iter().all(|x| x.is_finite())).map(|matrix| Recombination { matrix, ratio }))
     }
 

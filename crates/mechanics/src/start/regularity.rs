@@ -55,16 +55,16 @@ pub fn check_reactions(system: &System, state: &State) -> Result<(), StartError>
     }
 }
 
-/// `A` in units that make its entries of order 1, the factors of its rows, the ratio of its singular values;
-/// `None` where that is over a limit.
+/// `A` in units that make its entries of order 1, and the ratio of its singular values; `None` where that is
+/// over a limit.
 pub(super) fn nearly_dependent(
     system: &System,
     state: &State,
     limit: f64,
-) -> Result<Option<(DMatrix<f64>, DVector<f64>, f64)>, StartError> {
+) -> Result<Option<(ScaledMatrices, f64)>, StartError> {
     let scaled = Regularity::new(system, &[]).scaled(state, &[])?;
     let ratio = scaled.check_constraints(limit)?;
-    Ok((ratio <= limit).then_some((scaled.constraint_jacobian, scaled.rows, ratio)))
+    Ok((ratio <= limit).then_some((scaled, ratio)))
 }
 
 /// What [`check_regularity`] checks, compiled for values of some parameters.
@@ -121,11 +121,11 @@ impl Regularity {
 }
 
 /// `A` and `M` in units in which their entries are of order 1.
-struct ScaledMatrices {
-    constraint_jacobian: DMatrix<f64>,
+pub(super) struct ScaledMatrices {
+    pub(super) constraint_jacobian: DMatrix<f64>,
     mass: DMatrix<f64>,
     /// Factors of the rows of `A`.
-    rows: DVector<f64>,
+    pub(super) rows: DVector<f64>,
 }
 
 impl ScaledMatrices {
