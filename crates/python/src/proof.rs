@@ -5,7 +5,6 @@ use integrals::{Integrals, NoAnswer, NoMultipliers, Open};
 use integrate::Interrupt;
 use pyo3::prelude::*;
 use scene::Number;
-use serde_json::json;
 
 use crate::system::System;
 use crate::{arguments, background, errors};
@@ -25,7 +24,8 @@ impl System {
         sound.map_err(|contradicted| errors::DeltaqError::new_err(contradicted.to_string()))?;
         Ok(match found {
             Err(reason) => (None, Some(reason)),
-            Ok(found) => (Some(json!(NoMultipliers::of(&found, &self.set())).to_string()), None),
+            // as the program writes it, field by field
+            Ok(found) => (Some(serde_json::to_string(&NoMultipliers::of(&found, &self.set())).map_err(written)?), None),
         })
     }
 
@@ -40,8 +40,12 @@ impl System {
             NoAnswer::Equations(fault) => errors::solve(fault),
             other => errors::DeltaqError::new_err(other.to_string()),
         })?;
-        Ok(json!(found.answer()).to_string())
+        serde_json::to_string(&found.answer()).map_err(written)
     }
+}
+
+fn written(fault: serde_json::Error) -> PyErr {
+    errors::DeltaqError::new_err(fault.to_string())
 }
 
 impl System {
