@@ -47,11 +47,24 @@ fn other_writings_of_a_scene_have_its_sentences() {
     assert!(wrong.is_empty(), "{} wrong\n{}", wrong.len(), wrong.join("\n"));
 }
 
+/// Without removals no rate of their parameters is known: velocities of coordinates instead.
+fn with_velocities_of_coordinates(value: &mut toml::Table, scene: &Scene) {
+    let start = value.get_mut("start").and_then(toml::Value::as_table_mut);
+    let Some(start) = start else { return };
+    let names: Vec<String> = scene.system.coordinates.iter().map(|c| format!("{}'", c.name)).collect();
+    let velocities = start.get_mut("velocities").and_then(toml::Value::as_table_mut);
+    if let Some(velocities) = velocities.filter(|given| given.keys().any(|name| !names.contains(name))) {
+        *velocities = names.into_iter().zip(scene.start.v.iter().map(|&v| v.into())).collect();
+        start.insert("project".into(), true.into());
+    }
+}
+
 /// What became of each sentence in each writing, and what is wrong.
 fn of_scene(name: &str, text: &str) -> (Vec<String>, Vec<String>) {
     let (mut lines, mut wrong) = (Vec::new(), Vec::new());
-    let text = Scene::parse(name, text).unwrap_or_else(|fault| panic!("{fault}")).without_bodies(text);
-    let value: toml::Table = text.parse().unwrap_or_else(|fault| panic!("{name}: {fault}"));
+    let scene = Scene::parse(name, text).unwrap_or_else(|fault| panic!("{fault}"));
+    let mut value: toml::Table = scene.without_bodies(text).parse().unwrap_or_else(|fault| panic!("{name}: {fault}"));
+    with_velocities_of_coordinates(&mut value, &scene);
     let read = |value: &toml::Table| Scene::parse(name, &written(value));
     let plain = plain(&value);
     let own = match read(&plain).map_err(|fault| fault.to_string()).and_then(|scene| sentences(&scene, true)) {
