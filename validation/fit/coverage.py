@@ -64,9 +64,9 @@ def fitted(program, scene, text, free, sigma, more=()):
         if "drag" in free:
             source = subprocess.run([program, "show", scene, "--source"], capture_output=True, text=True, check=True).stdout
             source = source.replace("[parameters]", "[parameters]\ndrag = 0", 1)
-            force = 'forces = { x = "-drag*x\'", y = "-drag*y\'" }'
+            force = '[system.forces]\nx = "-drag*x\'"\ny = "-drag*y\'"\n'
             scene = Path(folder) / f"{scene}.toml"
-            scene.write_text(source.replace("[start.velocities]", force + "\n[start.velocities]", 1))
+            scene.write_text(source.replace("[start.velocities]", force + "[start.velocities]", 1))
         for number in SET.get(scene, []):
             more = [*more, "--set", number]
         scene = "turntable" if scene in VIOLENT else scene
