@@ -367,7 +367,8 @@ impl Sheet {
                     - others.map(apart).fold(WIDTH, f64::min) / WIDTH
             };
             let places = path.iter().step_by(path.len() / 64 + 1).flat_map(|&place| beside(place)).filter(inside);
-            let Some((x, y)) = places.min_by(|&a, &b| cost(a).total_cmp(&cost(b))) else { continue };
+            let priced = places.map(|place| (cost(place), place));
+            let Some((_, (x, y))) = priced.min_by(|a, b| a.0.total_cmp(&b.0)) else { continue };
             covered.extend((0..=8).map(|k| (x + wide * f64::from(k) / 8.0, y - LABEL_SIZE / 2.0)));
             *out += &format!(
                 "<text x=\"{}\" y=\"{}\" font-size=\"{LABEL_SIZE}\" font-weight=\"600\" fill=\"{}\">{name}</text>\n",
