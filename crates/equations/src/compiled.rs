@@ -5,6 +5,7 @@ use symbolic::{CompileError, Evaluator, Expr};
 use crate::blocks::{CompiledBlock, EvaluationFailure};
 use crate::equations::Equations;
 use crate::jacobian::Jacobian;
+use crate::of_instant::OfInstant;
 use crate::outputs::{Cost, Outputs, Sizes};
 use crate::plan::Plan;
 use crate::planned::Planned;
@@ -26,11 +27,11 @@ pub struct Compiled {
     pub(crate) left: Vec<usize>,
     fallbacks: usize,
     pub(crate) guards: Evaluator<f64>,
-    pub(crate) angles: Evaluator<f64>,
-    pub(crate) steep: Evaluator<f64>,
+    pub(crate) angles: OfInstant,
+    pub(crate) steep: OfInstant,
     pub(crate) gauges: Vec<fn(f64) -> f64>,
     pub(crate) highest_power: f64,
-    pub(crate) divisors: Evaluator<f64>,
+    pub(crate) divisors: OfInstant,
     pub(crate) rows: Option<Rows>,
     /// Programs in terms, once these are asked for.
     pub(crate) terms: Option<Box<Terms>>,
@@ -106,9 +107,9 @@ impl Compiled {
             guards: equations.evaluator(&known, &guards)?,
             highest_power: equations.highest_power(),
             gauges: steep.iter().map(|steep| steep.gauge).collect(),
-            steep: equations.evaluator(&known, &steep.iter().map(|steep| steep.argument).collect::<Vec<_>>())?,
-            angles: equations.evaluator(&known, &equations.angles())?,
-            divisors: equations.evaluator(&known, &equations.divisors())?,
+            steep: OfInstant::new(equations, &steep.iter().map(|steep| steep.argument).collect::<Vec<_>>())?,
+            angles: OfInstant::new(equations, &equations.angles())?,
+            divisors: OfInstant::new(equations, &equations.divisors())?,
             rows: Rows::new(equations)?,
             terms: None,
             projector: equations.projection.as_ref().map(|p| Projector::new(equations, p, &known)).transpose()?,
@@ -369,6 +370,12 @@ impl Compiled {
     pub(crate) fn load(&mut self, t: f64, y: &[f64]) {
         self.inputs[0] = t;
         self.inputs[1..1 + y.len()].copy_from_slice(y);
+    }
+
+    /// Loads `(t, y)`, and solves the equations of the instant there if they are needed.
+    pub(crate) fn reach(&mut self, need_unknowns: bool, t: f64, y: &[f64]) -> Result<(), EvaluationFailure> {
+        self.load(t, y);
+        if need_unknowns { self.solve_instant(t, y) } else { Ok(()) }
     }
 
     pub(crate) fn solve_instant(&mut self, t: f64, y: &[f64]) -> Result<(), EvaluationFailure> {

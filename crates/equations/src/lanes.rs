@@ -42,8 +42,13 @@ impl LaneEquations {
                 "not in lanes: functions in the equations may change within a step, which looks closer".into()
             ));
         }
-        if equations.rows_need_unknowns() {
+        let rows = equations.rows.as_ref().map_or(&[][..], |rows| rows.jacobian.entries());
+        if equations.need_unknowns(rows) {
             return Ok(Err("not in lanes: the rows of the constraints contain unknowns of the instant".into()));
+        }
+        let divisors = equations.divisors();
+        if equations.need_unknowns(&divisors) {
+            return Ok(Err("not in lanes: unknowns of the instant stand in a divisor that may vanish".into()));
         }
         let projection = match Projection::new(equations, point)? {
             Ok(projection) => projection,
@@ -64,7 +69,7 @@ impl LaneEquations {
             series,
             condition: condition.transpose()?,
             guards: equations.evaluator(&known, &equations.guards)?,
-            divisors: equations.evaluator(&known, &equations.divisors())?,
+            divisors: equations.evaluator(&known, &divisors)?,
             rows: rows.transpose()?,
             projection,
             states: equations.states.len(),

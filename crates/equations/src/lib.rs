@@ -68,6 +68,7 @@ mod formulation;
 mod jacobian;
 mod lanes;
 mod leave_out;
+mod of_instant;
 mod outputs;
 mod parts;
 mod plan;

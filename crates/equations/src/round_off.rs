@@ -10,7 +10,7 @@ impl Compiled {
     /// With its programs in terms, which are made once.
     fn with_terms<T>(&mut self, evaluate: impl FnOnce(&mut Self, &mut Terms) -> T) -> T {
         let mut terms = self.terms.take().unwrap_or_else(|| {
-            let programs = [&self.rates, &self.outputs, &self.steep];
+            let programs = [&self.rates, &self.outputs, &self.steep.program];
             Box::new(Terms::new(programs, &self.equations_of_instant, self.planned.as_ref()))
         });
         let found = evaluate(self, &mut terms);
@@ -106,10 +106,21 @@ impl Compiled {
     }
 
     /// The sum of magnitudes behind each argument of [`Compiled::gauges`] at `(t, y)`.
-    pub fn terms_of_gauged(&mut self, t: f64, y: &[f64], terms: &mut [f64]) {
-        self.load(t, y);
-        let inputs = bounded(&self.inputs[..self.sizes.known()]);
-        self.with_terms(|_, programs| terms.copy_from_slice(&magnitudes(programs.steep.evaluate(&inputs))));
+    ///
+    /// # Errors
+    /// As [`Compiled::rates`].
+    pub fn terms_of_gauged(&mut self, t: f64, y: &[f64], terms: &mut [f64]) -> Result<(), EvaluationFailure> {
+        self.with_terms(|compiled, programs| {
+            let inputs = match compiled.steep.need_unknowns {
+                true => compiled.in_terms(t, y, y, programs)?,
+                false => {
+                    compiled.load(t, y);
+                    bounded(&compiled.inputs)
+                }
+            };
+            terms.copy_from_slice(&magnitudes(programs.steep.evaluate(&inputs[..compiled.steep.inputs])));
+            Ok(())
+        })
     }
 
     /// `t, y, constants, z`, with what was added up to `y` and to `z`.

@@ -1,18 +1,16 @@
 //! The rows `A = ∂f/∂v` of the constraints as numbers.
 
 use nalgebra::DMatrix;
-use symbolic::{CompileError, Evaluator};
+use symbolic::CompileError;
 
 use crate::equations::Equations;
+use crate::of_instant::OfInstant;
 
 /// [`Equations::rows`], compiled.
 #[derive(Clone)]
 pub(crate) struct Rows {
-    pub(crate) program: Evaluator<f64>,
+    pub(crate) entries: OfInstant,
     pub(crate) shape: (usize, usize),
-    /// Whether they contain unknowns of the instant, and the number of inputs.
-    pub(crate) need_unknowns: bool,
-    pub(crate) inputs: usize,
     /// [`crate::ConstraintRows::replaceable`].
     pub(crate) replaceable: bool,
 }
@@ -20,32 +18,18 @@ pub(crate) struct Rows {
 impl Rows {
     pub(crate) fn new(equations: &Equations) -> Result<Option<Self>, CompileError> {
         let Some(rows) = &equations.rows else { return Ok(None) };
-        let mut inputs = equations.known_symbols();
-        let need_unknowns = equations.rows_need_unknowns();
-        if need_unknowns {
-            inputs.extend(equations.unknowns());
-        }
-        let program = equations.evaluator(&inputs, rows.jacobian.entries())?;
+        let entries = OfInstant::new(equations, rows.jacobian.entries())?;
         let shape = (rows.jacobian.rows(), rows.jacobian.columns());
-        let replaceable = rows.replaceable && !need_unknowns;
-        Ok(Some(Rows { program, shape, need_unknowns, inputs: inputs.len(), replaceable }))
+        let replaceable = rows.replaceable && !entries.need_unknowns;
+        Ok(Some(Rows { entries, shape, replaceable }))
     }
 
     /// `1/det(N Nᵀ)` of the rows `N`, made of length 1: 1 where they are orthogonal, and large where they
     /// nearly depend.
     pub(crate) fn dependence(&mut self, inputs: &[f64]) -> f64 {
         let (h, n) = self.shape;
-        let entries = DMatrix::from_row_slice(h, n, self.program.evaluate(&inputs[..self.inputs]));
+        let entries = DMatrix::from_row_slice(h, n, self.entries.evaluate(inputs));
         let lengths: f64 = entries.row_iter().map(|row| row.norm_squared()).product();
         lengths / (&entries * entries.transpose()).determinant()
-    }
-}
-
-impl Equations {
-    /// Whether [`Equations::rows`] contain unknowns of the instant.
-    pub(crate) fn rows_need_unknowns(&self) -> bool {
-        let entries = self.rows.iter().flat_map(|rows| rows.jacobian.entries().iter().copied());
-        let behind = self.symbols_behind(entries);
-        self.unknowns().iter().any(|z| behind.contains(z))
     }
 }

@@ -10,15 +10,9 @@ use crate::compiled::Compiled;
 use crate::equations::Equations;
 
 impl Equations {
-    /// Rapidly varying functions in the equations whose arguments are known before the acceleration-level
-    /// system is solved.
+    /// Rapidly varying functions in the equations.
     pub fn steep(&self) -> Vec<Steep> {
-        let mut steep = self.graph.steep(&self.all(), &self.values());
-        if !steep.is_empty() {
-            let is_known = self.is_known();
-            steep.retain(|steep| is_known(steep.argument));
-        }
-        steep
+        self.graph.steep(&self.all(), &self.values())
     }
 
     /// The highest power of an unbounded quantity in the equations: [`symbolic::Graph::highest_power`].
@@ -26,23 +20,17 @@ impl Equations {
         self.graph.highest_power(&self.all(), &self.values())
     }
 
-    /// Angles of points in the equations, in the same way: [`symbolic::Graph::angles`].
+    /// Angles of points in the equations: [`symbolic::Graph::angles`].
     pub fn angles(&self) -> Vec<Expr> {
-        let mut angles = self.graph.angles(&self.all());
-        if !angles.is_empty() {
-            let is_known = self.is_known();
-            angles.retain(|&angle| is_known(angle));
-        }
-        angles
+        self.graph.angles(&self.all())
     }
 
-    /// Divisors in the equations that change along a motion and may vanish, in the same way:
-    /// [`symbolic::Graph::divisors`].
+    /// Divisors in the equations that change along a motion and may vanish: [`symbolic::Graph::divisors`].
     pub fn divisors(&self) -> Vec<Expr> {
         let mut divisors = self.graph.divisors(&self.all(), &self.values());
         if !divisors.is_empty() {
-            let (is_known, moving) = (self.is_known(), self.moving());
-            divisors.retain(|&divisor| is_known(divisor) && !self.symbols_behind([divisor]).is_disjoint(&moving));
+            let moving = self.moving();
+            divisors.retain(|&divisor| !self.symbols_behind([divisor]).is_disjoint(&moving));
         }
         divisors
     }
@@ -51,9 +39,9 @@ impl Equations {
         self.parameters.iter().map(|(&s, &value)| (s, Range::point(value))).collect()
     }
 
-    /// Symbols of time and states.
+    /// Symbols of time, states and unknowns.
     fn moving(&self) -> HashSet<Symbol> {
-        self.state_symbols().into_iter().chain([self.time]).collect()
+        self.state_symbols().into_iter().chain([self.time]).chain(self.unknowns()).collect()
     }
 
     /// All expressions that are evaluated for the rates.
@@ -62,14 +50,6 @@ impl Equations {
         let residuals = self.blocks.iter().flat_map(|block| block.residuals.iter().copied());
         let rates = self.states.iter().map(|y| y.rate);
         definitions.chain(residuals).chain(rates).chain(self.given.iter().copied()).collect()
-    }
-
-    /// Whether something is known before the instant is solved.
-    fn is_known(&self) -> impl Fn(Expr) -> bool {
-        let defined = self.definitions.iter().map(|(symbol, _)| *symbol);
-        let mut known: HashSet<Symbol> = defined.chain(self.known_symbols()).collect();
-        known.extend(self.parameters.keys());
-        move |e| self.symbols_behind([e]).is_subset(&known)
     }
 }
 
@@ -85,26 +65,37 @@ impl Compiled {
     }
 
     /// The arguments of these functions.
-    pub fn gauged(&mut self, t: f64, y: &[f64], arguments: &mut [f64]) {
-        self.load(t, y);
-        arguments.copy_from_slice(self.steep.evaluate(&self.inputs[..self.sizes.known()]));
+    ///
+    /// # Errors
+    /// As [`Compiled::rates`].
+    pub fn gauged(&mut self, t: f64, y: &[f64], arguments: &mut [f64]) -> Result<(), EvaluationFailure> {
+        self.reach(self.steep.need_unknowns, t, y)?;
+        arguments.copy_from_slice(self.steep.evaluate(&self.inputs));
+        Ok(())
     }
 
     /// The angles of points in the equations: [`symbolic::Graph::angles`].
-    pub fn angles(&mut self, t: f64, y: &[f64]) -> Vec<f64> {
-        self.load(t, y);
-        self.angles.evaluate(&self.inputs[..self.sizes.known()]).to_vec()
+    ///
+    /// # Errors
+    /// As [`Compiled::rates`].
+    pub fn angles(&mut self, t: f64, y: &[f64]) -> Result<Vec<f64>, EvaluationFailure> {
+        self.reach(self.angles.need_unknowns, t, y)?;
+        Ok(self.angles.evaluate(&self.inputs).to_vec())
     }
 
     /// Number of [`Equations::divisors`].
     pub fn divisors(&self) -> usize {
-        self.divisors.values().len()
+        self.divisors.count()
     }
 
     /// The values of what the equations divide by.
-    pub fn divided(&mut self, t: f64, y: &[f64], values: &mut [f64]) {
-        self.load(t, y);
-        values.copy_from_slice(self.divisors.evaluate(&self.inputs[..self.sizes.known()]));
+    ///
+    /// # Errors
+    /// As [`Compiled::rates`].
+    pub fn divided(&mut self, t: f64, y: &[f64], values: &mut [f64]) -> Result<(), EvaluationFailure> {
+        self.reach(self.divisors.need_unknowns, t, y)?;
+        values.copy_from_slice(self.divisors.evaluate(&self.inputs));
+        Ok(())
     }
 
     /// Rows and columns of [`Equations::rows`]; `(0, 0)` where there are none.
@@ -117,12 +108,9 @@ impl Compiled {
     /// # Errors
     /// As [`Compiled::rates`].
     pub fn rows(&mut self, t: f64, y: &[f64], entries: &mut [f64]) -> Result<(), EvaluationFailure> {
-        self.load(t, y);
-        if self.rows.as_ref().is_some_and(|rows| rows.need_unknowns) {
-            self.solve_instant(t, y)?;
-        }
+        self.reach(self.rows.as_ref().is_some_and(|rows| rows.entries.need_unknowns), t, y)?;
         if let Some(rows) = &mut self.rows {
-            entries.copy_from_slice(rows.program.evaluate(&self.inputs[..rows.inputs]));
+            entries.copy_from_slice(rows.entries.evaluate(&self.inputs));
         }
         Ok(())
     }

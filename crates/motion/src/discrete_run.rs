@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 
 use discrete::{DiscreteError, Trajectory};
-use equations::{Compiled, Equations};
+use equations::{Compiled, Equations, EvaluationFailure};
 use integrate::{GAUGE_LIMIT, GAUGE_NODES, cosine, gauge_growth, may_lose_rank, orthonormal};
 use mechanics::System;
 use symbolic::Symbol;
@@ -95,7 +95,8 @@ impl DiscreteRun {
             }
             let Some(from) = from.replace((t, y.clone())) else { continue };
             let begin = from.0;
-            if let Some(j) = jump(compiled, &from, &(t, y.clone())) {
+            let Ok(jump) = jump(compiled, &from, &(t, y.clone())) else { break };
+            if let Some(j) = jump {
                 let angle = in_own_names(equations, angles[j]);
                 let cause = format!(
                     "a step of {kept:.3e} passes over a jump of the rates, where {angle} passes from π to −π; steps can \
@@ -166,19 +167,19 @@ fn between(from: &Node, to: &Node, theta: f64) -> Node {
 }
 
 /// The first angle that passes from π to −π or back from node to node, where the rates jump with it.
-fn jump(compiled: &mut Compiled, from: &Node, to: &Node) -> Option<usize> {
+fn jump(compiled: &mut Compiled, from: &Node, to: &Node) -> Result<Option<usize>, EvaluationFailure> {
     /// Rates that differ by less than this part of the largest on both sides of a place do not jump there.
     const CONTINUOUS: f64 = 1e-6;
     const HALVINGS: usize = 45;
     let places: [Node; GAUGE_NODES] = std::array::from_fn(|k| between(from, to, k as f64 / (GAUGE_NODES - 1) as f64));
     for pair in places.windows(2) {
         let passes = |a: f64, b: f64| (a - b).abs() > PI;
-        let (low, high) = (compiled.angles(pair[0].0, &pair[0].1), compiled.angles(pair[1].0, &pair[1].1));
+        let (low, high) = (compiled.angles(pair[0].0, &pair[0].1)?, compiled.angles(pair[1].0, &pair[1].1)?);
         for j in (0..low.len()).filter(|&j| passes(low[j], high[j])) {
             let (mut low, mut high) = (pair[0].clone(), pair[1].clone());
             for _ in 0..HALVINGS {
                 let middle = between(&low, &high, 0.5);
-                match passes(compiled.angles(low.0, &low.1)[j], compiled.angles(middle.0, &middle.1)[j]) {
+                match passes(compiled.angles(low.0, &low.1)?[j], compiled.angles(middle.0, &middle.1)?[j]) {
                     true => high = middle,
                     false => low = middle,
                 }
@@ -188,11 +189,11 @@ fn jump(compiled: &mut Compiled, from: &Node, to: &Node) -> Option<usize> {
             let largest = before.iter().chain(&behind).fold(0.0_f64, |most, x| most.max(x.abs()));
             let jumps = |(a, b): (&f64, &f64)| (a - b).abs() > CONTINUOUS * largest;
             if read.is_err() || before.iter().zip(&behind).any(jumps) {
-                return Some(j);
+                return Ok(Some(j));
             }
         }
     }
-    None
+    Ok(None)
 }
 
 /// The gauge that grows most from node to node, and whether it grows too much.
@@ -201,7 +202,8 @@ fn steepest(compiled: &mut Compiled, from: &Node, to: &Node) -> (usize, bool) {
     let along: [Vec<f64>; GAUGE_NODES] = std::array::from_fn(|k| {
         let (t, y) = between(from, to, k as f64 / (GAUGE_NODES - 1) as f64);
         let mut arguments = vec![0.0; gauges.len()];
-        compiled.gauged(t, &y, &mut arguments);
+        // nothing is known of what an instant that cannot be solved does
+        compiled.gauged(t, &y, &mut arguments).unwrap_or_else(|_| arguments.fill(f64::NAN));
         arguments
     });
     let growth = |j: usize| gauge_growth(gauges[j], &std::array::from_fn(|k| along[k][j]));

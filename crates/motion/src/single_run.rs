@@ -212,19 +212,19 @@ impl Problem for Runner<'_> {
         self.compiled.highest_power()
     }
     fn gauged(&mut self, t: f64, y: &[f64], arguments: &mut [f64]) -> Result<(), integrate::EvaluationError> {
-        self.compiled.gauged(t, &y[..self.compiled.dimension()], arguments);
-        Ok(())
+        let own = self.compiled.dimension();
+        self.compiled.gauged(t, &y[..own], arguments).map_err(refused)
     }
     fn terms_of_gauged(&mut self, t: f64, y: &[f64], terms: &mut [f64]) -> Result<(), integrate::EvaluationError> {
-        self.compiled.terms_of_gauged(t, &y[..self.compiled.dimension()], terms);
-        Ok(())
+        let own = self.compiled.dimension();
+        self.compiled.terms_of_gauged(t, &y[..own], terms).map_err(refused)
     }
     fn divisors(&self) -> usize {
         self.compiled.divisors()
     }
     fn divided(&mut self, t: f64, y: &[f64], values: &mut [f64]) -> Result<(), integrate::EvaluationError> {
-        self.compiled.divided(t, &y[..self.compiled.dimension()], values);
-        Ok(())
+        let own = self.compiled.dimension();
+        self.compiled.divided(t, &y[..own], values).map_err(refused)
     }
     fn terms_of_rates(&mut self, t: f64, y: &[f64], terms: &mut [f64]) -> Result<(), integrate::EvaluationError> {
         let own = self.compiled.dimension();

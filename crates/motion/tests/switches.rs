@@ -2,8 +2,8 @@
 
 use discrete::Composition;
 use motion::{
-    Ensemble, EnsembleOptions, Motion, Settings, SolveError, Steps, choices, error_estimate, setting, shared_text,
-    solve_by_steps, solve_choice,
+    Ensemble, EnsembleOptions, Motion, Settings, SolveError, Steps, VAKONOMIC_COSTATE, choices, error_estimate,
+    setting, shared_text, solve_by_steps, solve_choice,
 };
 use scene::Scene;
 
@@ -260,4 +260,36 @@ fn steps_are_as_long_as_their_impulses_allow() {
     };
     let [coarse, fine] = [off(0.01), off(0.005)];
     assert!(coarse < 1e-4 && (3.0..5.0).contains(&(coarse / fine)), "{coarse:e} {fine:e}");
+}
+
+#[test]
+fn switches_of_velocities_are_seen_where_velocities_are_unknowns_of_the_instant() {
+    // M is not diagonal, so that the costate form solves p = M v at every instant
+    let forces = [
+        "1 - step(x', 0.5, 0.52, 1e-9)/2",
+        "cos(t) + 0.3*step(x', 0.5, 0.52, 1e-6)",
+        "cos(t) + 0.5*exp(-((x' - 0.55)*1000)^2)",
+        "cos(t) + 3*exp(-((x' - 0.85)*1000)^2)",
+    ];
+    for force in forces {
+        let scene = scene(
+            "[coordinates]\nx = { start = 0 }\ny = { start = 0 }",
+            &format!(
+                "lagrangian = \"x'^2/2 + y'^2/2 + cos(y)*x'*y'/2\"\nforces = {{ x = \"{force}\", y = \"sin(t)\" }}"
+            ),
+            "\"x'\" = 0.2\n\"y'\" = 0.3",
+            "duration = 10",
+        );
+        let choices = choices(&scene);
+        assert!(choices.iter().any(|choice| choice.formulation == VAKONOMIC_COSTATE));
+        let ends = choices.iter().map(|choice| {
+            let mut motion = solve_choice(&scene, choice, &Settings::default()).unwrap();
+            assert!(motion.is_complete(), "{force}: {:?}", motion.ending);
+            motion.at(10.0).unwrap().coordinates
+        });
+        let ends: Vec<Vec<f64>> = ends.collect();
+        for end in &ends {
+            assert!(end.iter().zip(&ends[0]).all(|(a, b)| (a - b).abs() < 1e-8), "{force}: {ends:?}");
+        }
+    }
 }
