@@ -372,12 +372,6 @@ impl Compiled {
         self.inputs[1..1 + y.len()].copy_from_slice(y);
     }
 
-    /// Loads `(t, y)`, and solves the equations of the instant there if they are needed.
-    pub(crate) fn reach(&mut self, need_unknowns: bool, t: f64, y: &[f64]) -> Result<(), EvaluationFailure> {
-        self.load(t, y);
-        if need_unknowns { self.solve_instant(t, y) } else { Ok(()) }
-    }
-
     pub(crate) fn solve_instant(&mut self, t: f64, y: &[f64]) -> Result<(), EvaluationFailure> {
         self.load(t, y);
         self.solve_blocks(Blocks::All)

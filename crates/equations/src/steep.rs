@@ -54,6 +54,12 @@ impl Equations {
 }
 
 impl Compiled {
+    /// Loads `(t, y)`, and solves the equations of the instant there if they are needed.
+    fn reach(&mut self, need_unknowns: bool, t: f64, y: &[f64]) -> Result<(), EvaluationFailure> {
+        self.load(t, y);
+        if need_unknowns { self.solve_instant(t, y) } else { Ok(()) }
+    }
+
     /// Gauges of functions that may change within little of their arguments: [`symbolic::Steep`].
     pub fn gauges(&self) -> &[fn(f64) -> f64] {
         &self.gauges
