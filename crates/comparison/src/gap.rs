@@ -3,6 +3,7 @@
 use integrate::find_root;
 
 use motion::band::{Answer, Band, CERTAINTY, Known, NoInformation, SAME_ESTIMATE, ask, ask_alone};
+use motion::numbers::precise;
 use motion::{Ending, Metric, Motion, SolveError, larger, subtract};
 
 /// Gaps whose first times are reported.
@@ -264,7 +265,7 @@ fn unknown(motions: [&Motion; 2], bands: &[Band; 2], samples: &[Sample], metric:
         return Some(doubt.because.clone());
     }
     if let Some((t, cause)) = earlier_stop(motions) {
-        return Some(format!("no difference up to t = {t:.6}, where one stops: {cause}"));
+        return Some(format!("no difference up to t = {}, where one stops: {cause}", precise(t)));
     }
     let ways = bands.each_ref().map(Band::way);
     let way = Known { error: larger(ways[0].error, ways[1].error), ..ways[0] };

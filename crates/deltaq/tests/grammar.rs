@@ -260,7 +260,7 @@ fn equations(draw: &mut Draw, names: &[&str]) -> String {
 }
 
 /// The code with which a call ended; or what is wrong with how it did.
-fn ended(call: &[String]) -> Result<Option<i32>, String> {
+fn ended(scene: u64, call: &[String]) -> Result<Option<i32>, String> {
     let clock = Instant::now();
     let words: Vec<&str> = call.iter().map(|word| &word[..]).collect();
     let mut child = command(&words)
@@ -274,7 +274,7 @@ fn ended(call: &[String]) -> Result<Option<i32>, String> {
         if clock.elapsed() > Duration::from_secs(PATIENCE) {
             child.kill().expect("it can be stopped");
             let _ = child.wait();
-            println!("stopped after {PATIENCE} s: {}", call.join(" "));
+            println!("stopped after {PATIENCE} s: scene {scene}, {}", call.join(" "));
             return Ok(None);
         }
         std::thread::sleep(Duration::from_millis(2));
@@ -310,7 +310,7 @@ fn no_scene_of_the_language_makes_a_command_fail() {
             .expect("written");
         std::fs::write(folder.path().join("equations.txt"), equations(&mut draw, &names)).expect("written");
         for call in calls(&mut draw, &path.display().to_string(), folder.path(), &names) {
-            match ended(&call) {
+            match ended(n, &call) {
                 Ok(code) => *codes.entry((call[0].clone(), code)).or_insert(0) += 1,
                 Err(fault) => {
                     println!("scene {n}, {}: {fault}\n{text}", call.join(" "));

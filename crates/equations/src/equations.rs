@@ -152,6 +152,8 @@ pub struct Equations {
     /// `L`, `f` and `Q` as they were given: simplification may hide rapidly varying functions, for instance
     /// `1/(1 + u²)`.
     pub given: Vec<Expr>,
+    /// Symbols of `q`, then of `q̇`, in these.
+    pub own: Vec<Symbol>,
     /// Intermediate quantities in `(t, y, z)` and earlier ones, see [`crate::Definitions`]. Blocks and guards
     /// need only those without `z`.
     pub definitions: Vec<(Symbol, Expr)>,
@@ -209,6 +211,7 @@ impl Equations {
             time: system.time,
             parameters: system.parameter_values(),
             given: system.written(),
+            own: [system.positions(), system.velocities()].concat(),
             definitions: Vec::new(),
             derivatives: Vec::new(),
             states: Vec::new(),

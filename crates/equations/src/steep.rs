@@ -12,7 +12,9 @@ use crate::equations::Equations;
 impl Equations {
     /// Rapidly varying functions in the equations.
     pub fn steep(&self) -> Vec<Steep> {
-        self.graph.steep(&self.all(), &self.values())
+        let steep = self.graph.steep(&self.all(), &self.values());
+        let told = self.told(steep.iter().map(|steep| steep.argument));
+        steep.into_iter().zip(told).filter_map(|(steep, told)| Some(Steep { argument: told?, ..steep })).collect()
     }
 
     /// The highest power of an unbounded quantity in the equations: [`symbolic::Graph::highest_power`].
@@ -22,17 +24,31 @@ impl Equations {
 
     /// Angles of points in the equations: [`symbolic::Graph::angles`].
     pub fn angles(&self) -> Vec<Expr> {
-        self.graph.angles(&self.all())
+        self.told(self.graph.angles(&self.all())).into_iter().flatten().collect()
     }
 
     /// Divisors in the equations that change along a motion and may vanish: [`symbolic::Graph::divisors`].
     pub fn divisors(&self) -> Vec<Expr> {
-        let mut divisors = self.graph.divisors(&self.all(), &self.values());
-        if !divisors.is_empty() {
-            let moving = self.moving();
-            divisors.retain(|&divisor| !self.symbols_behind([divisor]).is_disjoint(&moving));
+        let divisors = self.told(self.graph.divisors(&self.all(), &self.values()));
+        let moving = if divisors.is_empty() { HashSet::new() } else { self.moving() };
+        let moves = |divisor: &Expr| !self.symbols_behind([*divisor]).is_disjoint(&moving);
+        divisors.into_iter().flatten().filter(moves).collect()
+    }
+
+    /// Quantities in `(t, y, z)`, with outputs in the place of coordinates and velocities that are neither
+    /// states nor unknowns; `None` where the equations do not tell one.
+    fn told(&self, quantities: impl IntoIterator<Item = Expr>) -> Vec<Option<Expr>> {
+        let mut quantities = quantities.into_iter().peekable();
+        if quantities.peek().is_none() {
+            return Vec::new();
         }
-        divisors
+        let defined = self.definitions.iter().map(|(symbol, _)| *symbol);
+        let mut told: HashSet<Symbol> = defined.chain(self.known_symbols()).chain(self.unknowns()).collect();
+        told.extend(self.parameters.keys());
+        let outputs = self.own.iter().copied().zip(self.coordinates.iter().chain(&self.velocities).copied());
+        let outputs: HashMap<Symbol, Expr> = outputs.filter(|(own, _)| !told.contains(own)).collect();
+        let is_told = |e: &Expr| self.symbols_behind([*e]).is_subset(&told);
+        quantities.map(|e| Some(self.graph.substitute(e, &outputs)).filter(is_told)).collect()
     }
 
     fn values(&self) -> HashMap<Symbol, Range> {

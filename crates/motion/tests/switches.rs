@@ -263,23 +263,28 @@ fn steps_are_as_long_as_their_impulses_allow() {
 }
 
 #[test]
-fn switches_of_velocities_are_seen_where_velocities_are_unknowns_of_the_instant() {
-    // M is not diagonal, so that the costate form solves p = M v at every instant
-    let forces = [
-        "1 - step(x', 0.5, 0.52, 1e-9)/2",
-        "cos(t) + 0.3*step(x', 0.5, 0.52, 1e-6)",
-        "cos(t) + 0.5*exp(-((x' - 0.55)*1000)^2)",
-        "cos(t) + 3*exp(-((x' - 0.85)*1000)^2)",
+fn switches_of_velocities_are_seen_where_velocities_are_unknowns_or_outputs() {
+    // M is not diagonal, so that the costate form solves p = M v at every instant; with a constraint, which is
+    // holonomic, some velocities are combinations of others. All formulations have one motion
+    let free = ("[coordinates]\nx = { start = 0 }\ny = { start = 0 }", "x'^2/2 + y'^2/2 + cos(y)*x'*y'/2", "[]");
+    let bound = (
+        "[coordinates]\nx = { start = 0 }\ny = { start = 0 }\nz = { start = 0 }",
+        "x'^2/2 + y'^2/2 + z'^2/2",
+        "[\"x' - z'*cos(z)\"]",
+    );
+    let cases = [
+        (free, "x", "1 - step(x', 0.5, 0.52, 1e-9)/2"),
+        (free, "x", "cos(t) + 0.3*step(x', 0.5, 0.52, 1e-6)"),
+        (free, "x", "cos(t) + 0.5*exp(-((x' - 0.55)*1000)^2)"),
+        (free, "x", "cos(t) + 3*exp(-((x' - 0.85)*1000)^2)"),
+        (bound, "z", "cos(t) + 3*exp(-((x' - 0.5)*1000)^2)"),
+        (bound, "z", "cos(t) + 3*exp(-((z' - 0.5)*1000)^2)"),
     ];
-    for force in forces {
-        let scene = scene(
-            "[coordinates]\nx = { start = 0 }\ny = { start = 0 }",
-            &format!(
-                "lagrangian = \"x'^2/2 + y'^2/2 + cos(y)*x'*y'/2\"\nforces = {{ x = \"{force}\", y = \"sin(t)\" }}"
-            ),
-            "\"x'\" = 0.2\n\"y'\" = 0.3",
-            "duration = 10",
-        );
+    for ((coordinates, lagrangian, constraints), along, force) in cases {
+        let forces = format!("forces = {{ {along} = \"{force}\", y = \"sin(t)\" }}");
+        let system = format!("lagrangian = \"{lagrangian}\"\nconstraints = {constraints}\n{forces}");
+        let velocities = format!("\"{along}'\" = 0.2\n\"y'\" = 0.3");
+        let scene = scene(coordinates, &system, &velocities, "duration = 10");
         let choices = choices(&scene);
         assert!(choices.iter().any(|choice| choice.formulation == VAKONOMIC_COSTATE));
         let ends = choices.iter().map(|choice| {

@@ -7,6 +7,7 @@ use nalgebra::{DMatrix, DVector};
 
 use crate::charts::{self, Course};
 use crate::direction::Chord;
+use crate::numbers::precise;
 use crate::variational::{PLAIN_RUNS, VariationalRun, Which};
 use crate::{Ending, Prepared, Setting, Settings, SolveError, TIGHTER};
 
@@ -204,7 +205,7 @@ impl Residuals for Search<'_> {
         let AtHorizon { ending, states: end, steps } = reached.map_err(|error| self.refuse(error))?;
         self.took(steps);
         if let Ending::Stopped { t, cause } = ending {
-            return Err(BoundaryError::Residual { reason: format!("the motion stops at t = {t:.6}: {cause}") });
+            return Err(BoundaryError::Residual { reason: format!("the motion stops at t = {}: {cause}", precise(t)) });
         }
         for ((r, &place), size) in residual.iter_mut().zip(&self.places).zip(&self.sizes) {
             *r = end[place] / size;
