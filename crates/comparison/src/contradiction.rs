@@ -223,8 +223,10 @@ impl Comparison {
             let one = format!("the constraint is {}", self.integrability);
             return Some(contradiction(one, format!("every μ₀ gives {family} the motion of {curve} from all starts")));
         }
-        // gaps show what is no small part of a motion's accelerations
-        let clear = membership.decision.least > TRUSTED * membership.decision.acceleration;
+        // gaps show what is no small part of a motion's accelerations, but for impulses that cancel
+        let family_run = self.runs[decided.family].outcome.as_ref();
+        let clear = membership.decision.least > TRUSTED * membership.decision.acceleration
+            && family_run.is_ok_and(|motion| motion.equations.steep().is_empty());
         let same = |fit: &&Fit| {
             (fit.run, fit.target) == (decided.family, decided.curve)
                 && fit.fitted.as_ref().is_some_and(|fitted| fitted.gap.verdict == Verdict::Same)
