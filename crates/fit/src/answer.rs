@@ -123,6 +123,8 @@ fn fit_given(
         }
     }
     // before nothing fits, or one is excluded whose residuals are not far off, other starts
+    let least_of = |fit: &Fitted| fit.as_ref().map_or(f64::INFINITY, |(_, fit)| fit.chi_squared);
+    let mut by_groups: Vec<Vec<f64>> = fits.iter().map(|(_, fit)| vec![least_of(fit)]).collect();
     for group in 1..=GROUPS {
         let (least, some) = (least(&fits), fits.iter().any(fits_well));
         let is_doubtful = |(choice, fit): &(Choice, Fitted)| {
@@ -136,7 +138,10 @@ fn fit_given(
         let again = places.iter().map(|&i| fits[i].0.clone()).collect();
         let again = fit_choices(&scene, again, films, question, group * question.starts, near);
         for (place, (_, again)) in places.into_iter().zip(again) {
-            add(&mut fits[place].1, again);
+            let (fit, by_groups) = (&mut fits[place].1, &mut by_groups[place]);
+            add(fit, again);
+            by_groups.push(least_of(fit));
+            fit.iter_mut().for_each(|(_, fit)| fit.by_half = by_groups[group / 2]);
         }
     }
     let ordered = in_order(&scene, &mut fits, question, near)?;
@@ -194,7 +199,6 @@ fn add(known: &mut Fitted, again: Fitted) {
     keep_less(known, again);
     if let (Some(((a, starts, reached), (b, more, others))), Ok((_, fit))) = (both, known) {
         fit.starts = starts + more;
-        fit.by_half = a;
         let same = (a - b).abs() <= SAME + 1e-3 * a.min(b);
         fit.reached = if same {
             reached + others

@@ -114,6 +114,12 @@ impl Problem {
         }
     }
 
+    /// Whether an unknown is a parameter that may be 0, by its bound and what is known before.
+    pub(crate) fn may_vanish(&self, i: usize) -> bool {
+        let doubt = self.doubt(i);
+        doubt > 0.0 && doubt >= self.start[i].abs() && self.unknowns[i].bound.is_none_or(|bound| bound <= 0.0)
+    }
+
     /// Sets where the search begins.
     ///
     /// # Panics

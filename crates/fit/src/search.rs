@@ -75,8 +75,10 @@ pub fn search(problem: &Problem, moves: &dyn Fn(&str) -> bool, starts: usize, kn
     let problem = &whole.coarse();
     let short = problem.beginning(FIRST.max(2 * problem.unknowns().len()))?;
     let (scale, mut reason) = scales(&mut short.clone());
-    let known_before: Vec<Minimum> = problem.known.iter().map(|known| Minimum::start(0, known.clone())).collect();
-    // they count as starts once, by way of beginnings
+    // what leads from one motion to one minimum is one start, and counts by way of beginnings
+    let before =
+        |(i, known): (usize, &Vec<f64>)| Minimum { reached: usize::from(i == 0), ..Minimum::start(0, known.clone()) };
+    let known_before: Vec<Minimum> = problem.known.iter().enumerate().map(before).collect();
     let mut evaluated = problem.clone();
     let mut near = |start: &&Minimum| {
         let found = evaluated.weighed(&start.unknowns, false);
@@ -98,7 +100,10 @@ pub fn search(problem: &Problem, moves: &dyn Fn(&str) -> bool, starts: usize, kn
         distinct(&mut minima, &scale);
     }
     if starts == 1 || excluded_by.is_none() && !minima.first().is_some_and(|least| fits(problem, least)) {
-        let begun = screened(problem, moves, starts);
+        let mut begun = screened(problem, moves, starts);
+        if starts > 1 && !known {
+            begun.extend(absent(problem));
+        }
         tried += begun.len();
         minima.extend(refined(problem, begun, &scale, Stage::Rough, &mut reason));
     }
@@ -116,10 +121,15 @@ pub fn search(problem: &Problem, moves: &dyn Fn(&str) -> bool, starts: usize, kn
     Ok(Found { best, minima, starts: tried, excluded_by })
 }
 
-/// Minima as high as another, as far as noise can tell, count as one.
+/// Whether χ² is no further above another than noise can tell.
+pub(crate) fn is_as_high(value: f64, least: f64) -> bool {
+    value - least <= SAME[0] + SAME[1] * least
+}
+
+/// Minima as high as another count as one.
 fn as_high(minima: &mut Vec<Minimum>) {
     minima.dedup_by(|b, a| {
-        let same = b.value - a.value <= SAME[0] + SAME[1] * a.value;
+        let same = is_as_high(b.value, a.value);
         if same {
             (a.reached, a.first) = (a.reached + b.reached, a.first.min(b.first));
         }
@@ -259,6 +269,17 @@ pub(crate) fn begun(problem: &Problem, held: &[usize]) -> Vec<f64> {
         seen.into_iter().zip(found.unknowns).for_each(|(i, x)| start[i] = x);
     }
     start
+}
+
+/// The minima with one parameter at 0 each: formulations agree where a parameter is none of theirs.
+fn absent(problem: &Problem) -> Vec<Minimum> {
+    let without = |i: usize| {
+        let mut least = search(&problem.without(i, 0.0), &|_| false, 1, false).ok()?.best.unknowns;
+        least.insert(i, 0.0);
+        Some(Minimum::start(0, least))
+    };
+    let first = problem.first == 0;
+    (0..problem.start().len()).filter(|&i| first && problem.may_vanish(i)).filter_map(without).collect()
 }
 
 /// The change of each unknown that would move the residuals by their extent, as it seems at the start.

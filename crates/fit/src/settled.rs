@@ -4,11 +4,13 @@ use scene::Scene;
 
 use crate::explain::explanations;
 use crate::question::{has_constants, is_law};
-use crate::search::SEVERAL;
+use crate::search::{SEVERAL, is_as_high};
+use crate::verdict::is_part;
 use crate::{Film, Fit, Question, Row, Verdict};
 
-/// An exclusion rests on a least χ² that several starts reach: of the whole films, or of their beginnings,
-/// which have no more minima than tell. Elsewhere the search is not settled.
+/// An exclusion rests on a least χ² that several starts reach: of the whole films, where half of all starts
+/// lead as low, or of their beginnings, which have no more minima than tell. Elsewhere the search is not
+/// settled.
 pub(crate) fn settle(rows: &mut [Row]) {
     for row in rows.iter_mut() {
         let (&Verdict::Excluded { sigmas }, Ok(fit)) = (&row.verdict, &row.fit) else { continue };
@@ -19,14 +21,18 @@ pub(crate) fn settle(rows: &mut [Row]) {
                 ));
                 row.verdict = Verdict::Excluded { sigmas };
             }
-            None if fit.reached >= SEVERAL || !has_constants(&row.choice) && !is_law(row.choice.formulation) => {}
+            None if has_settled(fit) || !has_constants(&row.choice) && !is_law(row.choice.formulation) => {}
             None => row.verdict = Verdict::Unsettled { sigmas },
         }
     }
 }
 
+fn has_settled(fit: &Fit) -> bool {
+    fit.reached >= SEVERAL && is_as_high(fit.by_half, fit.chi_squared)
+}
+
 /// What a plain explanation brings as near as the best fits is not excluded, and does not leave the best as
-/// the only one.
+/// the only one; nor does one whose search is not settled.
 pub(crate) fn explain(scene: &Scene, rows: &mut [Row], films: &[Film], question: &Question) {
     // where nothing fits: what would make it noise
     for row in rows.iter_mut().filter(|row| row.verdict == Verdict::None) {
@@ -38,7 +44,10 @@ pub(crate) fn explain(scene: &Scene, rows: &mut [Row], films: &[Film], question:
     let supported = |row: &Row| row.verdict == Verdict::Supported;
     let Some(best) = rows.iter().find(|row| supported(row)).cloned() else { return };
     let Ok(least) = &best.fit else { return };
-    let mut as_well = Vec::new();
+    let is_open = |row: &&Row| {
+        matches!(row.verdict, Verdict::Unsettled { .. }) && !is_part(row.choice.formulation, best.choice.formulation)
+    };
+    let mut as_well: Vec<String> = rows.iter().filter(is_open).map(|row| row.choice.label.clone()).collect();
     for row in rows.iter_mut() {
         let (Verdict::Excluded { .. }, Ok(fit), Some(problem)) = (&row.verdict, &row.fit, &row.problem) else {
             continue;

@@ -40,7 +40,7 @@ pub enum Verdict {
         /// [`fit_formulations`](crate::fit_formulations).
         needs: Vec<Option<f64>>,
     },
-    /// It fits with what is not modelled, or what it would exclude does.
+    /// It fits with what is not modelled, or what it would exclude does, or the search of that is not settled.
     Explained {
         /// What it is with.
         with: Option<String>,
@@ -136,7 +136,7 @@ pub fn verdicts(fits: Vec<(Choice, Result<Fit, FitError>)>) -> Vec<Row> {
 
 /// Whether one of two formulations is the other with more numbers, so that both can be right: Chetaev's law
 /// is that of first order with ε = 0.
-fn is_part(a: &Formulation, b: &Formulation) -> bool {
+pub(crate) fn is_part(a: &Formulation, b: &Formulation) -> bool {
     let is = |x: &Formulation, y: &Formulation| x.name == y.name;
     is(a, b) || (is_law(a) && is(b, CHETAEV)) || (is(a, CHETAEV) && is_law(b)) || (is_law(a) && is_law(b))
 }

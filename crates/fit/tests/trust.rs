@@ -1,7 +1,7 @@
 //! Exclusions that can be trusted: right formulations, nested ones, what is not modelled, estimated
 //! deviations, units, and the smallest films.
 
-use fit::{Deviations, Film, Identifiability, Unknown, Verdict, fit_formulations, significance, threshold};
+use fit::{Deviations, Film, Identifiability, Question, Unknown, Verdict, fit_formulations, significance, threshold};
 use scene::Scene;
 
 use crate::films::{SLEDGE, built_in, film, fitted, sledge, times};
@@ -42,6 +42,30 @@ fn a_family_that_contains_the_motion_is_not_excluded() {
         // it contains Chetaev's: its least χ² is not above
         assert!(fits[1].chi_squared <= fits[0].chi_squared + 0.5, "{} {}", fits[1].chi_squared, fits[0].chi_squared);
         assert!(rows[0].notes.iter().any(|note| note.starts_with("nested")), "{:?}", rows[0].notes);
+    }
+}
+
+/// A ball on a turning table runs on a circle. The vakonomic ball does on a table at rest, for μ₀ = −m(x', y')
+/// and the spin 2/5 Ω: no start near the true Ω leads there. Where a search misses that, it is not settled, and
+/// Chetaev's formulation is not supported.
+#[test]
+fn what_holds_without_a_parameter_is_found() {
+    let scene = built_in("turntable");
+    let (rate, v) = (2.0 / 7.0 * 0.6837, [-0.0052, 0.1210]);
+    let at = |t: f64| {
+        let (s, c) = ((rate * t).sin() / rate, (1.0 - (rate * t).cos()) / rate);
+        vec![0.6626 + v[0] * s - v[1] * c, -0.0407 + v[1] * s + v[0] * c]
+    };
+    let film = film(&scene, "x,y", 5e-4, 5, &times(6.0), at);
+    let unknowns = ["x", "y", "x'", "y'", "psi'", "Omega"].map(|name| name.parse::<Unknown>().unwrap());
+    for starts in [1, 16] {
+        let question = Question { starts, ..crate::films::question(&unknowns) };
+        let rows =
+            fit_formulations(&scene, &mut [film.clone()], &question, &[motion::CHETAEV, motion::VAKONOMIC]).unwrap();
+        let [chetaev, vakonomic] = [0, 1].map(|i| rows[i].fit.as_ref().unwrap().chi_squared);
+        assert_ne!(rows[0].verdict, Verdict::Supported, "{vakonomic} from {starts} starts");
+        assert!(!matches!(rows[1].verdict, Verdict::Excluded { .. }), "{vakonomic} from {starts} starts");
+        assert!(starts == 1 || vakonomic < chetaev + 0.5, "{vakonomic} for {chetaev}");
     }
 }
 
