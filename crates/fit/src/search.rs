@@ -75,6 +75,10 @@ pub fn search(problem: &Problem, moves: &dyn Fn(&str) -> bool, starts: usize, kn
     let problem = &whole.coarse();
     let short = problem.beginning(FIRST.max(2 * problem.unknowns().len()))?;
     let (scale, mut reason) = scales(&mut short.clone());
+    // what is beside another that fits, and is excluded by that, is not the least of what fits
+    let least_beside = beside.as_deref().and_then(|(best, own)| best.clone().weighed(&own[0], false).ok());
+    let excluded_from = least_beside.map_or(f64::INFINITY, |(values, _)| values.norm_squared() + EXCLUDED);
+    let is_enough = |minima: &[Minimum]| minima.first().is_some_and(|m| m.value < excluded_from && fits(problem, m));
     // what leads from one motion to one minimum is one start, and counts by way of beginnings
     let before =
         |(i, known): (usize, &Vec<f64>)| Minimum { reached: usize::from(i == 0), ..Minimum::start(0, known.clone()) };
@@ -89,7 +93,7 @@ pub fn search(problem: &Problem, moves: &dyn Fn(&str) -> bool, starts: usize, kn
     let mut minima = refined(problem, at_once, &scale, Stage::Rough, &mut reason);
     let (mut tried, mut excluded_by) = (known_before.len(), None);
     // beside what is known to fit others are few
-    let starts = if minima.first().is_some_and(|m| fits(problem, m)) { starts.min(FEW) } else { starts };
+    let starts = if is_enough(&minima) { starts.min(FEW) } else { starts };
     if !known {
         let begun = (0..starts).map(|number| moved(problem, &scale, moves, number));
         let begun: Vec<Minimum> = begun.chain(known_before).collect();
@@ -99,7 +103,7 @@ pub fn search(problem: &Problem, moves: &dyn Fn(&str) -> bool, starts: usize, kn
         minima.extend(refined(problem, led, &scale, Stage::Rough, &mut reason));
         distinct(&mut minima, &scale);
     }
-    if starts == 1 || excluded_by.is_none() && !minima.first().is_some_and(|least| fits(problem, least)) {
+    if starts == 1 || excluded_by.is_none() && !is_enough(&minima) {
         let mut begun = screened(problem, moves, starts);
         if starts > 1 && !known {
             begun.extend(absent(problem));
