@@ -114,12 +114,6 @@ impl Problem {
         }
     }
 
-    /// Whether an unknown is a parameter that may be 0, by its bound and what is known before.
-    pub(crate) fn may_vanish(&self, i: usize) -> bool {
-        let doubt = self.doubt(i);
-        doubt > 0.0 && doubt >= self.start[i].abs() && self.unknowns[i].bound.is_none_or(|bound| bound <= 0.0)
-    }
-
     /// Sets where the search begins.
     ///
     /// # Panics
@@ -139,15 +133,13 @@ impl Problem {
     /// # Errors
     /// [`FitError::Motion`] where so short a motion makes no sense.
     pub fn beginning(&self, samples: usize) -> Result<Problem, FitError> {
-        let mut short = self.clone();
-        for part in &mut short.parts {
-            let count = samples.min(part.film.t.len());
-            part.film.t.truncate(count);
-            part.film.rows.truncate(count);
-            part.film.lines.truncate(count);
-            part.model = part.model.with_times(&part.film.t)?;
+        let mut films: Vec<Film> = self.films().cloned().collect();
+        for film in &mut films {
+            film.t.truncate(samples);
+            film.rows.truncate(samples);
+            film.lines.truncate(samples);
         }
-        Ok(short)
+        self.of_films(films)
     }
 
     /// From now on motions may take no more than `times` the steps of those at `theta`: a search that goes

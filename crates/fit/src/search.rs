@@ -282,8 +282,13 @@ fn absent(problem: &Problem) -> Vec<Minimum> {
         least.insert(i, 0.0);
         Some(Minimum::start(0, least))
     };
-    let first = problem.first == 0;
-    (0..problem.start().len()).filter(|&i| first && problem.may_vanish(i)).filter_map(without).collect()
+    // what a prior or a bound keeps from 0 stays
+    let may_vanish = |i: &usize| {
+        let is_free = problem.unknowns()[*i].bound.is_none_or(|bound| bound <= 0.0);
+        is_free && problem.doubt(*i) > 0.0 && problem.doubt(*i) >= problem.start()[*i].abs()
+    };
+    let all = if problem.first == 0 { 0..problem.start().len() } else { 0..0 };
+    all.filter(may_vanish).filter_map(without).collect()
 }
 
 /// The change of each unknown that would move the residuals by their extent, as it seems at the start.

@@ -21,14 +21,11 @@ pub(crate) fn settle(rows: &mut [Row]) {
                 ));
                 row.verdict = Verdict::Excluded { sigmas };
             }
-            None if has_settled(fit) || !has_constants(&row.choice) && !is_law(row.choice.formulation) => {}
+            None if !has_constants(&row.choice) && !is_law(row.choice.formulation) => {}
+            None if fit.reached >= SEVERAL && is_as_high(fit.by_half, fit.chi_squared) => {}
             None => row.verdict = Verdict::Unsettled { sigmas },
         }
     }
-}
-
-fn has_settled(fit: &Fit) -> bool {
-    fit.reached >= SEVERAL && is_as_high(fit.by_half, fit.chi_squared)
 }
 
 /// What a plain explanation brings as near as the best fits is not excluded, and does not leave the best as
@@ -39,7 +36,7 @@ pub(crate) fn explain(scene: &Scene, rows: &mut [Row], films: &[Film], question:
         let (Ok(fit), Some(problem)) = (&row.fit, &row.problem) else { continue };
         let noise = Fit { chi_squared: fit.freedom as f64, ..fit.clone() };
         let found = explanations(scene, &row.choice, films, question, (problem, fit), &noise);
-        row.notes.extend(found.iter().map(|found| format!("it may fit {}", found.words())));
+        row.notes.extend(found.iter().flatten().map(|found| format!("it may fit {}", found.words())));
     }
     let supported = |row: &Row| row.verdict == Verdict::Supported;
     let Some(best) = rows.iter().find(|row| supported(row)).cloned() else { return };
@@ -52,7 +49,7 @@ pub(crate) fn explain(scene: &Scene, rows: &mut [Row], films: &[Film], question:
         let (Verdict::Excluded { .. }, Ok(fit), Some(problem)) = (&row.verdict, &row.fit, &row.problem) else {
             continue;
         };
-        for found in explanations(scene, &row.choice, films, question, (problem, fit), least) {
+        for found in explanations(scene, &row.choice, films, question, (problem, fit), least).into_iter().flatten() {
             as_well.push(format!("{} with {}", row.choice.label, found.name));
             row.notes.push(found.words());
             row.verdict = Verdict::Explained { with: Some(found.name), from: vec![best.choice.label.clone()] };

@@ -4,7 +4,7 @@
 use fit::{Deviations, Film, Identifiability, Question, Unknown, Verdict, fit_formulations, significance, threshold};
 use scene::Scene;
 
-use crate::films::{SLEDGE, built_in, film, fitted, sledge, times};
+use crate::films::{SLEDGE, built_in, film, fitted, fitted_by, sledge, sledge_from, times};
 
 const DISC: &str = r#"
 title = "Upright disc"
@@ -50,18 +50,17 @@ fn a_family_that_contains_the_motion_is_not_excluded() {
 /// Chetaev's formulation is not supported.
 #[test]
 fn what_holds_without_a_parameter_is_found() {
-    let scene = built_in("turntable");
     let (rate, v) = (2.0 / 7.0 * 0.6837, [-0.0052, 0.1210]);
     let at = |t: f64| {
         let (s, c) = ((rate * t).sin() / rate, (1.0 - (rate * t).cos()) / rate);
         vec![0.6626 + v[0] * s - v[1] * c, -0.0407 + v[1] * s + v[0] * c]
     };
-    let film = film(&scene, "x,y", 5e-4, 5, &times(6.0), at);
     let unknowns = ["x", "y", "x'", "y'", "psi'", "Omega"].map(|name| name.parse::<Unknown>().unwrap());
-    for starts in [1, 16] {
+    for (radius, starts) in [(0.1, 1), (0.1, 16), (0.08, 16)] {
+        let scene = scene::catalogue::find("turntable", &[("a".to_string(), radius.into())]).unwrap();
+        let film = film(&scene, "x,y", 5e-4, 5, &times(6.0), at);
         let question = Question { starts, ..crate::films::question(&unknowns) };
-        let rows =
-            fit_formulations(&scene, &mut [film.clone()], &question, &[motion::CHETAEV, motion::VAKONOMIC]).unwrap();
+        let rows = fit_formulations(&scene, &mut [film], &question, &[motion::CHETAEV, motion::VAKONOMIC]).unwrap();
         let [chetaev, vakonomic] = [0, 1].map(|i| rows[i].fit.as_ref().unwrap().chi_squared);
         assert_ne!(rows[0].verdict, Verdict::Supported, "{vakonomic} from {starts} starts");
         assert!(!matches!(rows[1].verdict, Verdict::Excluded { .. }), "{vakonomic} from {starts} starts");
@@ -243,6 +242,21 @@ fn a_stationary_unknown_is_shown() {
     assert!(zero.interval[1] > 0.3 * end && zero.interval[1] < 2.0 * end, "{zero:?} {end}");
     let other = estimate(0.3);
     assert!((other.value.abs() - 0.3).abs() < 4.0 * other.error && other.error < 0.01, "{other:?}");
+}
+
+/// Coarse films of a sledge that starts 20 mrad from across, where `y'` is fifty times `x'`, are fitted.
+#[test]
+fn films_that_begin_near_a_heading_of_ninety_degrees_are_fitted() {
+    let at = |name: &str, x: f64| (name.to_string(), x.into());
+    let scene = scene::catalogue::find("sledge", &[at("phi", 1.55), at("x'", 0.5 * 1.55_f64.cos())]).unwrap();
+    let t: Vec<f64> = (1..=12).map(|k| f64::from(k) / 6.0).collect();
+    for seed in 0..10 {
+        let film = film(&scene, "x,y,phi", 1e-3, 300 + seed, &t, |t| sledge_from(1.55, t));
+        let row = fitted_by(&[motion::CHETAEV], &scene, &[film], &SLEDGE, &[]).remove(0);
+        let fit = row.fit.unwrap_or_else(|error| panic!("{seed}: {error}"));
+        let g = fit.estimates.iter().find(|e| e.name.starts_with('g')).unwrap();
+        assert!((g.value - 9.81).abs() < 4.5 * g.error && g.error < 0.05, "{seed}: {g:?}");
+    }
 }
 
 /// Up to 6 µrad beside the pole of `y' = x' tan φ`, derivatives of the start are those of the formula.
