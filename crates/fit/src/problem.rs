@@ -142,6 +142,18 @@ impl Problem {
         self.of_films(films)
     }
 
+    /// Film `number` alone, and the places of its unknowns.
+    pub(crate) fn only(&self, number: usize) -> (Problem, Vec<usize>) {
+        let is_own = |i: &usize| self.unknowns[*i].film.is_none_or(|film| film == number);
+        let (own, others): (Vec<usize>, Vec<usize>) = (0..self.unknowns.len()).partition(is_own);
+        let mut one = Problem { parts: vec![self.parts[number].clone()], beside: None, ..self.clone() };
+        for i in others.into_iter().rev() {
+            one = one.without(i, self.start[i]);
+        }
+        one.held.clear();
+        (one, own)
+    }
+
     /// From now on motions may take no more than `times` the steps of those at `theta`: a search that goes
     /// where they take more comes back.
     #[must_use]

@@ -52,18 +52,19 @@ pub struct Found {
     pub minima: Vec<Minimum>,
     /// Number of starts that were followed: fewer than asked for if some coincide.
     pub starts: usize,
-    /// The beginning of the films that excludes the formulation.
+    /// The part of the films that excludes the formulation.
     pub excluded_by: Option<Excluding>,
 }
 
-/// Samples of a beginning of the films, and the significance at which it excludes a formulation.
-pub type Excluding = (usize, f64);
+/// A part of the films in words, and the significance at which it excludes a formulation.
+pub type Excluding = (String, f64);
 
 /// The least minimum from several starts: the first is [`Problem::start`]; in the others unknowns for which
 /// `moves` says so are moved, by parts of their scales that no period fits; further ones are known before:
 /// each goes by way of beginnings and, unless it is far off, at once. Beginnings are left out where the first
 /// start is `known` to come close. Starts for the whole film at once are left out where beginnings of several
-/// lead to residuals of noise. Once a beginning excludes the formulation, one start is followed.
+/// lead to residuals of noise. Once a beginning excludes the formulation, or one of the first films alone, one
+/// start is followed.
 ///
 /// # Errors
 /// [`FitError::NoMotion`].
@@ -91,7 +92,10 @@ pub fn search(problem: &Problem, moves: &dyn Fn(&str) -> bool, starts: usize, kn
     let at_once = known_before.iter().filter(&mut near);
     let at_once = at_once.map(|start| Minimum { reached: usize::from(known), ..start.clone() }).collect();
     let mut minima = refined(problem, at_once, &scale, Stage::Rough, &mut reason);
-    let (mut tried, mut excluded_by) = (known_before.len(), None);
+    let films = if known || problem.films().count() == 1 { 0 } else { problem.films().count().min(ALONE) };
+    let alone = |number| excluded_alone(problem, beside.as_deref()?, (moves, starts), number);
+    let mut excluded_by = (0..films).find_map(alone);
+    let mut tried = known_before.len();
     // beside what is known to fit others are few
     let starts = if is_enough(&minima) { starts.min(FEW) } else { starts };
     if !known {
@@ -99,7 +103,7 @@ pub fn search(problem: &Problem, moves: &dyn Fn(&str) -> bool, starts: usize, kn
         let begun: Vec<Minimum> = begun.chain(known_before).collect();
         tried += begun.len();
         let led;
-        (led, excluded_by) = followed(problem, short, &scale, begun, beside.as_deref(), &mut reason)?;
+        (led, excluded_by) = followed(problem, short, &scale, begun, (beside.as_deref(), excluded_by), &mut reason)?;
         minima.extend(refined(problem, led, &scale, Stage::Rough, &mut reason));
         distinct(&mut minima, &scale);
     }
@@ -200,17 +204,20 @@ fn is_noise(problem: &Problem, chi_squared: f64) -> bool {
 }
 
 /// Minima over beginnings that become longer, from these starts: where the search over the whole film begins;
-/// and by which beginning the formulation is excluded, if by one.
+/// and by which of them the formulation is excluded, if it is not yet.
 fn followed(
     problem: &Problem,
     short: Problem,
     scale: &[f64],
     starts: Vec<Minimum>,
-    beside: Option<&(Problem, [Vec<f64>; 2])>,
+    (beside, excluded_by): (Option<&(Problem, [Vec<f64>; 2])>, Option<Excluding>),
     reason: &mut Option<String>,
 ) -> Result<(Vec<Minimum>, Option<Excluding>), FitError> {
-    let (mut part, mut starts, mut excluded_by) = (short, starts, None);
+    let (mut part, mut starts, mut excluded_by) = (short, starts, excluded_by);
     for number in 0.. {
+        if excluded_by.is_some() {
+            starts.truncate(1);
+        }
         for start in &mut starts {
             start.unknowns = within(&part, problem.start(), &start.unknowns);
         }
@@ -224,10 +231,8 @@ fn followed(
             break;
         }
         if let Some(beside) = beside.filter(|_| excluded_by.is_none()) {
-            excluded_by = excluded(&part, &mut starts, scale, beside).map(|sigmas| (part.samples(), sigmas));
-        }
-        if excluded_by.is_some() {
-            starts.truncate(1);
+            let words = || format!("the first {} samples", part.samples());
+            excluded_by = excluded(&part, &mut starts, scale, beside).map(|sigmas| (words(), sigmas));
         }
         let samples = (part.samples() as f64 * LONGER) as usize;
         part = problem.beginning(samples.min(problem.samples()))?;
@@ -237,8 +242,30 @@ fn followed(
 
 /// Starts that have to lead to the least χ² of a formulation before it is excluded.
 pub(crate) const SEVERAL: usize = 2;
-/// How much more χ² has to be above for one of several beginnings: what keeps the level for eight of them.
-const LOOKS: f64 = 4.5;
+/// How much more χ² has to be above for one of several parts: what keeps the level for eight beginnings of all
+/// films and of each of [`ALONE`].
+const LOOKS: f64 = 7.0;
+/// Films that are looked at alone.
+const ALONE: usize = 3;
+
+/// Film `number`, if that excludes the formulation alone: unknowns of its own are few, and several starts lead
+/// to one minimum.
+fn excluded_alone(
+    problem: &Problem,
+    (best, own): &(Problem, [Vec<f64>; 2]),
+    (moves, starts): (&dyn Fn(&str) -> bool, usize),
+    number: usize,
+) -> Option<Excluding> {
+    let ((mut part, _), (best, places)) = (problem.only(number), best.only(number));
+    let own = own.each_ref().map(|all| places.iter().map(|&i| all[i]).collect::<Vec<f64>>());
+    let beside = part.beside.insert(Box::new((best, own)));
+    let best = least(&beside.0, &beside.1[0], &beside.1[1], Stage::Profile).ok()?.value;
+    let found = search(&part, moves, starts, false).ok()?;
+    let above = Some(found.best.value - best).filter(|x| *x >= EXCLUDED + LOOKS && found.best.reached >= SEVERAL);
+    let by_all = above.map(|above| sigmas(above, 1));
+    let by = found.excluded_by.map(|(_, sigmas)| sigmas).or(by_all)?;
+    Some((format!("film {} alone", number + 1), by))
+}
 
 /// The significance at which this beginning excludes its formulation, if it does: by a least χ² that several
 /// starts reach. Where it may, `starts` become the minima.

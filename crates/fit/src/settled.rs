@@ -14,12 +14,10 @@ use crate::{Film, Fit, Question, Row, Verdict};
 pub(crate) fn settle(rows: &mut [Row]) {
     for row in rows.iter_mut() {
         let (&Verdict::Excluded { sigmas }, Ok(fit)) = (&row.verdict, &row.fit) else { continue };
-        match fit.excluded_by {
-            Some((samples, sigmas)) => {
-                row.notes.push(format!(
-                    "excluded by the first {samples} samples; of the whole films few starts reach the least χ²"
-                ));
-                row.verdict = Verdict::Excluded { sigmas };
+        match &fit.excluded_by {
+            Some((part, sigmas)) => {
+                row.notes.push(format!("excluded by {part}; of the whole films few starts reach the least χ²"));
+                row.verdict = Verdict::Excluded { sigmas: *sigmas };
             }
             None if !has_constants(&row.choice) && !is_law(row.choice.formulation) => {}
             None if fit.reached >= SEVERAL && is_as_high(fit.by_half, fit.chi_squared) => {}

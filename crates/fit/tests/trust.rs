@@ -93,6 +93,20 @@ fn sixteen_straight_lines_exclude_nobody() {
     assert!(rows.iter().all(|row| matches!(row.verdict, Verdict::CannotTell { .. })), "{:?}", rows[0].verdict);
 }
 
+/// Short films of a sledge, each with a start of its own: among 25 unknowns no two starts lead to one minimum,
+/// and one film alone excludes what is wrong.
+#[test]
+fn one_of_many_films_excludes() {
+    let scene = built_in("sledge");
+    let t: Vec<f64> = (1..=20).map(|k| k as f64 / 10.0).collect();
+    let film = |k: u64| film(&scene, "x,y,phi", 1e-3, 90 + k, &t, |t| sledge_from(0.1 * k as f64, t));
+    let films: Vec<Film> = (0..4).map(film).collect();
+    let rows = fitted(&scene, &films, &SLEDGE, &[]);
+    assert_eq!(rows[0].verdict, Verdict::Supported);
+    assert!(matches!(rows[1].verdict, Verdict::Excluded { sigmas } if sigmas > 100.0), "{:?}", rows[1].verdict);
+    assert!(rows[1].notes.iter().any(|note| note.contains("alone; of the whole films")), "{:?}", rows[1].notes);
+}
+
 /// A straight line on a table that is tilted by 0.07°, which no scene says: an arc is as good as a parabola.
 #[test]
 fn a_tilt_is_named_before_anything_is_supported() {
