@@ -5,7 +5,6 @@ use scene::Scene;
 use crate::explain::explanations;
 use crate::question::{has_constants, is_law};
 use crate::search::{SEVERAL, is_as_high};
-use crate::verdict::is_part;
 use crate::{Film, Fit, Question, Row, Verdict};
 
 /// An exclusion rests on a least χ² that several starts reach: of the whole films, where half of all starts
@@ -27,7 +26,7 @@ pub(crate) fn settle(rows: &mut [Row]) {
 }
 
 /// What a plain explanation brings as near as the best fits is not excluded, and does not leave the best as
-/// the only one; nor does one whose search is not settled.
+/// the only one; nor does a family whose search is not settled.
 pub(crate) fn explain(scene: &Scene, rows: &mut [Row], films: &[Film], question: &Question) {
     // where nothing fits: what would make it noise
     for row in rows.iter_mut().filter(|row| row.verdict == Verdict::None) {
@@ -39,9 +38,7 @@ pub(crate) fn explain(scene: &Scene, rows: &mut [Row], films: &[Film], question:
     let supported = |row: &Row| row.verdict == Verdict::Supported;
     let Some(best) = rows.iter().find(|row| supported(row)).cloned() else { return };
     let Ok(least) = &best.fit else { return };
-    let is_open = |row: &&Row| {
-        matches!(row.verdict, Verdict::Unsettled { .. }) && !is_part(row.choice.formulation, best.choice.formulation)
-    };
+    let is_open = |row: &&Row| matches!(row.verdict, Verdict::Unsettled { .. }) && has_constants(&row.choice);
     let mut as_well: Vec<String> = rows.iter().filter(is_open).map(|row| row.choice.label.clone()).collect();
     for row in rows.iter_mut() {
         let (Verdict::Excluded { .. }, Ok(fit), Some(problem)) = (&row.verdict, &row.fit, &row.problem) else {

@@ -141,7 +141,7 @@ pub fn verdicts(fits: Vec<(Choice, Result<Fit, FitError>)>) -> Vec<Row> {
 
 /// Whether one of two formulations is the other with more numbers, so that both can be right: Chetaev's law
 /// is that of first order with ε = 0.
-pub(crate) fn is_part(a: &Formulation, b: &Formulation) -> bool {
+fn is_part(a: &Formulation, b: &Formulation) -> bool {
     let is = |x: &Formulation, y: &Formulation| x.name == y.name;
     is(a, b) || (is_law(a) && is(b, CHETAEV)) || (is(a, CHETAEV) && is_law(b)) || (is_law(a) && is_law(b))
 }
