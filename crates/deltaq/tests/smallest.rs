@@ -65,6 +65,7 @@ fn the_smallest_questions_are_answered() {
         "fit heisenberg rest.csv --free x' --sigma 1mm",
         "fit heisenberg rest.csv --free x',y' --sigma free",
         "fit heisenberg coarse.csv --free x',y' --sigma 1mm",
+        "fit heisenberg coarse.csv --free x',z --sigma 1mm",
         "fit heisenberg late.csv --free x',y' --sigma 1mm",
         "fit rest.toml rest.csv --free g --sigma 1mm",
         "fit rest.toml rest.csv --free phi,x',phi' --sigma 1mm",

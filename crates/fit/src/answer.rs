@@ -12,9 +12,9 @@ use crate::design::length_that_tells;
 use crate::fit::{sought, with_intervals};
 use crate::known;
 use crate::question::{SLIP, has_constants, is_constant, is_law, problem_of};
-use crate::search::{POOR, begun};
+use crate::search::{POOR, begun, is_as_high};
 use crate::settled::{explain, settle};
-use crate::verdict::{beside, is_excluded};
+use crate::verdict::{beside, is_excluded, least};
 use crate::{Film, Fit, FitError, Problem, Question, Row, Unknown, Verdict, verdicts};
 
 /// Most numbers of all films: with them a fit takes minutes.
@@ -58,8 +58,7 @@ pub fn fit_formulations(
 /// Sets standard deviations that are estimated by what the best of these fits leaves, those of columns of one
 /// name as one; whether some changed.
 fn estimate_deviations(films: &mut [Film], rows: &[Row]) -> bool {
-    let fitted = rows.iter().filter_map(|row| row.fit.as_ref().ok());
-    let Some(best) = fitted.min_by(|a, b| a.chi_squared.total_cmp(&b.chi_squared)) else { return false };
+    let Some(best) = least(rows.iter().filter_map(|row| row.fit.as_ref().ok())) else { return false };
     let free = best.freedom as f64 / best.residuals.len().max(1) as f64;
     let mut names: Vec<String> = films.iter().flat_map(|f| &f.columns).map(|c| c.name.clone()).collect();
     names.sort_unstable();
@@ -123,8 +122,11 @@ fn fit_given(
         }
     }
     // before nothing fits, or one is excluded whose residuals are not far off, other starts
+    let least_of = |fit: &Fitted| fit.as_ref().map_or(f64::INFINITY, |(_, fit)| fit.chi_squared);
+    let mut by_groups: Vec<Vec<f64>> = fits.iter().map(|(_, fit)| vec![least_of(fit)]).collect();
     for group in 1..=GROUPS {
-        let (least, some) = (least(&fits), fits.iter().any(fits_well));
+        let fitted = fits.iter().filter_map(|(_, fit)| fit.as_ref().ok().map(|(_, fit)| fit));
+        let (least, some) = (least(fitted).cloned(), fits.iter().any(fits_well));
         let is_doubtful = |(choice, fit): &(Choice, Fitted)| {
             let is_near = |fit: &Fit| {
                 let is_poor = fit.chi_squared >= POOR * (fit.freedom as f64).max(1.0);
@@ -136,7 +138,10 @@ fn fit_given(
         let again = places.iter().map(|&i| fits[i].0.clone()).collect();
         let again = fit_choices(&scene, again, films, question, group * question.starts, near);
         for (place, (_, again)) in places.into_iter().zip(again) {
-            add(&mut fits[place].1, again);
+            let (fit, by_groups) = (&mut fits[place].1, &mut by_groups[place]);
+            add(fit, again);
+            by_groups.push(least_of(fit));
+            fit.iter_mut().for_each(|(_, fit)| fit.by_half = by_groups[group / 2]);
         }
     }
     let ordered = in_order(&scene, &mut fits, question, near)?;
@@ -180,12 +185,6 @@ fn fit_given(
     Ok(rows)
 }
 
-/// The fit of least χ².
-fn least(fits: &[(Choice, Fitted)]) -> Option<Fit> {
-    let fitted = fits.iter().filter_map(|(_, fit)| fit.as_ref().ok()).map(|(_, fit)| fit);
-    fitted.min_by(|a, b| a.chi_squared.total_cmp(&b.chi_squared)).cloned()
-}
-
 /// The better of two fits from different starts, with the starts of both, and with those of both that led
 /// there.
 fn add(known: &mut Fitted, again: Fitted) {
@@ -194,15 +193,7 @@ fn add(known: &mut Fitted, again: Fitted) {
     keep_less(known, again);
     if let (Some(((a, starts, reached), (b, more, others))), Ok((_, fit))) = (both, known) {
         fit.starts = starts + more;
-        fit.by_half = a;
-        let same = (a - b).abs() <= SAME + 1e-3 * a.min(b);
-        fit.reached = if same {
-            reached + others
-        } else if a < b {
-            reached
-        } else {
-            others
-        };
+        fit.reached = usize::from(is_as_high(a, b)) * reached + usize::from(is_as_high(b, a)) * others;
     }
 }
 

@@ -68,25 +68,13 @@ pub(crate) fn explanations(
     question: &Question,
     (problem, fit): (&Problem, &Fit),
     best: &Fit,
-) -> Vec<Explanation> {
-    if choice.removal.is_some() || is_law(choice.formulation) {
-        return Vec::new();
-    }
-    let (wider, candidates) = widened(scene, films, problem);
-    tried(&wider, &candidates, choice, films, question, (problem, fit), best).unwrap_or_default()
-}
-
-fn tried(
-    scene: &Scene,
-    candidates: &[Candidate],
-    choice: &Choice,
-    films: &[Film],
-    question: &Question,
-    (problem, fit): (&Problem, &Fit),
-    best: &Fit,
 ) -> Option<Vec<Explanation>> {
+    if choice.removal.is_some() || is_law(choice.formulation) {
+        return None;
+    }
+    let (scene, candidates) = &widened(scene, films, problem);
     let choice = choices_among(scene, |f| *f == *choice.formulation).into_iter().find(|c| c.removal.is_none())?;
-    let with = |numbers: &[String]| -> Option<(Problem, Vec<f64>, usize)> {
+    let with = |numbers: &[String]| -> Option<(Problem, Vec<f64>)> {
         let added = numbers.iter().map(|name| Unknown::named(name));
         let unknowns: Vec<Unknown> = question.unknowns.iter().cloned().chain(added).collect();
         let question = Question { unknowns: &unknowns, ..question.clone() };
@@ -96,10 +84,10 @@ fn tried(
         let own: Vec<f64> = wider.start().to_vec();
         let start: Vec<f64> = labels.iter().zip(own).map(|(label, own)| known(label).unwrap_or(own)).collect();
         wider.begin_at(&start);
-        Some((wider, start, problem.unknowns().len()))
+        Some((wider, start))
     };
     let all: Vec<String> = candidates.iter().flat_map(|c| c.numbers.iter().cloned()).collect();
-    let (mut wider, start, _) = with(&all)?;
+    let (mut wider, start) = with(&all)?;
     let (r, jacobian) = wider.weighed(&start, true).ok()?;
     let place = |name: &String| wider.unknowns().iter().position(|u| u.name == *name);
     let places = |of: &Candidate| of.numbers.iter().map(place).collect::<Option<Vec<usize>>>();
@@ -118,7 +106,7 @@ fn tried(
         if gain < PROMISE * needed || (&moved * &by).norm() > 2.0 * PLAIN * extent {
             continue;
         }
-        let Some((problem, mut start, _)) = with(&candidate.numbers) else { continue };
+        let Some((problem, mut start)) = with(&candidate.numbers) else { continue };
         let place = |name: &String| problem.unknowns().iter().position(|u| u.name == *name);
         let at: Vec<usize> = candidate.numbers.iter().filter_map(place).collect();
         let error =

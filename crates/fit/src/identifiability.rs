@@ -17,13 +17,14 @@ use decision::exact::{Coefficient, Dual, Exact, Jet, Modular, ORDERS, agreed, nu
 use std::sync::Arc;
 
 use decision::{Dynamics, ExactStart};
-use motion::{Choice, costate_names, derive};
+use motion::{Choice, derive};
 use scene::Scene;
 use symbolic::{Evaluator, SplitMix, Symbol, Tape};
 
 use crate::Film;
 use crate::film::expression;
 use crate::part::{Part, Place};
+use crate::question::constant_names;
 use crate::unknown::Unknown;
 
 /// Random unknowns are integers of either sign up to 2 to one of these powers: functions are taken of them.
@@ -126,10 +127,7 @@ impl<'a> Jets<'a> {
         }
         let equations = derive(system, choice).map_err(|fault| fault.to_string())?;
         let dynamics = Dynamics::new(system, &equations).map_err(|fault| fault.to_string())?;
-        let constants = match &choice.removal {
-            Some(removal) => costate_names(scene, removal),
-            None => scene.multiplier_names(),
-        };
+        let constants = constant_names(scene, choice);
         let count = equations.constant_symbols().len();
         if count > 0 && count != constants.len() {
             return Err("some constants do not enter the equations".into());

@@ -2,10 +2,10 @@
 //! which.
 
 use comparison::{Answer, Pairing, costates_of, membership, multipliers_of};
-use motion::{Choice, VAKONOMIC, costate_names};
+use motion::{Choice, VAKONOMIC};
 use scene::Scene;
 
-use crate::question::is_constant;
+use crate::question::{constant_names, is_constant};
 use crate::unknown::CLOCK;
 use crate::{Film, Fit, Problem};
 
@@ -49,11 +49,6 @@ fn scene_of(scene: &Scene, film: &Film, number: usize, problem: &Problem, number
     Some(at)
 }
 
-/// Names of the constants that motions of `choice` start from.
-fn constants(scene: &Scene, choice: &Choice) -> Vec<String> {
-    choice.removal.as_ref().map_or_else(|| scene.multiplier_names(), |removal| costate_names(scene, removal))
-}
-
 /// The start of a search with these numbers, and these constants for each film.
 fn begun(
     problem: &Problem,
@@ -84,7 +79,7 @@ pub(crate) fn beside_chetaev(
     problem: &Problem,
     (own, chetaev, numbers): (&Problem, &Choice, &Numbers),
 ) -> Vec<Vec<f64>> {
-    let names = constants(scene, family);
+    let names = constant_names(scene, family);
     let films: Vec<&Film> = problem.films().collect();
     let part = |part: f64| {
         begun(problem, numbers, &names, &mut |number| {
@@ -109,14 +104,14 @@ pub(crate) fn same_motion(
 ) -> Option<Vec<f64>> {
     let films: Vec<&Film> = problem.films().collect();
     let numbers = numbers(fit);
-    begun(problem, &numbers, &constants(scene, to), &mut |number| {
+    begun(problem, &numbers, &constant_names(scene, to), &mut |number| {
         let at = scene_of(scene, films[number], number, of, &numbers)?;
         let value = |name: &String| {
             let label = |u: &&crate::Unknown| u.name == *name && u.film.is_none_or(|own| own == number);
             let label = of.unknowns().iter().find(label)?.label();
             self::value(&numbers, &label)
         };
-        let values = constants(scene, from).iter().map(value).collect::<Option<Vec<f64>>>()?;
+        let values = constant_names(scene, from).iter().map(value).collect::<Option<Vec<f64>>>()?;
         match (&from.removal, &to.removal) {
             (None, Some(removal)) => costates_of(&at, removal, &values).ok()?,
             (Some(removal), None) => multipliers_of(&at, removal, &values).ok()?,

@@ -133,15 +133,25 @@ impl Problem {
     /// # Errors
     /// [`FitError::Motion`] where so short a motion makes no sense.
     pub fn beginning(&self, samples: usize) -> Result<Problem, FitError> {
-        let mut short = self.clone();
-        for part in &mut short.parts {
-            let count = samples.min(part.film.t.len());
-            part.film.t.truncate(count);
-            part.film.rows.truncate(count);
-            part.film.lines.truncate(count);
-            part.model = part.model.with_times(&part.film.t)?;
+        let mut films: Vec<Film> = self.films().cloned().collect();
+        for film in &mut films {
+            film.t.truncate(samples);
+            film.rows.truncate(samples);
+            film.lines.truncate(samples);
         }
-        Ok(short)
+        self.of_films(films)
+    }
+
+    /// Film `number` alone, and the places of its unknowns.
+    pub(crate) fn only(&self, number: usize) -> (Problem, Vec<usize>) {
+        let is_own = |i: &usize| self.unknowns[*i].film.is_none_or(|film| film == number);
+        let (own, others): (Vec<usize>, Vec<usize>) = (0..self.unknowns.len()).partition(is_own);
+        let mut one = Problem { parts: vec![self.parts[number].clone()], beside: None, ..self.clone() };
+        for i in others.into_iter().rev() {
+            one = one.without(i, self.start[i]);
+        }
+        one.held.clear();
+        (one, own)
     }
 
     /// From now on motions may take no more than `times` the steps of those at `theta`: a search that goes

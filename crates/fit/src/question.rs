@@ -92,11 +92,7 @@ pub(crate) fn is_of_a_law(name: &str) -> bool {
 
 /// Unknowns of a formulation beside those of the question: constants that it starts from, numbers of its law.
 fn own(scene: &Scene, choice: &Choice, question: &Question) -> Vec<Unknown> {
-    let constants = match &choice.removal {
-        Some(removal) => costate_names(scene, removal),
-        None if choice.formulation.starts_multipliers => scene.multiplier_names(),
-        None => Vec::new(),
-    };
+    let constants = if has_constants(choice) { constant_names(scene, choice) } else { Vec::new() };
     let named = |name: &str| question.unknowns.iter().any(|u| u.name == name && u.film.is_none());
     let constants = constants.iter().filter(|name| !named(name)).map(|name| Unknown::named(name));
     question.law_of(choice.formulation).cloned().chain(constants).collect()
@@ -123,6 +119,11 @@ pub(crate) fn problem_of(
     };
     let choice = Choice { constants, ..choice.clone() };
     Ok(Problem::new(scene, &choice, films, &unknowns, &question.settings)?.robust(question.robust))
+}
+
+/// Names of the constants that motions of `choice` start from.
+pub(crate) fn constant_names(scene: &Scene, choice: &Choice) -> Vec<String> {
+    choice.removal.as_ref().map_or_else(|| scene.multiplier_names(), |removal| costate_names(scene, removal))
 }
 
 /// Whether a number is a multiplier or a costate at the start.

@@ -52,18 +52,19 @@ pub struct Found {
     pub minima: Vec<Minimum>,
     /// Number of starts that were followed: fewer than asked for if some coincide.
     pub starts: usize,
-    /// The beginning of the films that excludes the formulation.
+    /// The part of the films that excludes the formulation.
     pub excluded_by: Option<Excluding>,
 }
 
-/// Samples of a beginning of the films, and the significance at which it excludes a formulation.
-pub type Excluding = (usize, f64);
+/// A part of the films in words, and the significance at which it excludes a formulation.
+pub type Excluding = (String, f64);
 
 /// The least minimum from several starts: the first is [`Problem::start`]; in the others unknowns for which
 /// `moves` says so are moved, by parts of their scales that no period fits; further ones are known before:
 /// each goes by way of beginnings and, unless it is far off, at once. Beginnings are left out where the first
 /// start is `known` to come close. Starts for the whole film at once are left out where beginnings of several
-/// lead to residuals of noise. Once a beginning excludes the formulation, one start is followed.
+/// lead to residuals of noise. Once a beginning excludes the formulation, or one of the first films alone, one
+/// start is followed.
 ///
 /// # Errors
 /// [`FitError::NoMotion`].
@@ -75,8 +76,14 @@ pub fn search(problem: &Problem, moves: &dyn Fn(&str) -> bool, starts: usize, kn
     let problem = &whole.coarse();
     let short = problem.beginning(FIRST.max(2 * problem.unknowns().len()))?;
     let (scale, mut reason) = scales(&mut short.clone());
-    let known_before: Vec<Minimum> = problem.known.iter().map(|known| Minimum::start(0, known.clone())).collect();
-    // they count as starts once, by way of beginnings
+    // what is beside another that fits, and is excluded by that, is not the least of what fits
+    let least_beside = beside.as_deref().and_then(|(best, own)| best.clone().weighed(&own[0], false).ok());
+    let excluded_from = least_beside.map_or(f64::INFINITY, |(values, _)| values.norm_squared() + EXCLUDED);
+    let is_enough = |minima: &[Minimum]| minima.first().is_some_and(|m| m.value < excluded_from && fits(problem, m));
+    // what leads from one motion to one minimum is one start, and counts by way of beginnings
+    let before =
+        |(i, known): (usize, &Vec<f64>)| Minimum { reached: usize::from(i == 0), ..Minimum::start(0, known.clone()) };
+    let known_before: Vec<Minimum> = problem.known.iter().enumerate().map(before).collect();
     let mut evaluated = problem.clone();
     let mut near = |start: &&Minimum| {
         let found = evaluated.weighed(&start.unknowns, false);
@@ -85,20 +92,26 @@ pub fn search(problem: &Problem, moves: &dyn Fn(&str) -> bool, starts: usize, kn
     let at_once = known_before.iter().filter(&mut near);
     let at_once = at_once.map(|start| Minimum { reached: usize::from(known), ..start.clone() }).collect();
     let mut minima = refined(problem, at_once, &scale, Stage::Rough, &mut reason);
-    let (mut tried, mut excluded_by) = (known_before.len(), None);
+    let films = if known || problem.films().count() == 1 { 0 } else { problem.films().count().min(ALONE) };
+    let alone = |number| excluded_alone(problem, beside.as_deref()?, (moves, starts), number);
+    let mut excluded_by = (0..films).find_map(alone);
+    let mut tried = known_before.len();
     // beside what is known to fit others are few
-    let starts = if minima.first().is_some_and(|m| fits(problem, m)) { starts.min(FEW) } else { starts };
+    let starts = if is_enough(&minima) { starts.min(FEW) } else { starts };
     if !known {
         let begun = (0..starts).map(|number| moved(problem, &scale, moves, number));
         let begun: Vec<Minimum> = begun.chain(known_before).collect();
         tried += begun.len();
         let led;
-        (led, excluded_by) = followed(problem, short, &scale, begun, beside.as_deref(), &mut reason)?;
+        (led, excluded_by) = followed(problem, short, &scale, begun, (beside.as_deref(), excluded_by), &mut reason)?;
         minima.extend(refined(problem, led, &scale, Stage::Rough, &mut reason));
         distinct(&mut minima, &scale);
     }
-    if starts == 1 || excluded_by.is_none() && !minima.first().is_some_and(|least| fits(problem, least)) {
-        let begun = screened(problem, moves, starts);
+    if starts == 1 || excluded_by.is_none() && !is_enough(&minima) {
+        let mut begun = screened(problem, moves, starts);
+        if starts > 1 && !known {
+            begun.extend(absent(problem));
+        }
         tried += begun.len();
         minima.extend(refined(problem, begun, &scale, Stage::Rough, &mut reason));
     }
@@ -116,10 +129,15 @@ pub fn search(problem: &Problem, moves: &dyn Fn(&str) -> bool, starts: usize, kn
     Ok(Found { best, minima, starts: tried, excluded_by })
 }
 
-/// Minima as high as another, as far as noise can tell, count as one.
+/// Whether χ² is no further above another than noise can tell.
+pub(crate) fn is_as_high(value: f64, least: f64) -> bool {
+    value - least <= SAME[0] + SAME[1] * least
+}
+
+/// Minima as high as another count as one.
 fn as_high(minima: &mut Vec<Minimum>) {
     minima.dedup_by(|b, a| {
-        let same = b.value - a.value <= SAME[0] + SAME[1] * a.value;
+        let same = is_as_high(b.value, a.value);
         if same {
             (a.reached, a.first) = (a.reached + b.reached, a.first.min(b.first));
         }
@@ -186,17 +204,20 @@ fn is_noise(problem: &Problem, chi_squared: f64) -> bool {
 }
 
 /// Minima over beginnings that become longer, from these starts: where the search over the whole film begins;
-/// and by which beginning the formulation is excluded, if by one.
+/// and by which of them the formulation is excluded, if it is not yet.
 fn followed(
     problem: &Problem,
     short: Problem,
     scale: &[f64],
     starts: Vec<Minimum>,
-    beside: Option<&(Problem, [Vec<f64>; 2])>,
+    (beside, excluded_by): (Option<&(Problem, [Vec<f64>; 2])>, Option<Excluding>),
     reason: &mut Option<String>,
 ) -> Result<(Vec<Minimum>, Option<Excluding>), FitError> {
-    let (mut part, mut starts, mut excluded_by) = (short, starts, None);
+    let (mut part, mut starts, mut excluded_by) = (short, starts, excluded_by);
     for number in 0.. {
+        if excluded_by.is_some() {
+            starts.truncate(1);
+        }
         for start in &mut starts {
             start.unknowns = within(&part, problem.start(), &start.unknowns);
         }
@@ -210,10 +231,8 @@ fn followed(
             break;
         }
         if let Some(beside) = beside.filter(|_| excluded_by.is_none()) {
-            excluded_by = excluded(&part, &mut starts, scale, beside).map(|sigmas| (part.samples(), sigmas));
-        }
-        if excluded_by.is_some() {
-            starts.truncate(1);
+            let words = || format!("the first {} samples", part.samples());
+            excluded_by = excluded(&part, &mut starts, scale, beside).map(|sigmas| (words(), sigmas));
         }
         let samples = (part.samples() as f64 * LONGER) as usize;
         part = problem.beginning(samples.min(problem.samples()))?;
@@ -223,8 +242,30 @@ fn followed(
 
 /// Starts that have to lead to the least χ² of a formulation before it is excluded.
 pub(crate) const SEVERAL: usize = 2;
-/// How much more χ² has to be above for one of several beginnings: what keeps the level for eight of them.
-const LOOKS: f64 = 4.5;
+/// How much more χ² has to be above for one of several parts: what keeps the level for eight beginnings of all
+/// films and of each of [`ALONE`].
+const LOOKS: f64 = 7.0;
+/// Films that are looked at alone.
+const ALONE: usize = 3;
+
+/// Film `number`, if that excludes the formulation alone: unknowns of its own are few, and several starts lead
+/// to one minimum.
+fn excluded_alone(
+    problem: &Problem,
+    (best, own): &(Problem, [Vec<f64>; 2]),
+    (moves, starts): (&dyn Fn(&str) -> bool, usize),
+    number: usize,
+) -> Option<Excluding> {
+    let ((mut part, _), (best, places)) = (problem.only(number), best.only(number));
+    let own = own.each_ref().map(|all| places.iter().map(|&i| all[i]).collect::<Vec<f64>>());
+    let beside = part.beside.insert(Box::new((best, own)));
+    let best = least(&beside.0, &beside.1[0], &beside.1[1], Stage::Profile).ok()?.value;
+    let found = search(&part, moves, starts, false).ok()?;
+    let above = Some(found.best.value - best).filter(|x| *x >= EXCLUDED + LOOKS && found.best.reached >= SEVERAL);
+    let by_all = above.map(|above| sigmas(above, 1));
+    let by = found.excluded_by.map(|(_, sigmas)| sigmas).or(by_all)?;
+    Some((format!("film {} alone", number + 1), by))
+}
 
 /// The significance at which this beginning excludes its formulation, if it does: by a least χ² that several
 /// starts reach. Where it may, `starts` become the minima.
@@ -259,6 +300,22 @@ pub(crate) fn begun(problem: &Problem, held: &[usize]) -> Vec<f64> {
         seen.into_iter().zip(found.unknowns).for_each(|(i, x)| start[i] = x);
     }
     start
+}
+
+/// The minima with one parameter at 0 each: formulations agree where a parameter is none of theirs.
+fn absent(problem: &Problem) -> Vec<Minimum> {
+    let without = |i: usize| {
+        let mut least = search(&problem.without(i, 0.0), &|_| false, 1, false).ok()?.best.unknowns;
+        least.insert(i, 0.0);
+        Some(Minimum::start(0, least))
+    };
+    // what a prior or a bound keeps from 0 stays
+    let may_vanish = |i: &usize| {
+        let is_free = problem.unknowns()[*i].bound.is_none_or(|bound| bound <= 0.0);
+        is_free && problem.doubt(*i) > 0.0 && problem.doubt(*i) >= problem.start()[*i].abs()
+    };
+    let all = if problem.first == 0 { 0..problem.start().len() } else { 0..0 };
+    all.filter(may_vanish).filter_map(without).collect()
 }
 
 /// The change of each unknown that would move the residuals by their extent, as it seems at the start.

@@ -40,7 +40,7 @@ pub enum Verdict {
         /// [`fit_formulations`](crate::fit_formulations).
         needs: Vec<Option<f64>>,
     },
-    /// It fits with what is not modelled, or what it would exclude does.
+    /// It fits with what is not modelled, or what it would exclude does, or the search of that is not settled.
     Explained {
         /// What it is with.
         with: Option<String>,
@@ -96,10 +96,15 @@ pub(crate) fn is_excluded(fit: &Fit, least: &Fit) -> bool {
     above >= threshold(more)
 }
 
+/// The fit of least χ².
+pub(crate) fn least<'a>(fits: impl Iterator<Item = &'a Fit>) -> Option<&'a Fit> {
+    fits.min_by(|a, b| a.chi_squared.total_cmp(&b.chi_squared))
+}
+
 /// Verdicts on fits of formulations to the same films.
 pub fn verdicts(fits: Vec<(Choice, Result<Fit, FitError>)>) -> Vec<Row> {
     let fitted = || fits.iter().filter_map(|(_, fit)| fit.as_ref().ok());
-    let least = fitted().min_by(|a, b| a.chi_squared.total_cmp(&b.chi_squared)).cloned();
+    let least = least(fitted()).cloned();
     // one that fits, and that the least does not exclude
     let fine = |fit: &Fit, least: &Fit| fit.faults().next().is_none() && !is_excluded(fit, least);
     let fine = least.as_ref().is_some_and(|least| fitted().any(|fit| fine(fit, least)));

@@ -89,6 +89,21 @@ fn the_shortest_film_is_that_of_the_closed_form() {
     assert_eq!(design.shortest(&[]), None);
 }
 
+/// Each of Chetaev's motions of the disc and of the velocity pendulum is vakonomic for some μ₀: no film tells
+/// them apart, from half of the starts, from all and from twice as many.
+#[test]
+fn a_rival_that_contains_the_motion_is_no_distance_away() {
+    for name in ["disc", "velocity-pendulum"] {
+        let scene = built_in(name);
+        let films = [film(&scene, &[], "4Hz,1mm,10s")];
+        let (free, aim) = (unknowns(&["start"]), Aim::Tell(CHETAEV, VAKONOMIC));
+        let design = Design::new(&scene, &films, &question(&free, 4), &[], &aim).unwrap();
+        let point = design.point_again(&[]).unwrap();
+        assert_eq!(point.by_starts.iter().map(|(starts, _)| *starts).collect::<Vec<_>>(), [2, 4, 8]);
+        assert!(point.by_starts.iter().all(|(_, value)| *value < 1e-3), "{name}: {point:?}");
+    }
+}
+
 #[test]
 fn what_makes_no_sense_is_refused() {
     let scene = built_in("heisenberg");

@@ -102,7 +102,12 @@ fn circles_are_vakonomic_and_straight_lines_are_both() {
 
 /// x, y, φ of Chetaev's sledge: mathematics of the paper's first example.
 pub fn sledge(t: f64) -> Vec<f64> {
-    let (g, alpha, phi0, speed, omega) = (9.81_f64, 0.4_f64, 0.3_f64, 0.5_f64, 1.1_f64);
+    sledge_from(0.3, t)
+}
+
+/// The same from another heading.
+pub fn sledge_from(phi0: f64, t: f64) -> Vec<f64> {
+    let (g, alpha, speed, omega) = (9.81_f64, 0.4_f64, 0.5_f64, 1.1_f64);
     let (slope, turn) = (g * alpha.sin(), omega * t);
     let ((s0, c0), (s1, c1)) = (phi0.sin_cos(), (phi0 + turn).sin_cos());
     let (c, s) = ((s1 - s0) / omega, (c0 - c1) / omega);

@@ -1,6 +1,9 @@
 //! Tails of distributions by tables, and tests on residuals by hand.
 
-use fit::{chi_squared_tail, normal_tails, runs, whiteness};
+use fit::{Deviations, Film, Residual, chi_squared_tail, normal_tails, residual_tests, runs, whiteness};
+
+use crate::films::built_in;
+use crate::noise::Noise;
 
 /// SciPy 1.17: `chi2.sf`, `2*norm.sf`.
 #[test]
@@ -34,4 +37,24 @@ fn runs_and_correlations_by_hand() {
     // ρ₁ of 1, −1, 1, −1 is −3/4: Q = 4·6·(9/16)/3
     let (found, lags, _) = whiteness(&[1.0, -1.0, 1.0, -1.0]);
     assert!((found - 4.5).abs() < 1e-12 && lags == 1.0);
+}
+
+/// Tests on noise object to one film in a thousand, among twenty and thirty samples too, where Q is not χ².
+#[test]
+fn tests_on_few_residuals_object_as_rarely_as_they_say() {
+    let (scene, films) = (built_in("heisenberg"), 6000);
+    for samples in [20, 30] {
+        let table: String = (1..=samples).map(|k| format!("{k},0\n")).collect();
+        let deviations = Deviations { others: Some(1.0), ..Deviations::default() };
+        let film = Film::read(&scene, "film", &format!("t,x\n{table}"), &deviations).unwrap();
+        let mut noise = Noise(samples);
+        let mut objects = || {
+            let residual = |(line, &t): (usize, &f64)| Residual { film: 0, column: 0, line, t, value: noise.normal() };
+            let residuals: Vec<Residual> = film.t.iter().enumerate().map(residual).collect();
+            residual_tests(&[&film], &residuals, 0, false).iter().any(|test| test.objects)
+        };
+        let found = (0..films).filter(|_| objects()).count();
+        // six are expected; more than fifteen in one of two thousand
+        assert!(found <= 15, "{samples}: {found}");
+    }
 }

@@ -1,10 +1,10 @@
 //! Exclusions that can be trusted: right formulations, nested ones, what is not modelled, estimated
 //! deviations, units, and the smallest films.
 
-use fit::{Deviations, Film, Identifiability, Unknown, Verdict, fit_formulations, significance, threshold};
+use fit::{Deviations, Film, Identifiability, Question, Unknown, Verdict, fit_formulations, significance, threshold};
 use scene::Scene;
 
-use crate::films::{SLEDGE, built_in, film, fitted, sledge, times};
+use crate::films::{SLEDGE, built_in, film, fitted, fitted_by, sledge, sledge_from, times};
 
 const DISC: &str = r#"
 title = "Upright disc"
@@ -45,6 +45,29 @@ fn a_family_that_contains_the_motion_is_not_excluded() {
     }
 }
 
+/// A ball on a turning table runs on a circle. The vakonomic ball does on a table at rest, for μ₀ = −m(x', y')
+/// and the spin 2/5 Ω: no start near the true Ω leads there. Where a search misses that, it is not settled, and
+/// Chetaev's formulation is not supported.
+#[test]
+fn what_holds_without_a_parameter_is_found() {
+    let (rate, v) = (2.0 / 7.0 * 0.6837, [-0.0052, 0.1210]);
+    let at = |t: f64| {
+        let (s, c) = ((rate * t).sin() / rate, (1.0 - (rate * t).cos()) / rate);
+        vec![0.6626 + v[0] * s - v[1] * c, -0.0407 + v[1] * s + v[0] * c]
+    };
+    let unknowns = ["x", "y", "x'", "y'", "psi'", "Omega"].map(|name| name.parse::<Unknown>().unwrap());
+    for (radius, starts) in [(0.1, 1), (0.1, 16), (0.08, 16)] {
+        let scene = scene::catalogue::find("turntable", &[("a".to_string(), radius.into())]).unwrap();
+        let film = film(&scene, "x,y", 5e-4, 5, &times(6.0), at);
+        let question = Question { starts, ..crate::films::question(&unknowns) };
+        let rows = fit_formulations(&scene, &mut [film], &question, &[motion::CHETAEV, motion::VAKONOMIC]).unwrap();
+        let [chetaev, vakonomic] = [0, 1].map(|i| rows[i].fit.as_ref().unwrap().chi_squared);
+        assert_ne!(rows[0].verdict, Verdict::Supported, "{vakonomic} from {starts} starts");
+        assert!(!matches!(rows[1].verdict, Verdict::Excluded { .. }), "{vakonomic} from {starts} starts");
+        assert!(starts == 1 || vakonomic < chetaev + 0.5, "{vakonomic} for {chetaev}");
+    }
+}
+
 /// Quantiles of the χ² distribution at the level of 15 with one degree of freedom, from tables.
 #[test]
 fn thresholds_go_with_the_unknowns_more() {
@@ -68,6 +91,20 @@ fn sixteen_straight_lines_exclude_nobody() {
         .collect();
     let rows = fitted(&scene, &films, &["x", "y", "x'", "y'"], &[]);
     assert!(rows.iter().all(|row| matches!(row.verdict, Verdict::CannotTell { .. })), "{:?}", rows[0].verdict);
+}
+
+/// Short films of a sledge, each with a start of its own: among 25 unknowns no two starts lead to one minimum,
+/// and one film alone excludes what is wrong.
+#[test]
+fn one_of_many_films_excludes() {
+    let scene = built_in("sledge");
+    let t: Vec<f64> = (1..=20).map(|k| k as f64 / 10.0).collect();
+    let film = |k: u64| film(&scene, "x,y,phi", 1e-3, 90 + k, &t, |t| sledge_from(0.1 * k as f64, t));
+    let films: Vec<Film> = (0..4).map(film).collect();
+    let rows = fitted(&scene, &films, &SLEDGE, &[]);
+    assert_eq!(rows[0].verdict, Verdict::Supported);
+    assert!(matches!(rows[1].verdict, Verdict::Excluded { sigmas } if sigmas > 100.0), "{:?}", rows[1].verdict);
+    assert!(rows[1].notes.iter().any(|note| note.contains("alone; of the whole films")), "{:?}", rows[1].notes);
 }
 
 /// A straight line on a table that is tilted by 0.07°, which no scene says: an arc is as good as a parabola.
@@ -219,6 +256,21 @@ fn a_stationary_unknown_is_shown() {
     assert!(zero.interval[1] > 0.3 * end && zero.interval[1] < 2.0 * end, "{zero:?} {end}");
     let other = estimate(0.3);
     assert!((other.value.abs() - 0.3).abs() < 4.0 * other.error && other.error < 0.01, "{other:?}");
+}
+
+/// Coarse films of a sledge that starts 20 mrad from across, where `y'` is fifty times `x'`, are fitted.
+#[test]
+fn films_that_begin_near_a_heading_of_ninety_degrees_are_fitted() {
+    let at = |name: &str, x: f64| (name.to_string(), x.into());
+    let scene = scene::catalogue::find("sledge", &[at("phi", 1.55), at("x'", 0.5 * 1.55_f64.cos())]).unwrap();
+    let t: Vec<f64> = (1..=12).map(|k| f64::from(k) / 6.0).collect();
+    for seed in 0..10 {
+        let film = film(&scene, "x,y,phi", 1e-3, 300 + seed, &t, |t| sledge_from(1.55, t));
+        let row = fitted_by(&[motion::CHETAEV], &scene, &[film], &SLEDGE, &[]).remove(0);
+        let fit = row.fit.unwrap_or_else(|error| panic!("{seed}: {error}"));
+        let g = fit.estimates.iter().find(|e| e.name.starts_with('g')).unwrap();
+        assert!((g.value - 9.81).abs() < 4.5 * g.error && g.error < 0.05, "{seed}: {g:?}");
+    }
 }
 
 /// Up to 6 µrad beside the pole of `y' = x' tan φ`, derivatives of the start are those of the formula.

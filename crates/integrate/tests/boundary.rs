@@ -144,6 +144,14 @@ fn every_error() {
         Ok(())
     };
     assert!(matches!(shoot(&mut singular, &[2.0, 1.0], &options), Err(BoundaryError::Singular { .. })));
+    // derivatives of condition 1e4 determine an end, also where the search does not come to it
+    let mut determined = |c: &[f64], r: &mut [f64]| {
+        (r[0], r[1]) = (c[0] + c[1] - 1.0, 1e-4 * (c[0] - c[1]).sinh());
+        Ok(())
+    };
+    let found = shoot(&mut determined, &[2.0, 1.0], &options).unwrap();
+    assert!(found.unknowns.iter().all(|x| (x - 0.5).abs() < 1e-6), "{found:?}");
+    assert!(matches!(shoot(&mut determined, &[8.0, 1.0], &few), Err(BoundaryError::NotConverged { .. })));
 }
 
 #[test]

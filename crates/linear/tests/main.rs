@@ -116,6 +116,10 @@ fn a_steady_motion_is_found_on_its_position_constraint() {
     assert!(state.q[0].abs() < 1e-9 && state.q[1].abs() < 1e-9 && (radius - 2.0).abs() < 1e-9, "{state:?}");
     let found = linearize(Setting { start: &state, ..setting(&scene) }, &choice(&scene, CHETAEV));
     assert!(found.is_ok(), "{found:?}");
+    // a sleigh stands still where it is, without anything that moves it there
+    let sleigh = scene::catalogue::find("sleigh", &[]).expect("built in");
+    let state = find_steady(setting(&sleigh)).expect("at rest");
+    assert!(state.v.iter().all(|v| v.abs() < 1e-9), "{state:?}");
     // nothing stands still on a slope
     let slope =
         self::scene(&[("x", 0.0), ("y", 0.0)], "(x'^2 + y'^2)/2 - x^3 - x - y^2", &[], "\"x'\" = 0, \"y'\" = 0");
