@@ -2,7 +2,10 @@
 //! waits for one motion that is derived twice; who compares, sweeps, or draws a thousand systems, does.
 
 use comparison::{Comparison, Extent};
-use motion::{Ensemble, EnsembleOptions, Prepared, Settings, choices, derive_in_form, setting, solve_choice};
+use motion::{
+    CHETAEV, Ensemble, EnsembleOptions, Prepared, Settings, choices, derive_in_form, error_estimate, setting,
+    solve_choice,
+};
 use scene::Scene;
 use symbolic::faults::chances;
 
@@ -93,4 +96,33 @@ fn members_are_neither_derived_nor_planned() {
         let (motions, count) = counted(|| ensemble.motions(&members, &[0.5 * scene.duration], &options));
         assert_eq!((motions.len(), count), (20, [0, 0]), "{name}");
     }
+}
+
+#[test]
+fn what_is_asked_of_a_motion_derives_and_plans_nothing() {
+    let settings = Settings::default();
+    for name in SCENES {
+        let asked = each(name, |scene, choice| {
+            let mut motion = solve_choice(scene, choice, &settings).unwrap_or_else(|error| panic!("{name}: {error}"));
+            let end = motion.end();
+            counted(|| {
+                assert!(error_estimate(&mut motion, setting(scene)).is_ok(), "{name}");
+                (0..50).filter(|i| motion.at(end * f64::from(*i) / 50.0).is_ok()).count()
+            })
+        });
+        assert!(asked.iter().all(|asked| *asked == (50, [0, 0])), "{name}: {asked:?}");
+    }
+}
+
+#[test]
+fn steady_motions_of_a_sweep_are_derived_once() {
+    let bicycle = scene("bicycle");
+    let choice = choices(&bicycle).into_iter().find(|choice| choice.formulation == CHETAEV).expect("it is there");
+    let count = |values: &[f64]| {
+        let swept = counted(|| linear::sweep(&scene("bicycle"), &choice, &["lean", "steer"], ("v", values), false));
+        assert!(swept.0.is_ok_and(|sweep| sweep.points.len() == values.len() && sweep.changes.is_empty()));
+        swept.1
+    };
+    let [one, several] = [count(&[5.0]), count(&[4.6, 5.0, 5.4, 5.8])];
+    assert!(one[DERIVE] > 0 && one == several, "{one:?}, {several:?}");
 }

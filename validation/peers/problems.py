@@ -118,12 +118,13 @@ def problems():
 
 
 def together(case):
-    """The same for several motions, by us in lanes and by heyoka in its batch mode."""
-    scene = deltaq.parse(case.toml)
+    """The same for several motions, by us in lanes and by heyoka in its batch mode; their velocities are projected."""
+    toml = case.toml.replace("[start]\n", "[start]\nproject = true\n")
+    scene = deltaq.parse(toml)
     place = {name + prime: x for prime, values in (("", scene.start.q), ("'", scene.start.v)) for name, x in zip(scene.coordinates, values)}
     vary = {name: [place[name] + i * step for i in range(MEMBERS)] for name, step in APART[case.name.partition("-")[0]].items()}
     entrants = [("deltaq", "together"), ("heyoka", "reduced")]
-    return replace(case, title=f"{case.title}, {MEMBERS} at a time", name=case.name + TOGETHER, entrants=entrants, vary=vary)
+    return replace(case, toml=toml, title=f"{case.title}, {MEMBERS} at a time", name=case.name + TOGETHER, entrants=entrants, vary=vary)
 
 
 def car(n, entrants):

@@ -318,7 +318,7 @@ impl<'a, P: LaneProblem> Lanes<'a, P> {
         let last = step >= remaining.abs();
         let (work, limit) = (&rider.run.work, self.options.max_steps);
         let attempts = work.steps + work.rejected;
-        let creeps = rider.stall.look(t, work.steps, attempts, limit).is_some();
+        let creeps = rider.stall.look(t, [work.steps, attempts, limit], || false).is_some();
         if attempts >= limit {
             self.leave(lane, Left::TooManySteps, done);
         } else if !last && (creeps || step <= shortest_step(t) || step.is_nan()) {

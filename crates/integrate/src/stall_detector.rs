@@ -22,6 +22,11 @@ const MOST: f64 = 0.8;
 const LONG: usize = 8_000;
 const SLOWER: f64 = 1e-2;
 
+/// Near a loss of rank, one window of so many attempts that is too slow is enough, if at least this part of
+/// them was refused: what is left there of the digits of the rates lets steps shrink for ever.
+const REFUSALS: usize = 50;
+const REFUSED: f64 = 0.7;
+
 /// A point of a run: the time, and the number of steps or of attempts so far.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Mark {
@@ -37,6 +42,9 @@ pub struct StallDetector {
     many: Mark,
     stretch: Mark,
     long: Mark,
+    refusals: Mark,
+    /// Steps at the last of these marks.
+    steps: usize,
     /// Start and number of the latest consecutive windows that are too slow; the time that the first of them
     /// and the last window moved.
     slow: Mark,
@@ -57,6 +65,8 @@ impl StallDetector {
             many: mark,
             stretch: mark,
             long: mark,
+            refusals: mark,
+            steps: 0,
             slow: mark,
             stretches,
             first,
@@ -76,9 +86,14 @@ impl StallDetector {
     }
 
     /// Checks a run for a stall at time `t`, after `steps` accepted steps out of `attempts`, at most `limit`
-    /// of which are allowed. If it stalls: the number of the last steps (or attempts), and how far they moved
-    /// the time.
-    pub fn look(&mut self, t: f64, steps: usize, attempts: usize, limit: usize) -> Option<(usize, f64)> {
+    /// of which are allowed, maybe `near` a loss of rank. If it stalls: the number of the last steps (or
+    /// attempts), and how far they moved the time.
+    pub fn look(
+        &mut self,
+        t: f64,
+        [steps, attempts, limit]: [usize; 3],
+        near: impl FnOnce() -> bool,
+    ) -> Option<(usize, f64)> {
         let since = |mark: Mark, count: usize| (count - mark.count, (t - mark.t).abs());
         let (many, moved) = since(self.many, steps);
         if many >= MANY_STEPS {
@@ -90,6 +105,14 @@ impl StallDetector {
         let endless = |count: usize, moved: f64| {
             (self.end - t).abs() / moved * count as f64 >= TO_GO.max(TIMES_ALLOWED * limit as f64)
         };
+        let (count, moved) = since(self.refusals, attempts);
+        if count >= REFUSALS {
+            let taken = (steps - self.steps) as f64;
+            if taken < (1.0 - REFUSED) * count as f64 && endless(count, moved) && near() {
+                return Some((count, moved));
+            }
+            (self.refusals, self.steps) = (Mark { t, count: attempts }, steps);
+        }
         let (long, moved) = since(self.long, attempts);
         if long >= LONG {
             let pace = (t - self.start).abs() / attempts as f64;

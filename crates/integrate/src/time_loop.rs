@@ -136,10 +136,13 @@ impl Record<'_, '_> {
             if attempts >= limit {
                 return Err(StopCause::TooManySteps { limit });
             }
-            if let Some((steps, moved)) = self.stall.look(t, work.steps, attempts, limit) {
+            if let Some((steps, moved)) = self.stall.look(t, [work.steps, attempts, limit], || inside.rank.is_near()) {
                 return Err(StopCause::Creeping { steps, moved });
             }
-            if let Some((ahead, moved)) = self.stall.is_over(self.options.patience) {
+            // no other method gets past a loss of rank
+            if let Some((ahead, moved)) = self.stall.is_over(self.options.patience)
+                && !inside.rank.is_near()
+            {
                 return Err(StopCause::Slow { ahead, moved });
             }
             if self.options.dense == Dense::Everywhere {

@@ -9,8 +9,23 @@ fn creeps(end: f64, step: impl Fn(f64, f64) -> f64) -> Option<usize> {
     (1..1_000_000).find(|&n| {
         t += step(n as f64, t);
         // one attempt in four is rejected
-        t.abs() < end.abs() && pace.look(t, n - n / 4, n, 1_000_000).is_some()
+        t.abs() < end.abs() && pace.look(t, [n - n / 4, n, 1_000_000], || false).is_some()
     })
+}
+
+#[test]
+fn near_a_loss_of_rank_refusals_are_enough() {
+    // the falling bicycle: 300 steps to 4 s, then 1e-8 per attempt; one of so many is taken
+    let found = |one: usize, near: bool, step: f64| {
+        let (mut pace, mut t) = (StallDetector::new(0.0, 20.0), 0.0);
+        (1..1_000).find(|&n: &usize| {
+            t += if n < 300 { 4.0 / 300.0 } else { step };
+            let steps = n.min(300) + n.saturating_sub(300) / one;
+            pace.look(t, [steps, n, 1_000_000], || near).is_some()
+        })
+    };
+    assert!(found(8, true, 1e-8).is_some_and(|n| n > 300 && n <= 450), "{:?}", found(8, true, 1e-8));
+    assert_eq!([found(8, false, 1e-8), found(2, true, 1e-8), found(8, true, 1e-5)], [None; 3]);
 }
 
 #[test]

@@ -1,7 +1,7 @@
 //! Newton's method for `r(x) = 0` with any number of equations and unknowns: the one Newton of the crate.
 //!
 //! Each step is the shortest `s` that minimizes `‖W (r + J s)‖` (Gauss–Newton through a singular value
-//! decomposition), damped by halving until `‖W r‖` falls. `W` scales the rows of `J` to 1, so that the units
+//! decomposition; large systems that are far from singular through `Q R`), damped by halving until `‖W r‖` falls. `W` scales the rows of `J` to 1, so that the units
 //! of the equations do not matter. Convergence is quadratic at a regular root; a linear system is solved by
 //! one step, and every root gets one step more for the sake of its last digits.
 
@@ -42,9 +42,9 @@ impl Evaluation {
     /// # Errors
     /// [`NewtonError::NotFinite`].
     pub(crate) fn sizes(&self, x: &DVector<f64>) -> Result<Vec<f64>, NewtonError> {
-        let Decomposition { weights, svd, leading } = Decomposition::new(self, NewtonOptions::default().rank_limit)?;
+        let Decomposition { weights, factors, leading } = Decomposition::new(self, NewtonOptions::default().rank_limit)?;
         let inverse = |i: usize, j: usize| {
-            leading.iter().map(|&k| svd.right[(k, i)] * svd.left[(j, k)] / svd.values[k]).sum::<f64>()
+            leading.iter().map(|&k| factors.right[(k, i)] * factors.left[(j, k)] / factors.values[k]).sum::<f64>()
         };
         let term = |i: usize, j: usize| inverse(i, j).abs() * weights[j] * self.term_size(j, x);
         Ok((0..x.len()).map(|i| (0..self.residual.len()).map(|j| term(i, j)).sum()).collect())
@@ -220,10 +220,11 @@ fn damped(
     None
 }
 
-/// Singular value decomposition of the row-scaled `J`, padded with zero rows to all n right singular vectors.
+/// Singular values of the row-scaled `J`, padded with zero rows to all n right singular vectors; or the factors
+/// of [`triangular`] in their place.
 struct Decomposition {
     weights: DVector<f64>,
-    svd: SingularValues,
+    factors: SingularValues,
     /// Places of the singular values that are not zero.
     leading: Vec<usize>,
 }
@@ -233,10 +234,13 @@ impl Decomposition {
         let (m, n) = e.jacobian.shape();
         let weights = e.row_weights();
         let padded = DMatrix::from_fn(m.max(n), n, |i, j| if i < m { weights[i] * e.jacobian[(i, j)] } else { 0.0 });
-        let svd = decompose(&padded)?;
-        let limit = rank_limit * svd.values.iter().copied().fold(0.0, f64::max);
-        let leading = (0..svd.values.len()).filter(|&k| svd.values[k] > limit).collect();
-        Ok(Decomposition { weights, svd, leading })
+        let factors = match triangular(&padded, rank_limit) {
+            Some(factors) => factors,
+            None => decompose(&padded)?,
+        };
+        let limit = rank_limit * factors.values.iter().copied().fold(0.0, f64::max);
+        let leading = (0..n).filter(|&k| factors.values[k] > limit).collect();
+        Ok(Decomposition { weights, factors, leading })
     }
 
     /// The shortest least-squares solution of `W J s = −W r`.
@@ -244,16 +248,29 @@ impl Decomposition {
         let mut step = DVector::zeros(e.jacobian.ncols());
         let weighted = e.residual.component_mul(&self.weights);
         for &k in &self.leading {
-            let along: f64 = weighted.iter().zip(self.svd.left.column(k).iter()).map(|(r, u)| r * u).sum();
-            step -= self.svd.right.row(k).transpose() * (along / self.svd.values[k]);
+            let along: f64 = weighted.iter().zip(self.factors.left.column(k).iter()).map(|(r, u)| r * u).sum();
+            step -= self.factors.right.row(k).transpose() * (along / self.factors.values[k]);
         }
         step
     }
 
     fn null_space(&self) -> DMatrix<f64> {
-        let rest: Vec<usize> = (0..self.svd.values.len()).filter(|k| !self.leading.contains(k)).collect();
-        self.svd.right.select_rows(&rest).transpose()
+        let rest: Vec<usize> = (0..self.factors.values.len()).filter(|k| !self.leading.contains(k)).collect();
+        self.factors.right.select_rows(&rest).transpose()
     }
+}
+
+/// `Q`, ones and `R⁻ᵀ` of a large matrix that is far from losing rank: `A⁺ = R⁻¹ Qᵀ`, many times faster than
+/// singular values.
+fn triangular(matrix: &DMatrix<f64>, rank_limit: f64) -> Option<SingularValues> {
+    const LARGE: usize = 32;
+    let n = matrix.ncols();
+    if n < LARGE || SingularValues::least_at_least(&matrix.transpose()) <= rank_limit * matrix.norm() {
+        return None;
+    }
+    let factors = matrix.clone().qr();
+    let inverse = factors.r().solve_upper_triangular(&DMatrix::identity(n, n))?;
+    Some(SingularValues { left: factors.q(), values: DVector::from_element(n, 1.0), right: inverse.transpose() })
 }
 
 /// Singular values of a finite matrix.

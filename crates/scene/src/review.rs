@@ -172,6 +172,11 @@ impl<'c> Reviewer<'c> {
         let entries: Vec<f64> = hessian.entries().iter().map(|&e| self.value(e, &self.values)).collect();
         let n = system.dimension();
         let size = entries.iter().fold(0.0_f64, |size, x| size.max(x.abs()));
+        // by the circles of Gershgorin
+        let is_positive = |i: usize| 2.0 * entries[i * n + i] >= entries[i * n..(i + 1) * n].iter().map(|x| x.abs()).sum::<f64>();
+        if (0..n).all(is_positive) {
+            return None;
+        }
         let energy = |w: &Vec<f64>| -> f64 { (0..n).map(|i| w[i] * dot(&entries[i * n..(i + 1) * n], w)).sum() };
         let least = self.directions().iter().map(|w| energy(w) / dot(w, w).max(SMALL)).fold(f64::INFINITY, f64::min);
         let negative = least < -SMALL * size;
