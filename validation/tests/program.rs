@@ -29,7 +29,7 @@ const ANSWERS: [&[&str]; 10] = [
     &["bench", "bowl", "--seconds", "0.0001", "--quiet"],
     &["benchmark", "--systems", "particle", "--starts", "1", "--quiet", "--out", TABLES],
     &["films", "--scenes", "appell-hamel", "--quiet", "--out", FILMS],
-    &["ivp", "--quiet", "--out", IVP],
+    &["ivp", "--problems", "car-axis", "--quiet", "--out", IVP],
     &["integrals", "--scenes", "particle", "--parts", "scenes", "--quiet", "--out", INTEGRALS],
     &["scaling", "--longest", "1", "--repeats", "1", "--quiet"],
     &["stability", "--case", "blow-up", "--quiet"],

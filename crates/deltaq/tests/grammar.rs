@@ -10,7 +10,7 @@ use std::time::{Duration, Instant};
 use crate::support::{command, text};
 
 /// Scenes of the check.
-const SCENES: u64 = 40;
+const SCENES: u64 = 20;
 /// A command is stopped after this many seconds, which is no fault of it.
 const PATIENCE: u64 = 20;
 /// Codes that the guide names, but for those that are faults of the program: 4 and 5.

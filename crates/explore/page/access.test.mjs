@@ -4,7 +4,7 @@ import { createRequire } from "node:module";
 import { readFileSync } from "node:fs";
 
 import { yours } from "./editor.test.mjs";
-import { STILL, resize } from "./pages.test.mjs";
+import { LIVELY, resize } from "./pages.test.mjs";
 
 const SIZES = [[1280, 600], [400, 800]];
 // CSS pixels that a control has at least, each way (WCAG 2.2, 2.5.8).
@@ -54,7 +54,7 @@ export async function byKeys({ open, leave, forget, fresh, must, url }) {
 
 // Who does not like things to move: nothing runs by itself, and a picture is where it is going at once.
 export async function calm({ open, leave, forget, link, must, choose, fresh, url }) {
-  const page = await open(link({ scene: "sledge" }), { features: STILL });
+  const page = await open(link({ scene: "sledge" }));
   const time = () => page.$eval("#reading", ({ textContent }) => textContent);
   const runs = async (page) => {
     const before = await page.$eval("#reading", ({ textContent }) => textContent);
@@ -67,11 +67,11 @@ export async function calm({ open, leave, forget, link, must, choose, fresh, url
   await page.click("#play");
   must(await runs(page), "the play button does nothing");
   await leave(page);
-  const lively = await open(link({ scene: "sledge" }));
+  const lively = await open(link({ scene: "sledge" }), { features: LIVELY });
   must(await runs(lively), "nothing runs by itself where motion is liked");
   await leave(lively);
   const context = await fresh();
-  const toured = await open(url, { context, features: STILL });
+  const toured = await open(url, { context });
   await toured.click("[data-answer='0']");
   must(!(await runs(toured)), "an answer in the tour starts the motion");
   await forget(context);
@@ -103,12 +103,12 @@ export async function axe({ open, leave, look, link, must, said }) {
   let passes = 0;
   for (const [i, [name, state, act]] of STATES.entries()) {
     const refused = ["no motion", "a faulty text"].includes(name);
-    const page = await open(link(state), { until: refused ? "#refused:not([hidden])" : null, features: STILL });
+    const page = await open(link(state), { until: refused ? "#refused:not([hidden])" : null });
     await act?.(page);
     await page.evaluate(source);
     // sizes and colours are the style's: the page that is there takes them on
     for (const [scheme, [width, height]] of LOOKS[i % LOOKS.length]) {
-      await look(page, scheme, STILL);
+      await look(page, scheme);
       const at = `(${name}, ${scheme}, ${width} × ${height})`;
       await resize(page, { width, height });
       const seen = await page.evaluate(() => [innerWidth, innerHeight, matchMedia("(prefers-color-scheme: dark)").matches].join());

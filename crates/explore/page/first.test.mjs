@@ -3,7 +3,7 @@
 
 import { join } from "node:path";
 
-import { STILL, processor, resize } from "./pages.test.mjs";
+import { processor, resize } from "./pages.test.mjs";
 
 const SIZES = { desk: { width: 1366, height: 768 }, phone: { width: 400, height: 800 } };
 const wait = (milliseconds) => new Promise((resolve) => setTimeout(resolve, milliseconds));
@@ -116,7 +116,7 @@ export async function newText({ open, leave, link, must, type, after, OWN }) {
 // The picture is of the bodies: as long as the run is, they are seen in it, at least as large as a finger; on a phone the others
 // are ghosts. Numbers stand in groups, of which some are closed in a long list.
 export async function bodies({ open, leave, link, must, choose }) {
-  const page = await open(link({ scene: "sledge", time: 1 }), { ...SIZES.desk, features: STILL });
+  const page = await open(link({ scene: "sledge", time: 1 }), SIZES.desk);
   for (const scene of ["sledge", "trailer", "ball-in-cone", "heisenberg", "bicycle"]) {
     if (scene !== "sledge") await choose(page, scene);
     for (const size of Object.values(SIZES)) {

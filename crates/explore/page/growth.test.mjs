@@ -3,9 +3,10 @@
 // What may come and go, in bytes: what is measured after a collection still depends on what is under way.
 const ROOM = 2e6;
 // Rounds that are left out first, in which the browser compiles, and buffers and memories find their size. In each round
-// every slider is moved up and down, once: what a busy machine does in a longer time is the same.
+// every slider is moved up, down and back, once: more moves on the way show nothing else, and more rounds are those of
+// `cargo xtask growth`.
 const WARM = 2;
-const MOVES = 6;
+const MOVES = 3;
 
 // Bytes of all that WebAssembly has in a worker, which no name of the page leads to.
 async function memory(session) {
@@ -93,7 +94,7 @@ const PART = 10;
 
 // Times between frames while the sledge runs, over and over, and a hand is on a slider in every other second.
 export async function frames({ open, link, must, said }, seconds) {
-  const page = await open(link({ scene: "sledge" }), { alone: true });
+  const page = await open(link({ scene: "sledge" }), { alone: true, features: LIVELY });
   const part = () => page.evaluate(async (PART) => {
     const slider = document.querySelector('[data-name="alpha"] input[type=range]');
     const [took, began] = [[], await new Promise(requestAnimationFrame)];

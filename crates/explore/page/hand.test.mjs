@@ -2,6 +2,8 @@
 
 import { join } from "node:path";
 
+import { LIVELY } from "./pages.test.mjs";
+
 // Places of the rings in the page, the numbers that are set, and the start that was computed.
 const state = (page) => page.evaluate(() => {
   const middle = (kind) => {
@@ -34,7 +36,7 @@ async function drag(page, [x, y], [dx, dy]) {
 }
 
 export async function hand({ open, leave, link, must, after, pictures }) {
-  const page = await open(link({ scene: "sledge", time: 2 }));
+  const page = await open(link({ scene: "sledge", time: 2 }), { features: LIVELY });
   must((await state(page)).seen.length === 0, "rings are there unasked");
   await after(page, () => page.click("#grips"));
   const start = await state(page);

@@ -5,8 +5,10 @@ import { existsSync, mkdtempSync, readFileSync, readdirSync, rmSync } from "node
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 
-// Who does not like things to move.
-export const STILL = [{ name: "prefers-reduced-motion", value: "reduce" }];
+// Who does not like things to move. Most checks ask as this one: what runs by itself is drawn sixty times a second, a quarter of
+// the work of all checks, and shows them nothing. LIVELY are those that are about motion, or measure what everybody gets.
+const STILL = [{ name: "prefers-reduced-motion", value: "reduce" }];
+export const LIVELY = [];
 
 export class Pages {
   // `complain` receives messages that a page should not print. Settings of network and appearance go to
@@ -26,7 +28,7 @@ export class Pages {
 
   // A page at an address, loaded anew, which has shown its motions in full, and what is decided, or what it is waited for
   // until. `alone`, it is one that was never used, and no other one is there.
-  async open(address, { width = 1280, height = 900, scheme = "light", context = this.browser.defaultBrowserContext(), features = [], until = null, alone = false } = {}) {
+  async open(address, { width = 1280, height = 900, scheme = "light", context = this.browser.defaultBrowserContext(), features = STILL, until = null, alone = false } = {}) {
     const left = this.left.get(context) ?? [];
     if (alone) await Promise.all(left.splice(0).map((page) => page.close()));
     const page = left.pop() ?? (await this.made(context));
@@ -40,7 +42,7 @@ export class Pages {
     return page;
   }
 
-  async look(page, scheme, features = []) {
+  async look(page, scheme, features = STILL) {
     if (this.isChromium) await page.emulateMediaFeatures([{ name: "prefers-color-scheme", value: scheme }, ...features]);
   }
 

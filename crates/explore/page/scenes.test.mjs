@@ -2,7 +2,7 @@
 
 import katex from "katex";
 
-import { STILL, taken } from "./pages.test.mjs";
+import { taken } from "./pages.test.mjs";
 
 const names = (page) => page.$$eval("#scene option:not([hidden])", (all) => all.map(({ value }) => value));
 
@@ -66,7 +66,7 @@ async function held(page, name, must) {
 
 // Every built-in scene, in one round.
 export async function everyScene({ open, leave, url, must, choose, after, said }) {
-  const page = await open(`${url}#scene=sledge`, { features: STILL });
+  const page = await open(`${url}#scene=sledge`);
   const all = await names(page);
   must(all.length >= 40, `${all.length} scenes`);
   const strange = new Set();

@@ -2,7 +2,7 @@
 
 import { join } from "node:path";
 
-import { resize } from "./pages.test.mjs";
+import { LIVELY, resize } from "./pages.test.mjs";
 
 const SIZES = [[1280, 600], [400, 800], [1366, 657]];
 const BOTH = { scene: "sledge", on: ["removed constraint (arc-length)", "removed constraint (along-x)"], time: 1 };
@@ -104,7 +104,7 @@ export async function cleared({ open, leave, link, must, slide, choose }) {
 
 // A number that is refused ends the motion that was shown, and it is said why.
 export async function refusals({ open, leave, link, must, after, type, OWN }) {
-  const page = await open(link({ scene: "sledge" }));
+  const page = await open(link({ scene: "sledge" }), { features: LIVELY });
   await sizes(page, async (size, at) => {
     for (const [name, x, words] of [["duration", -1, "duration"], ["k", 0, ""]]) {
       await set(page, name, x);

@@ -4,8 +4,6 @@ import { existsSync, mkdtempSync, readFileSync, readdirSync, rmSync } from "node
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 
-import { STILL } from "./pages.test.mjs";
-
 // The tab key leads to what is looked for, as it does for everybody.
 async function go(page, selector) {
   for (let i = 0; i < 120; i++) {
@@ -112,7 +110,7 @@ export async function tasks({ open, leave, forget, fresh, link, must, said }) {
   const [folder, times] = [mkdtempSync(join(tmpdir(), "tasks-")), []];
   const context = await fresh();
   for (const [name, task] of Object.entries(TASKS)) {
-    const page = await open(link({ scene: "sledge", time: 1 }), { context, features: STILL });
+    const page = await open(link({ scene: "sledge", time: 1 }), { context });
     const client = await page.createCDPSession();
     await client.send("Browser.setDownloadBehavior", { behavior: "allow", downloadPath: folder, browserContextId: context.id });
     const began = performance.now();

@@ -21,7 +21,7 @@ import { frames, growth } from "./growth.test.mjs";
 import * as hands from "./hand.test.mjs";
 import * as looking from "./look.test.mjs";
 import * as checks from "./shown.test.mjs";
-import { Pages, after, choose, processor, resize } from "./pages.test.mjs";
+import { LIVELY, Pages, after, choose, processor, resize } from "./pages.test.mjs";
 import { eachBody, everyScene } from "./scenes.test.mjs";
 import * as takes from "./take.test.mjs";
 import { tasks } from "./tasks.test.mjs";
@@ -116,7 +116,7 @@ async function opening() {
   must(size <= LIMITS.megabytes, `${size.toFixed(2)} MB, at most ${LIMITS.megabytes}`);
   const [firsts, took] = [[], []];
   for (let i = 0; i < 3; i++) {
-    const page = await open("about:blank", { alone: true, until: "body" });
+    const page = await open("about:blank", { alone: true, until: "body", features: LIVELY });
     const before = await processor(browser);
     await page.goto(link({ scene: "sledge" }), { waitUntil: "domcontentloaded" });
     await page.waitForFunction(() => window.explored?.first, { timeout: 60000 });
@@ -129,7 +129,7 @@ async function opening() {
 }
 
 async function sliders() {
-  const page = await open(link({ scene: "sledge" }));
+  const page = await open(link({ scene: "sledge" }), { features: LIVELY });
   const before = await rows(page, "Chetaev");
   await after(page, () => slide(page, "phi'", 800));
   const moved = await rows(page, "Chetaev");
@@ -163,7 +163,7 @@ async function sliders() {
   must((await page.$eval("#reading", (reading) => reading.textContent)) === "t = 0.10 s", "the arrow does not step");
   await leave(page);
 
-  const cone = await open(link({ scene: "ball-in-cone" }));
+  const cone = await open(link({ scene: "ball-in-cone" }), { features: LIVELY });
   const [times, turns] = [[], []];
   for (let i = 0; i < 8; i++) {
     const began = await processor(browser);

@@ -1,5 +1,7 @@
 // The guided path: what a step says is what the page computed, nothing gives it away before, and it is left and found again.
 
+import { LIVELY } from "./pages.test.mjs";
+
 const CHETAEV = "Chetaev";
 const VAKONOMIC = "vakonomic";
 
@@ -39,7 +41,7 @@ const step = (page) => page.$eval("#tour .steps", ({ textContent }) => textConte
 
 export async function tour({ open, leave, forget, fresh, link, must, url, pictures, after }) {
   const context = await fresh();
-  const page = await open(url, { context });
+  const page = await open(url, { context, features: LIVELY });
   for (const [i, expected] of EXPECTED.entries()) {
     const at = `step ${i + 1}`;
     must((await step(page)) === `Step ${i + 1} of 6`, `${at} shows ${await step(page)}`);

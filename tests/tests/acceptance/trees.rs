@@ -12,7 +12,7 @@ use scene::Scene;
 use super::machines::same_system;
 use super::support::must;
 
-const SIZES: [usize; 5] = [5, 10, 20, 40, 80];
+const SIZES: [usize; 4] = [5, 10, 20, 40];
 
 fn parsed(coordinates: &[String], velocities: &str, rest: &str) -> Scene {
     let rest = format!("\n{rest}");

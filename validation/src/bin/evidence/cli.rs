@@ -199,6 +199,9 @@ pub struct FilmsArguments {
 /// `evidence ivp`.
 #[derive(Args, Debug)]
 pub struct IvpArguments {
+    /// Problems, all if left out.
+    #[arg(long, value_name = "NAME,…", value_delimiter = ',', value_parser = ["andrews", "car-axis", "fekete", "pleiades"])]
+    pub problems: Vec<String>,
     /// Folder for the page; `reports/measured` is the committed one.
     #[arg(long, value_name = "DIR", value_parser = program::folder())]
     pub out: PathBuf,

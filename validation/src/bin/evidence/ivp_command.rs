@@ -9,7 +9,8 @@ use validation::report::ivp_files;
 
 /// Solves all problems by all methods, one after another, and writes the page.
 pub(crate) fn run(arguments: &IvpArguments, quiet: bool) -> Result<String> {
-    let problems = problems()?;
+    let mut problems = problems()?;
+    problems.retain(|problem| arguments.problems.is_empty() || arguments.problems.contains(&problem.name));
     let bar = parallel::progress(problems.len() * METHODS.len() * TOLERANCES.len(), quiet);
     let mut measured = Vec::new();
     for problem in problems {
