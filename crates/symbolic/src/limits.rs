@@ -21,8 +21,8 @@ pub const LAST_DIGITS: f64 = 1e-14;
 /// more digits would be left of what is divided by, of fourteen.
 pub const DEPENDENT: f64 = 1e-10;
 
-/// What is under this part of its neighbours is not divided by where another can be: it may come to nothing along
-/// the way.
+/// What is under this part of its neighbours is not divided by where another can be: it may come to nothing
+/// along the way.
 pub const PIVOT: f64 = 1e-4;
 
 /// Steps of an iteration that halves an interval or squares an error: so many halvings take a number to its

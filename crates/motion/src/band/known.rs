@@ -106,8 +106,8 @@ pub fn ask(difference: f64, bounds: Option<f64>) -> Answer {
     }
 }
 
-/// [`ask()`] of a single quantity, whose error is estimated less well: the difference counts from as many times
-/// as much on again.
+/// [`ask()`] of a single quantity, whose error is estimated less well: the difference counts from as many
+/// times as much on again.
 pub fn ask_alone(difference: f64, bounds: Option<f64>) -> Answer {
     ask(difference / CERTAINTY, bounds)
 }

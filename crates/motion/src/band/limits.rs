@@ -19,8 +19,8 @@ pub(crate) const ROUND_OFF: f64 = 256.0 * f64::EPSILON;
 pub(crate) const ROUNDED: f64 = 0.5 * f64::EPSILON;
 
 /// Units in the last place by which a start is moved: fewer may vanish in the first sum, and more would be an
-/// error of the start. Round-off may be so many times what a sample of it shows, and what the difference of the
-/// runs does: sums of it are upper bounds.
+/// error of the start. Round-off may be so many times what a sample of it shows, and what the difference of
+/// the runs does: sums of it are upper bounds.
 pub(crate) const UNITS: f64 = 4.0;
 
 /// Accumulated round-off above this part of a state raises a doubt: less of it can be put into a run, which
@@ -55,9 +55,9 @@ pub const SAMPLES: usize = 200;
 pub(crate) const LOOKS: usize = 32;
 pub(crate) const FEW: usize = 4;
 
-/// Instants at which something is looked at that passes between two samples: ends of steps (all, or half of so
-/// many a like number of steps apart and those of the shortest, which are where rates are large), the last
-/// half of a run that ends early, Legendre's condition.
+/// Instants at which something is looked at that passes between two samples: ends of steps (all, or half of
+/// so many a like number of steps apart and those of the shortest, which are where rates are large), the
+/// last half of a run that ends early, Legendre's condition.
 pub const INSTANTS: usize = 64;
 
 /// Number of instants at which sums of terms behind multipliers, and in members behind rates, are computed:

@@ -54,8 +54,8 @@ pub(crate) fn round_off(runs: &mut dyn TwoRuns) -> RoundOff {
     let mut rates =
         |t: f64, y: &[f64], rates: &mut [f64]| runs.states(t).is_some() && runs.compiled().rates(t, y, rates).is_ok();
     match accumulated(&mut rates, &|| names.clone(), &looked, &looser, &sizes) {
-        // what counts shows at any instant; how much it is at equidistant ones: what is large for the time of a
-        // few steps would be far too much in all of another run
+        // what counts shows at any instant; how much it is at equidistant ones: what is large for the time
+        // of a few steps would be far too much in all of another run
         RoundOff::Counts(offsets) => {
             let counts: Vec<bool> = offsets[..sizes.len()].iter().map(|offset| *offset != 0.0).collect();
             let (looked, looser): (Vec<_>, Vec<_>) =
