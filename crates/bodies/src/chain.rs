@@ -1,13 +1,11 @@
 //! Where bodies are, one joined to the other.
 
 use std::ops::Range;
+use symbolic::limits::DEPTH;
 
 use crate::text::{Sum, is_zero_vector, vector};
 use crate::turn::{Axis, Turn, backwards, join, matrix, read, turned, written};
 use crate::{Body, Fault, FaultKind, Formulas, Machine, Made, Motion, Picture, Written};
-
-/// Definitions and brackets within one another that are looked into.
-const DEPTH: usize = 64;
 
 /// A body against its base: space, or a body at rest that is turned in space.
 #[derive(Clone, Debug, Default)]

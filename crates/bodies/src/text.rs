@@ -1,5 +1,7 @@
 //! Formulas as text: their parts, sums of terms, vectors.
 
+use symbolic::limits::DEPTH;
+
 /// The parts of `text` between marks that stand outside of brackets.
 pub(crate) fn split(text: &str, mark: char) -> Vec<&str> {
     let (mut depth, mut from, mut parts) = (0_i32, 0, Vec::new());
@@ -64,9 +66,6 @@ pub(crate) fn is_zero_vector(text: &str) -> bool {
 /// A sum of terms with their signs: what cancels as it is written is not there.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Sum(pub(crate) Vec<(bool, String)>);
-
-/// Brackets within brackets that are looked into; what is deeper is a term.
-const DEPTH: usize = 20;
 
 impl Sum {
     pub(crate) fn read(text: &str) -> Sum {

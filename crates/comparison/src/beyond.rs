@@ -4,14 +4,13 @@ use mechanics::elimination::{eliminate, largest, open};
 use motion::band::SAME_ESTIMATE;
 use motion::{Motion, SolveError};
 use scene::Scene;
+use symbolic::limits::SAME;
 use symbolic::{Evaluator, Expr};
 
 /// Instants that are looked at.
 const INSTANTS: usize = 9;
 /// Steps of the derivative of momenta, as a part of the run.
 const STEP: f64 = 1e-3;
-/// What counts as nothing, as a part of the largest generalized force.
-const NOTHING: f64 = 1e-6;
 
 /// A generalized force that a motion needs, and that no forces at the contacts of its bodies amount to.
 #[derive(Clone, Debug, PartialEq)]
@@ -68,7 +67,7 @@ pub fn beyond_contacts(scene: &Scene, motion: &mut Motion) -> Result<Option<Beyo
             }
         }
     }
-    Ok(largest.filter(|found| found.force.abs() > NOTHING * size))
+    Ok(largest.filter(|found| found.force.abs() > SAME * size))
 }
 
 /// The kernel of `slips`, a vector for each coordinate that it leaves free, of rate 1 there. Pivots are the

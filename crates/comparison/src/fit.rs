@@ -14,9 +14,8 @@ use mechanics::ConstantsRule;
 use nalgebra::{DMatrix, DVector};
 use symbolic::Expr;
 
-use motion::larger;
-use motion::{Metric, Motion, Prepared, Setting, Settings, SolveError, TIGHTER, solve};
-use motion::{SingleRun, outputs};
+use motion::band::SEARCH_STEPS;
+use motion::{Metric, Motion, Prepared, Setting, Settings, SingleRun, SolveError, TIGHTER, larger, outputs, solve};
 
 /// Instants at which the sum of squares is taken.
 pub const INSTANTS: usize = 40;
@@ -26,11 +25,8 @@ const LOOKED_AT: usize = 300;
 const COARSE: usize = 4;
 const FINE: usize = 2;
 
-/// Tolerance of the integrations while constants are searched, of a search from many starts, and the limit on
-/// their steps.
+/// Tolerance of the integrations while constants are searched.
 const SEARCH_TOLERANCE: f64 = 1e-7;
-const MANY_TOLERANCE: f64 = 1e-6;
-const SEARCH_STEPS: usize = 5_000;
 
 /// Other motions may take so many times the steps of the best guess: they are far from it.
 const TIMES: usize = 2;

@@ -3,11 +3,12 @@
 use integrate::DenseOutput;
 use mechanics::SingularValues;
 use nalgebra::{DMatrix, DVector};
+use symbolic::limits::LAST_DIGITS;
 
 use crate::DecisionError;
 use crate::curve::{Curve, Flow};
 use crate::family::Family;
-use crate::sizes::{CERTAINTY, Column, LEAST_NOISE, Sizes, Sums};
+use crate::sizes::{CERTAINTY, Column, Sizes, Sums};
 use crate::transport::{Path, Transport};
 
 /// Gauss nodes per panel, and the least number of panels.
@@ -222,7 +223,7 @@ fn judged(fine: &mut Transport, coarse: &mut Transport, paths: &[Path; 2]) -> Re
                 let all = terms.sum().sqrt();
                 sums.noise += squares(&here.rows - there.rows) * width.abs();
                 sums.terms += terms * width.abs();
-                sums.moves |= here.acceleration.hypot(here.speed / way) > CERTAINTY * LEAST_NOISE * all;
+                sums.moves |= here.acceleration.hypot(here.speed / way) > CERTAINTY * LAST_DIGITS * all;
             }
             sums.acceleration += (here.acceleration * root).powi(2);
             sums.speed += (here.speed * root).powi(2);
@@ -301,7 +302,7 @@ fn judge(
     if least > CERTAINTY * sizes.noise * reach {
         // a free direction may be what is missing: far along it, it moves more than the noise
         let largest = svd.values.iter().copied().fold(0.0, f64::max);
-        let (all, far, left) = solved(LEAST_NOISE * largest);
+        let (all, far, left) = solved(LAST_DIGITS * largest);
         if left <= CERTAINTY * sizes.noise * reach {
             (point, reach, least) = (all, far, left);
         }
@@ -319,7 +320,7 @@ fn judge(
     let directions = orthonormal(free.into_iter().map(own).collect());
     let verdict = match verdict_on(least, reach, &sizes, loudest) {
         // a mismatch this much larger than the motion is amplified round-off
-        Verdict::NotContained if LEAST_NOISE * least > sizes.scale(reach) => Verdict::Undecided,
+        Verdict::NotContained if LAST_DIGITS * least > sizes.scale(reach) => Verdict::Undecided,
         Verdict::Contained if loud => Verdict::Undecided,
         verdict => verdict,
     };

@@ -1,6 +1,7 @@
 //! Starts drawn at random on the constraint, for what holds at almost every start.
 
 use symbolic::Evaluator;
+use symbolic::limits::HALF_THE_DIGITS;
 
 use crate::exact::{Coefficient, Exact, Flaw, Jet, Modular};
 use crate::leaf::{PART, Short};
@@ -194,15 +195,12 @@ struct Root {
     at_start: f64,
 }
 
-/// A ratio that is constant has its value at the start to this part.
-const CONSTANT: f64 = 1e-8;
-
 impl Root {
     /// The root of `square` that is to this one as at the start; `None` unless the same fraction is so here.
     fn times_constant(&self, square: Modular, at_start: f64) -> Option<Modular> {
         let there = at_start / self.at_start;
         let ratio = (square * (self.value * self.value).inverse()?).small_fraction_near(there * there)?;
-        if (ratio.to_f64() - there * there).abs() > CONSTANT * ratio.to_f64() {
+        if (ratio.to_f64() - there * there).abs() > HALF_THE_DIGITS * ratio.to_f64() {
             return None;
         }
         let root = Modular::root(ratio).ok()?.0 * self.value;

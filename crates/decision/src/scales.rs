@@ -2,6 +2,7 @@
 
 use nalgebra::DMatrix;
 use symbolic::Bounded;
+use symbolic::limits::{ITERATIONS, LAST_DIGITS, NOTHING};
 
 use crate::family::{CostateRate, Instant, Shape};
 
@@ -44,7 +45,7 @@ pub(crate) fn balanced(size: usize, matrix: &[Bounded]) -> [Vec<f64>; 2] {
     let mut logarithms = [vec![0.0; size], vec![0.0; size]];
     let entry =
         |i: usize, j: usize| Some(matrix[i * size + j]).filter(|x| !x.may_be_zero()).map(|x| x.value.abs().log2());
-    for round in 0..2 * BALANCES {
+    for round in 0..2 * ITERATIONS {
         let (own, other) = (round % 2, 1 - round % 2);
         for k in 0..size {
             let place = |l: usize| if own == 0 { entry(k, l) } else { entry(l, k) };
@@ -60,13 +61,6 @@ pub(crate) fn balanced(size: usize, matrix: &[Bounded]) -> [Vec<f64>; 2] {
 fn least(sizes: impl Iterator<Item = f64>) -> Option<f64> {
     sizes.filter(|x| *x > 0.0 && x.is_finite()).reduce(f64::min)
 }
-
-/// Rounds in which rows and columns are balanced.
-const BALANCES: usize = 60;
-/// Under this part of what balances the equations, a rate at the start says no size.
-const SMALL: f64 = 1e-9;
-/// An acceleration under this part of the forces at work is round-off of their balance.
-const BALANCED: f64 = 1e-14;
 
 impl Scales {
     pub(crate) fn new(shape: &Shape, start: &Start) -> Scales {
@@ -90,7 +84,7 @@ impl Scales {
         let mut energy: f64 = (0..n).map(kinetic).sum();
         let works: f64 = (0..size).map(work).sum();
         // what round-off leaves of accelerations where forces balance is no motion
-        if energy <= BALANCED.powi(2) * works {
+        if energy <= LAST_DIGITS.powi(2) * works {
             energy = works;
         }
         let energy = if energy > 0.0 && energy.is_finite() { energy } else { 1.0 };
@@ -111,7 +105,7 @@ impl Scales {
                 let own = start.terms.explicit[place * (k + 1) + k] * time;
                 let other = balance(&|r| start.instant.by_costate[r * k + i]);
                 // a rate that is round-off at the start says no size
-                let own = least([own].into_iter()).filter(|own| other.is_none_or(|other| *own > SMALL * other));
+                let own = least([own].into_iter()).filter(|own| other.is_none_or(|other| *own > NOTHING * other));
                 own.or(other)
             }
         });

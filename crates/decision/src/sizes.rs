@@ -1,14 +1,13 @@
 //! Noise of a mismatch, and the sizes that it is compared with.
 
 use nalgebra::{DMatrix, DVector};
+use symbolic::limits::LAST_DIGITS;
 
 use crate::scales::power;
 
 /// A difference has to be this many times the sum of both errors to count: differences of two runs
 /// underestimate an error by a factor of 9 at most, on 2,352 runs with known errors.
 pub const CERTAINTY: f64 = 10.0;
-/// Least round-off of the rows, relative to their size and to the sum of terms behind them.
-pub(crate) const LEAST_NOISE: f64 = 1e-14;
 
 /// Sizes of one constant in the triangular matrix.
 #[derive(Clone, Copy, Debug)]
@@ -59,7 +58,7 @@ impl Sums {
         let [acceleration, speed] = [self.acceleration, self.speed / time.powi(2)].map(f64::sqrt);
         let last = triangle.ncols() - 1;
         let finite = |square: f64| Some(square.sqrt()).filter(|x| x.is_finite()).unwrap_or(0.0);
-        let known = |noise: f64, size: f64, terms: f64| noise.sqrt().max(LEAST_NOISE * size.max(finite(terms)));
+        let known = |noise: f64, size: f64, terms: f64| noise.sqrt().max(LAST_DIGITS * size.max(finite(terms)));
         let terms = finite(self.terms.sum());
         let motion = acceleration.hypot(speed);
         let column = |k: usize, size: f64| known(self.noise[k], size.max(triangle.column(k).norm()), self.terms[k]);
@@ -75,7 +74,7 @@ impl Sums {
             let norm = triangle.column(k).norm();
             let size = if norm > CERTAINTY * noise { norm } else { norm.max(finite(self.terms[k])) };
             // an effect that is round-off of the motion hides none
-            let size = if size > LEAST_NOISE * terms { size * scale } else { f64::INFINITY };
+            let size = if size > LAST_DIGITS * terms { size * scale } else { f64::INFINITY };
             Column { scale, noise: noise * scale, size }
         });
         (sizes(own), columns.collect())

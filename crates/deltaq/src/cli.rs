@@ -29,7 +29,7 @@ pub use judge::JudgeArguments;
 pub use linearize::{LinearizeArguments, TableFormat};
 use motion::Stepping;
 use program::{Common, Output, TextOrJson, by_name};
-pub use range::{MOST_MEMBERS, Range};
+pub use range::Range;
 pub use review::ReviewArguments;
 pub use scenes::{CheckArguments, NewArguments, Overrides, SceneArguments, ShowArguments};
 

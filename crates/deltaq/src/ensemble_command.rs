@@ -8,6 +8,7 @@ use std::time::Instant;
 
 use anyhow::{Result, bail, ensure};
 use integrate::Method;
+use motion::band::CHUNK;
 use motion::{Choice, Ensemble, EnsembleOptions, Settings, setting};
 
 use crate::cli::{EnsembleArguments, Format, MotionArguments};
@@ -19,9 +20,6 @@ use output::{Answers, Outcome, Seconds};
 use program::{Answer, AtomicWriter, ResumableFile, parallel};
 use resume::resume;
 use scene::Scene;
-
-/// Most members integrated before they are written down.
-const CHUNK: usize = 4096;
 
 /// Runs the command.
 pub(crate) fn run(arguments: &EnsembleArguments, quiet: bool) -> Result<Answer> {

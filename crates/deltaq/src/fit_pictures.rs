@@ -3,12 +3,10 @@
 use std::path::PathBuf;
 
 use anyhow::Result;
-use fit::{Film, Fit, Row, profile};
+use fit::{Film, Fit, RISE, Row, profile};
 use picture::{Axis, Curve, Panel, Picture, Style};
 use program::File;
 
-/// χ² by which a number of 95 % rises.
-const RISE: f64 = 3.84;
 /// Points of a profile, and how far it goes beyond the interval, in its widths.
 const POINTS: u32 = 40;
 const BEYOND: f64 = 0.5;

@@ -5,9 +5,9 @@ use std::path::{Path, PathBuf};
 use anyhow::{Result, bail, ensure};
 use pages::Swept;
 use program::{AtomicWriter, ResumableFile, parallel};
-use scene::Number;
+use scene::{MOST_ROWS, Number};
 
-use crate::cli::{MOST_MEMBERS, Range};
+use crate::cli::Range;
 use crate::columns::header;
 
 /// Points computed before they are written down.
@@ -26,7 +26,7 @@ impl<'a> Grid<'a> {
         }
         match Range::combinations(ranges) {
             Some(count) => Ok(Grid { ranges, count }),
-            None => bail!("--sweep makes more than {MOST_MEMBERS} points"),
+            None => bail!("--sweep makes more than {MOST_ROWS} points"),
         }
     }
 

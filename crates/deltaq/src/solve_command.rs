@@ -11,9 +11,11 @@ use indexmap::IndexMap;
 use integrals::watched;
 use integrate::{Interrupt, Projection};
 use mechanics::{Constancy, ConstantsRule, Observables, Removal, Watched};
+use motion::band::SAMPLES;
 use motion::{
-    Choice, ErrorEstimate, Form, STEP_LIMIT, Setting, Settings, Steps, default_constants, equidistant, error_estimates,
-    formulation_in, removal, removal_names, removals, sensitivities, setting, solve_by_steps, solve_choice,
+    Choice, ErrorEstimate, Form, STEP_LIMIT, Setting, Settings, Stepping, Steps, default_constants, equidistant,
+    error_estimates, formulation_in, removal, removal_names, removals, sensitivities, setting, solve_by_steps,
+    solve_choice,
 };
 use scene::Scene;
 use schemars::JsonSchema;
@@ -23,12 +25,7 @@ use crate::cli::{Format, FreeArguments, Limits, MotionArguments, SolveArguments}
 use crate::columns::{
     Columns, Derivatives, MOST_NUMBERS, Numbers, Table, derivative_row, error_row, header, named, named_columns, row,
 };
-use motion::Stepping;
-use program::parallel;
-use program::{Answer, complain, typed};
-
-/// Times at which invariants are sampled, less one: those of error estimates.
-const SAMPLES: usize = 200;
+use program::{Answer, complain, parallel, typed};
 
 /// Runs the command.
 pub(crate) fn run(arguments: &SolveArguments, quiet: bool) -> Result<Answer> {

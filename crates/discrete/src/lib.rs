@@ -72,12 +72,12 @@ pub use composition::Composition;
 pub use error::DiscreteError;
 use newton::check_finite;
 pub use removed_start::RemovedStart;
-pub use start::START_LIMIT;
 use start::{
     check_length, check_start, fresh_symbols, numbers, refuse_forces, substituted_lagrangian, values, with_zeros,
 };
 use step::{Interval, Node, Principle, Step};
 use sum::Compensated;
+pub use symbolic::limits::NOTHING as START_LIMIT;
 pub use trajectory::{Sample, Trajectory};
 
 /// A discrete motion over `[t₀, t₁]` (`t₁ < t₀`: backwards), in any number of steps. Clone it per thread.

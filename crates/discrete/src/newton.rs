@@ -4,6 +4,7 @@
 use std::collections::HashMap;
 
 use mechanics::linear::Factors;
+use symbolic::limits::{CONTRACTION, HALF_THE_DIGITS, ITERATIONS};
 use symbolic::{Evaluator, Expr, Graph, Symbol};
 
 use crate::DiscreteError;
@@ -11,18 +12,8 @@ use crate::DiscreteError;
 /// A correction relative to the largest unknown under which an iteration has converged.
 const SOLVED: f64 = 4e-15;
 
-/// Round-off of ill-conditioned steps: corrections under this that have stopped to shrink are accepted.
-const STALLED: f64 = 1e-8;
-
 /// A correction that the next one, by quadratic convergence, would not be noticed after.
 const UNNOTICED: f64 = 2e-17;
-
-/// Iterations of one step.
-const ITERATIONS: usize = 40;
-
-/// A correction over this part of the last one that moves the rates, by itself or by the impulses of its
-/// multipliers, by over [`FAR`] is refused: it may lead to another root.
-const CONTRACTION: f64 = 0.5;
 
 /// What corrections under this part of the unknowns lead to is near.
 const FAR: f64 = 1e-2;
@@ -95,7 +86,7 @@ impl Iteration {
                 return Ok(());
             }
             let shrinks = found < CONTRACTION * before;
-            if !shrinks && found <= STALLED {
+            if !shrinks && found <= HALF_THE_DIGITS {
                 return Ok(());
             }
             if !shrinks && self.of_rates(first).max(impulses) > FAR {

@@ -2,15 +2,12 @@
 
 use std::collections::HashMap;
 
-use mechanics::fresh_symbol;
-use mechanics::{MemoryVariable, Removal, State, System};
+use mechanics::{MemoryVariable, Removal, State, System, fresh_symbol};
+use symbolic::limits::NOTHING;
 use symbolic::{Expr, Graph, Symbol};
 
 use crate::DiscreteError;
 use crate::newton::{check_finite, largest};
-
-/// Largest `|f_i| / (|A_i| (1 + |v|))` of a start.
-pub const START_LIMIT: f64 = 1e-9;
 
 /// `L` in `(u̇, u, w, t)`; no rate may be too high.
 pub(crate) fn substituted_lagrangian(system: &System, removal: &Removal) -> Result<Expr, DiscreteError> {
@@ -53,8 +50,8 @@ pub(crate) fn check_start(system: &System, start: &State) -> Result<(), Discrete
         check_finite("an entry of the constraint Jacobian", start.t, &row)?;
         let length = row.iter().map(|a| a * a).sum::<f64>().sqrt();
         let found = largest(&residual) / (length * reach);
-        if found.is_nan() || found > START_LIMIT {
-            return Err(DiscreteError::OffConstraint { found, limit: START_LIMIT });
+        if found.is_nan() || found > NOTHING {
+            return Err(DiscreteError::OffConstraint { found, limit: NOTHING });
         }
     }
     Ok(())

@@ -1,5 +1,6 @@
 //! The blocks of one instant: `R(z; t, y) = 0`, solved for `z`.
 
+use symbolic::limits::{CONTRACTION, HALF_THE_DIGITS, ITERATIONS, LAST_DIGITS};
 use symbolic::{Bounded, CompileError, Evaluator, Scalar, Symbol};
 
 use crate::equations::{Block, Equations};
@@ -57,14 +58,6 @@ pub(crate) struct CompiledBlock {
     regular: &'static str,
 }
 
-/// Newton steps allowed for one instant; relative step at which the iteration ends.
-const NEWTON_STEPS: usize = 50;
-const NEWTON_LIMIT: f64 = 1e-14;
-
-/// A second Newton step over this part of the first and over `FAR` of `z` may lead to another root.
-const CONTRACTION: f64 = 0.5;
-const FAR: f64 = 1e-8;
-
 impl CompiledBlock {
     /// Evaluates, factorizes, and leaves `−(∂R/∂z)⁻¹ R` instead of `R`.
     pub(crate) fn step(&mut self, inputs: &[f64]) -> Result<(), EvaluationFailure> {
@@ -101,7 +94,7 @@ impl CompiledBlock {
     /// which the iteration does not contract at once is refused, and whoever steps time comes nearer.
     pub(crate) fn newton(&mut self, inputs: &mut [f64], known: usize) -> Result<(), EvaluationFailure> {
         let mut previous = f64::INFINITY;
-        for iteration in 0..NEWTON_STEPS {
+        for iteration in 0..ITERATIONS {
             self.step(inputs)?;
             let (mut length, mut size) = (0.0_f64, 0.0_f64);
             let first = known + self.first;
@@ -111,24 +104,24 @@ impl CompiledBlock {
                 size = size.max(x.abs());
             }
             let relative = length / size.max(f64::MIN_POSITIVE);
-            if relative <= NEWTON_LIMIT || (relative < 1e-10 && relative >= previous) {
+            if relative <= LAST_DIGITS || (relative < 1e-10 && relative >= previous) {
                 return Ok(());
             }
             let stalls = iteration > 0 && relative > CONTRACTION * previous;
             if stalls && self.is_round_off(inputs) {
                 return Ok(());
             }
-            let astray = iteration == 1 && relative > FAR && stalls;
+            let astray = iteration == 1 && relative > HALF_THE_DIGITS && stalls;
             if !relative.is_finite() || astray {
                 return Err(EvaluationFailure::NotConverged {
                     iterations: iteration + 1,
                     step: relative,
-                    limit: NEWTON_LIMIT,
+                    limit: LAST_DIGITS,
                 });
             }
             previous = relative;
         }
-        Err(EvaluationFailure::NotConverged { iterations: NEWTON_STEPS, step: previous, limit: NEWTON_LIMIT })
+        Err(EvaluationFailure::NotConverged { iterations: ITERATIONS, step: previous, limit: LAST_DIGITS })
     }
 
     /// Whether what is left of the equations is round-off of their terms. Where `z` vanishes it keeps no
@@ -138,7 +131,7 @@ impl CompiledBlock {
         let inputs: Vec<Bounded> = inputs.iter().map(|&x| Bounded::from_f64(x)).collect();
         let mut values = vec![Bounded::from_f64(0.0); self.size * (self.size + 1)];
         tape.evaluate(&inputs, &mut tape.workspace(), &mut values);
-        values[self.size * self.size..].iter().all(|r| r.value.abs() <= NEWTON_LIMIT * r.magnitude)
+        values[self.size * self.size..].iter().all(|r| r.value.abs() <= LAST_DIGITS * r.magnitude)
     }
 
     /// Compiles a block whose first unknown has place `first` in `z`.

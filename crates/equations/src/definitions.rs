@@ -2,6 +2,7 @@
 
 use std::collections::{HashMap, HashSet};
 
+use symbolic::limits::SHORT;
 use symbolic::{Expr, Graph, Symbol};
 
 use mechanics::fresh_symbol;
@@ -107,8 +108,6 @@ pub(crate) fn jacobian(
     definitions: &[(Symbol, Expr)],
     wanted: &[(&[Expr], &[Symbol])],
 ) -> (Vec<(Symbol, Expr)>, Vec<Expr>) {
-    /// Nodes of a derivative that gets no name of its own.
-    const SHORT: usize = 8;
     let independent: HashSet<Symbol> = wanted.iter().flat_map(|(_, by)| by.iter().copied()).collect();
     let inner: HashSet<Symbol> = definitions.iter().map(|d| d.0).chain(independent.iter().copied()).collect();
     let mut all = Definitions::default();

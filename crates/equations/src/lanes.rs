@@ -4,9 +4,10 @@ use symbolic::{CompileError, Evaluator, LANES, Lanes, Scalar, SeriesTape, Series
 
 use crate::equations::{Block, Equations};
 use crate::plan::Plan;
-use crate::projection::{LEFT, LIMIT, STEPS};
+use crate::projection::LIMIT;
 use crate::series::Series;
 use mechanics::fresh_symbol;
+use symbolic::limits::{ITERATIONS, NOTHING};
 
 /// [`crate::Compiled`] for eight motions at a time, in a plan that leaves no block to solve numerically.
 ///
@@ -242,7 +243,7 @@ impl Projection {
         let mut moved = vec![[0.0; LANES]; n];
         let mut under_way = [true; LANES];
         let mut left = [false; LANES];
-        for _ in 0..STEPS {
+        for _ in 0..ITERATIONS {
             let values = self.program.evaluate(inputs);
             let (change, rest) = values.split_at(n);
             let (f, condition) = rest.split_at(self.constraints);
@@ -266,7 +267,7 @@ impl Projection {
             }
             for l in 0..LANES {
                 under_way[l] &= step[l] > LIMIT * speed[l];
-                left[l] = under_way[l] && step[l] > LEFT * speed[l];
+                left[l] = under_way[l] && step[l] > NOTHING * speed[l];
             }
             if !under_way.contains(&true) {
                 break;

@@ -1,17 +1,14 @@
 //! Projection of a state onto its constraint.
 
+use symbolic::limits::{ITERATIONS, NOTHING};
 use symbolic::{CompileError, Evaluator, Symbol};
 
 use crate::blocks::EvaluationFailure;
 use crate::equations::{ConstraintProjection, Equations};
 use mechanics::linear::{Factors, PIVOT_LIMIT, Singular};
 
-/// Newton steps allowed; a step under this length relative to the velocity ends the iteration.
-pub(crate) const STEPS: usize = 12;
+/// A Newton step under this length relative to the velocity ends the iteration.
 pub(crate) const LIMIT: f64 = 4.0 * f64::EPSILON;
-/// Largest allowed length of the last step, relative to the velocity: round-off of nearly dependent
-/// constraints.
-pub(crate) const LEFT: f64 = 1e-9;
 
 /// Minimizes `δvᵀ M δv` subject to `f(q, v + δv, t) = 0`, by Newton steps
 ///
@@ -68,7 +65,7 @@ impl Projector {
         let size = n + self.constraints;
         let mut moved = vec![0.0; n];
         let (mut iterations, mut relative) = (0, 0.0);
-        while iterations < STEPS {
+        while iterations < ITERATIONS {
             let values = self.program.evaluate(inputs);
             let (matrix, f) = values.split_at(size * size);
             if f.iter().all(|&x| x == 0.0) {
@@ -98,8 +95,8 @@ impl Projector {
                 break;
             }
         }
-        if relative > LEFT || !moved.iter().all(|x| x.is_finite()) {
-            return Err(EvaluationFailure::NotProjected { iterations, step: relative, limit: LEFT });
+        if relative > NOTHING || !moved.iter().all(|x| x.is_finite()) {
+            return Err(EvaluationFailure::NotProjected { iterations, step: relative, limit: NOTHING });
         }
         Ok(moved.iter().map(|x| x * x).sum::<f64>().sqrt())
     }

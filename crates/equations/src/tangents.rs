@@ -41,13 +41,10 @@ fn again(program: &Evaluator<f64>) -> Evaluator<Dual> {
 }
 
 impl Tangents {
-    /// Number of directions that are carried at once.
-    pub const DIRECTIONS: usize = LANES;
-
     /// For this number of directions of `compiled`, whose constants and guess count.
     ///
     /// # Panics
-    /// If there are none, or more than [`Tangents::DIRECTIONS`].
+    /// If there are none, or more than [`LANES`].
     pub fn new(compiled: &Compiled, directions: usize) -> Self {
         assert!((1..=LANES).contains(&directions), "1 to {LANES} directions");
         let room = compiled.projector.as_ref().map_or(0, |p| p.places.len() + p.constraints);

@@ -18,9 +18,9 @@ use symbolic::{Evaluator, Expr};
 use crate::run::Run;
 
 /// Step of differences by a coordinate, relative to its size or one.
-const BY_COORDINATE: f64 = 1e-5;
+pub(crate) const BY_COORDINATE: f64 = 1e-5;
 /// Step of differences by time, as a part of the motion.
-const BY_TIME: f64 = 1e-4;
+pub(crate) const BY_TIME: f64 = 1e-4;
 /// Directions and forces below this part of the largest are zero.
 const ZERO: f64 = 1e-7;
 

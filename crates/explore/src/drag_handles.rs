@@ -10,13 +10,10 @@ use motion::SolveError;
 use scene::Scene;
 use serde_json::{Value, json};
 
+use crate::arrows::{BY_COORDINATE, BY_TIME};
 use crate::bodies::shown;
 use crate::controls::start_numbers;
 use crate::question::Question;
-
-/// Step of a number, and of time for the velocity, relative to its size or one.
-const STEP: f64 = 1e-5;
-const BY_TIME: f64 = 1e-4;
 
 /// Place, direction and velocity at the start, each with its derivatives by name; `None` without a body that
 /// moves. A number that cannot be moved alone has none.
@@ -24,7 +21,7 @@ pub(crate) fn of(scene: &Scene, question: &Question) -> Result<Option<Value>, So
     let Some(here) = held(scene)? else { return Ok(None) };
     let mut numbers = Vec::new();
     for (name, value) in start_numbers(scene) {
-        let step = STEP * value.abs().max(1.0);
+        let step = BY_COORDINATE * value.abs().max(1.0);
         let mut set: Vec<(String, f64)> = question.set.iter().map(|(name, x)| (name.clone(), *x)).collect();
         set.retain(|(known, _)| *known != name && !motion::is_costate(known));
         set.push((name.clone(), value + step));

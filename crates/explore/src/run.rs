@@ -2,6 +2,7 @@
 
 use equations::{Equations, Outputs};
 use integrate::{Options, Status};
+use motion::band::COARSEST;
 use motion::{Choice, Motion, Settings, SingleRun, SolveError, Varying, error_estimate, setting, solve_choice};
 use scene::Scene;
 
@@ -10,14 +11,12 @@ use crate::question::Question;
 
 /// Steps of one run at most, and of one at a glance.
 const MAX_STEPS: [usize; 2] = [200_000, 5_000];
-/// Tolerance at a glance: less than can be seen.
-const GLANCE: f64 = 1e-6;
 
 /// How motions are integrated: as those that `deltaq compare` compares, unless a tolerance is asked for.
 pub(crate) fn settings(question: &Question) -> Settings {
     let of = |tolerance: f64, max_steps: usize| Settings { tolerance, max_steps, ..Settings::default() };
     match question.tolerance {
-        _ if question.glance => of(GLANCE, MAX_STEPS[1]),
+        _ if question.glance => of(COARSEST, MAX_STEPS[1]),
         tolerance if tolerance > 0.0 => of(tolerance, MAX_STEPS[0]),
         _ => of(Settings::default().tolerance, MAX_STEPS[0]),
     }

@@ -7,15 +7,14 @@ use equations::Formulation;
 use motion::{CHETAEV, Choice, VAKONOMIC, choices_among, over_threads};
 use scene::Scene;
 
-use crate::creep;
 use crate::design::length_that_tells;
 use crate::fit::{sought, with_intervals};
-use crate::known;
+use crate::profile::LAST;
 use crate::question::{SLIP, has_constants, is_constant, is_law, problem_of};
-use crate::search::{POOR, begun, is_as_high};
+use crate::search::{HOPELESS, begun, is_as_high};
 use crate::settled::{explain, settle};
 use crate::verdict::{beside, is_excluded, least};
-use crate::{Film, Fit, FitError, Problem, Question, Row, Unknown, Verdict, verdicts};
+use crate::{Film, Fit, FitError, Problem, Question, Row, Unknown, Verdict, creep, known, verdicts};
 
 /// Most numbers of all films: with them a fit takes minutes.
 const MOST_NUMBERS: usize = 300_000;
@@ -25,7 +24,6 @@ const GROUPS: usize = 3;
 
 /// Rounds in which standard deviations are estimated, and the part of themselves to which they are.
 const ROUNDS: usize = 4;
-const CLOSE: f64 = 0.02;
 /// χ² of two families that are one, or of which one contains the other, are in order up to this.
 const SAME: f64 = 0.5;
 
@@ -76,7 +74,7 @@ fn estimate_deviations(films: &mut [Film], rows: &[Row]) -> bool {
             continue;
         }
         for column in films.iter_mut().flat_map(|f| &mut f.columns).filter(|c| c.name == name && c.estimated) {
-            changed |= (column.sigma / sigma - 1.0).abs() > CLOSE;
+            changed |= (column.sigma / sigma - 1.0).abs() > LAST;
             column.sigma = sigma;
         }
     }
@@ -129,7 +127,7 @@ fn fit_given(
         let (least, some) = (least(fitted).cloned(), fits.iter().any(fits_well));
         let is_doubtful = |(choice, fit): &(Choice, Fitted)| {
             let is_near = |fit: &Fit| {
-                let is_poor = fit.chi_squared >= POOR * (fit.freedom as f64).max(1.0);
+                let is_poor = fit.chi_squared >= HOPELESS * (fit.freedom as f64).max(1.0);
                 least.as_ref().is_some_and(|least| is_excluded(fit, least)) && !is_poor
             };
             has_constants(choice) && (!some || fit.as_ref().is_ok_and(|(_, fit)| is_near(fit)))

@@ -8,7 +8,7 @@ use motion::shooting::Minimum;
 
 use crate::distribution::normal_tails;
 use crate::fit::{RISE, RISE_AT_BOUND};
-use crate::profile::{NORMAL, Profile};
+use crate::profile::Profile;
 use crate::{Estimate, Fit, FitError, Problem, Unknown};
 
 /// Maximum number of halvings of the initial 1/N down to the least one, and factor by which motions may take
@@ -72,7 +72,7 @@ fn at_its_bound(problem: &Problem, i: usize, kept: &Fit) -> Estimate {
     theta[i] = 0.0;
     let best = Minimum { value: kept.chi_squared, ..Minimum::start(0, theta) };
     let high = derivatives.map_or(f64::INFINITY, |(_, jacobian)| {
-        errors[i] = jacobian.column(i).norm().recip().max(least / NORMAL);
+        errors[i] = jacobian.column(i).norm().recip().max(least / RISE.sqrt());
         let mut profile = Profile::new(problem, &jacobian, &best, &errors, i);
         match profile.rise(least) {
             rise if rise.is_infinite() => rise,
@@ -83,7 +83,7 @@ fn at_its_bound(problem: &Problem, i: usize, kept: &Fit) -> Estimate {
     Estimate {
         name: problem.unknowns()[i].label(),
         value: 0.0,
-        error: high / NORMAL,
+        error: high / RISE.sqrt(),
         interval: [0.0, high],
         profiled: true,
         at_bound: Some(1.0),

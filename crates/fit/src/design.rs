@@ -22,14 +22,13 @@ use serde::Serialize;
 
 use crate::known::beside_chetaev;
 use crate::least::{Stage, least};
+use crate::profile::LAST;
 use crate::question::{LAW, has_constants, is_constant, is_of_a_law, problem_of};
 use crate::search::search;
 use crate::{EXCLUDED, Film, Fit, FitError, Problem, Question, Unknown, quantity, standard_errors};
 
 /// Lengths over that of the film, at which a film that tells is looked for.
 const LENGTHS: [f64; 7] = [1.0, 1.5, 2.0, 3.0, 4.0, 6.0, 8.0];
-/// The shortest film is found to this part.
-const CLOSE: f64 = 0.02;
 
 /// A number that can be chosen, `NAME=LOW:HIGH`, `NAME@2=LOW:HIGH` for the second film alone.
 #[derive(Clone, Debug, PartialEq)]
@@ -388,7 +387,7 @@ fn shortest(tells: &dyn Fn(f64) -> Option<bool>) -> Option<f64> {
         low = longer;
     }
     let mut high = high?;
-    while high - low > CLOSE * high {
+    while high - low > LAST * high {
         // a film that is too short for its unknowns does not tell
         let middle = if low > 0.0 { 0.5 * (low + high) } else { high / 1.5 };
         match tells(middle).unwrap_or(false) {

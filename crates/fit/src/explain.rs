@@ -17,6 +17,7 @@ use mechanics::Parameter;
 use motion::{Choice, choices_among};
 use nalgebra::{DMatrix, DVector};
 use scene::{Filmed, Scene};
+use symbolic::limits::NOTHING;
 use symbolic::{Expr, Function};
 
 use crate::distribution::threshold;
@@ -30,8 +31,6 @@ use crate::{Film, Fit, Problem, Question, Unknown};
 const PLAIN: f64 = 0.1;
 /// The part of what is needed that the score has to promise before it is fitted.
 const PROMISE: f64 = 0.5;
-/// Singular values below this part of the largest are none.
-const NONE: f64 = 1e-9;
 
 /// What would do.
 pub(crate) struct Explanation {
@@ -139,7 +138,7 @@ impl Reached {
             return Some(Reached(None));
         }
         let svd = matrix.try_svd(true, false, f64::EPSILON, 1000)?;
-        let (limit, basis) = (NONE * svd.singular_values.max(), svd.u?);
+        let (limit, basis) = (NOTHING * svd.singular_values.max(), svd.u?);
         let kept: Vec<usize> = (0..svd.singular_values.len()).filter(|&i| svd.singular_values[i] > limit).collect();
         Some(Reached(Some(basis.select_columns(&kept))))
     }

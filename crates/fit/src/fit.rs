@@ -5,17 +5,15 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::distribution::normal_tails;
-use crate::profile::{NORMAL, Profile};
+use crate::profile::{CLOSE, Profile};
 use crate::residual_tests::{ResidualTest, residual_tests};
 use crate::search::{Excluding, Found, search};
 use crate::shown::{Near, Shown, moving, off_stationary, shown};
 use crate::{Film, FitError, Problem, Residual, Unknown};
 
 /// χ² by which a number of 95 % rises, and where it is at its bound: `½χ²₀ + ½χ²₁`.
-pub(crate) const RISE: f64 = 3.841_458_820_694_124;
+pub const RISE: f64 = 3.841_458_820_694_124;
 pub(crate) const RISE_AT_BOUND: f64 = 2.705_543_454_095_404;
-/// χ² at the ends of an interval of standard errors may be off by this part for them to be taken.
-const QUADRATIC: f64 = 0.05;
 /// Times the steps of the best motion that one of a profile may take.
 const PROFILE_STEPS: usize = 5;
 
@@ -200,7 +198,7 @@ fn stationary(problem: &Problem, best: &Minimum, i: usize, step: f64) -> Estimat
     let near = problem.limited(&best.unknowns, PROFILE_STEPS);
     let mut profile = Profile::new(&near, &jacobian, best, &errors, i);
     let [low, high] = [-1.0, 1.0].map(|side| profile.end(side, RISE, bound));
-    let error = 0.5 * (high - low) / NORMAL;
+    let error = 0.5 * (high - low) / RISE.sqrt();
     Estimate {
         name: unknown.label(),
         value: best.unknowns[i],
@@ -243,7 +241,7 @@ fn estimate(problem: &Problem, best: &Minimum, errors: &[f64], i: usize, profile
     }
     let (mut profile, mut profiled) = (profile, false);
     let mut end = |side: f64| -> f64 {
-        let at = value + side * NORMAL * error;
+        let at = value + side * RISE.sqrt() * error;
         let Some(profile) = &mut profile else { return at.max(bound) };
         if side < 0.0 && at <= bound {
             let rise = profile.rise(bound);
@@ -254,7 +252,7 @@ fn estimate(problem: &Problem, best: &Minimum, errors: &[f64], i: usize, profile
             return profile.end(side, RISE, bound);
         }
         let rise = profile.rise(at);
-        if (rise - RISE).abs() <= QUADRATIC * RISE {
+        if (rise - RISE).abs() <= CLOSE * RISE {
             return at;
         }
         profiled = true;

@@ -64,7 +64,7 @@ pub use design::{Aim, Chosen, Design, Point, Range};
 pub use distribution::{EXCLUDED, chi_squared_tail, normal_tails, threshold};
 pub use error::FitError;
 pub use film::{Column, Deviations, Film};
-pub use fit::{Estimate, Fit, fit, profile};
+pub use fit::{Estimate, Fit, RISE, fit, profile};
 pub use identifiability::Identifiability;
 pub use json::{Designed, Fitted};
 pub use planned::Sampling;

@@ -1,5 +1,6 @@
 //! Residuals of films and their derivatives by the unknowns.
 
+use motion::band::COARSEST;
 use motion::{Choice, Settings, is_costate};
 use nalgebra::{DMatrix, DVector};
 use scene::Scene;
@@ -8,9 +9,6 @@ use crate::identifiability::{Identifiability, identifiability};
 use crate::part::{Part, Place};
 use crate::unknown::CLOCK;
 use crate::{Film, FitError, Unknown};
-
-/// The largest tolerance of motions of a search.
-const COARSEST: f64 = 1e-6;
 
 /// Films of motions of one scene in one formulation, and what is not known of it: residuals
 ///

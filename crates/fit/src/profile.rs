@@ -12,20 +12,19 @@ use motion::shooting::Minimum;
 use nalgebra::{DMatrix, DVector, Dyn, SVD};
 
 use crate::Problem;
+use crate::fit::RISE;
 use crate::least::{Stage, least, scaled};
 
-/// Standard deviations of 95 %.
-pub(crate) const NORMAL: f64 = 1.959_963_984_540_054;
 /// Smallest singular value over the largest, of a Jacobian with columns of length one, below which unknowns
 /// are not shown: what is left of derivatives that carry errors of 1e-9.
 pub(crate) const SHOWN: f64 = 1e-7;
 /// Steps outwards and steps in all to the end of a profile, and the part of the rise that they come to.
 const OUTWARDS: usize = 5;
 const STEPS: usize = 15;
-const CLOSE: f64 = 0.05;
+pub(crate) const CLOSE: f64 = 0.05;
 /// Chords in a row, and `|J δ|²` of the last one.
 const CHORDS: usize = 5;
-const LAST: f64 = 0.02;
+pub(crate) const LAST: f64 = 0.02;
 /// Distances are halved up to this many times.
 const HALVINGS: usize = 2;
 
@@ -190,7 +189,7 @@ impl<'a> Profile<'a> {
     pub(crate) fn end(&mut self, side: f64, rise: f64, bound: f64) -> f64 {
         let value = self.best.unknowns[self.i];
         let (mut inside, mut outside) = ((value, 0.0), None);
-        let mut x = value + side * NORMAL * self.errors[self.i];
+        let mut x = value + side * RISE.sqrt() * self.errors[self.i];
         for step in 0..STEPS {
             x = x.max(bound);
             let found = self.rise(x).max(0.0);

@@ -6,6 +6,7 @@
 //! measurement whose deviation is the change that would move the film by its own extent.
 
 use motion::shooting::{Minimum, spread};
+use symbolic::limits::NOTHING;
 
 use crate::distribution::{EXCLUDED, sigmas};
 use crate::least::{Stage, least};
@@ -20,8 +21,6 @@ const LONGER: f64 = 1.5;
 const FOLLOWED: [usize; 4] = [12, 10, 8, 4];
 /// Starts for the whole film are up to this many times halfway to the first one.
 const NEARER: i32 = 8;
-/// A change of an unknown by its own size that moves the film by this part of its extent is round-off.
-const UNMOVED: f64 = 1e-9;
 /// Starts beside one that is known and fits.
 const FEW: usize = 4;
 /// Starts that are fitted to the whole film at once beside the first one.
@@ -33,11 +32,10 @@ const NEAR_STEPS: usize = 8;
 /// Halvings of the way back to the start, where unknowns have gone where a longer motion cannot follow.
 const HALVINGS: i32 = 10;
 /// A beginning is fitted where χ² is within this many standard deviations; then a start is given up whose χ²
-/// is this much above.
+/// is this much above, and digits
+/// of χ² are not looked for where it is so many times the number of residuals.
 const FITS: f64 = 4.0;
-const HOPELESS: f64 = 100.0;
-/// χ² per residual above which digits of χ² are nothing to look for.
-pub(crate) const POOR: f64 = 100.0;
+pub(crate) const HOPELESS: f64 = 100.0;
 /// Minima up to this many times the least are looked at to the last digit; where residuals are large.
 const CLOSE: [f64; 2] = [1.5, 1.05];
 /// Two minima count as one where χ² differs by at most the first number plus the second, as a fraction of χ².
@@ -194,7 +192,7 @@ fn fits(problem: &Problem, found: &Minimum) -> bool {
 
 /// Whether residuals are many deviations.
 fn is_poor(problem: &Problem, chi_squared: f64) -> bool {
-    chi_squared > POOR * problem.count() as f64
+    chi_squared > HOPELESS * problem.count() as f64
 }
 
 /// Whether this χ² is not further above the number of residuals than noise can be.
@@ -328,7 +326,7 @@ fn scales(problem: &mut Problem) -> (Vec<f64>, Option<String>) {
             let scale = |i: usize| {
                 let length = jacobian.column(i).norm();
                 // what only round-off moves has no scale of its own
-                let is_moved = length * plain(i) > UNMOVED * extent && length.is_finite();
+                let is_moved = length * plain(i) > NOTHING * extent && length.is_finite();
                 if is_moved { extent / length } else { plain(i) }
             };
             ((0..start.len()).map(scale).collect(), None)

@@ -6,7 +6,7 @@ use comparison::{Beside, Contradicted, hold};
 use decision::{DecisionError, ExactStart};
 use equations::Outputs;
 use mechanics::{Constancy, System, Watched, project_velocity};
-use motion::band::Known;
+use motion::band::{INSTANTS, Known};
 use motion::{CHETAEV, Choice, Settings, SolveError, derive, solve_choice};
 use scene::Scene;
 use symbolic::{Expr, Graph, Symbol};
@@ -14,9 +14,8 @@ use symbolic::{Expr, Graph, Symbol};
 use crate::ansatz::{self, ansatz};
 use crate::{Ansatz, Open, Printed, Reversed, constants, reversible};
 
-/// Tolerance of the motion along which what is printed is looked at, and times at which it is.
+/// Tolerance of the motion along which what is printed is looked at.
 const TOLERANCE: f64 = 1e-12;
-const TIMES: u32 = 50;
 
 /// Measures and integrals of a scene's motions under one formulation.
 #[derive(Clone)]
@@ -212,7 +211,7 @@ fn changes(scene: &Scene, choice: &Choice, printed: &[Printed]) -> Result<(Vec<K
         terms.iter().map(sums).collect()
     };
     let (mut runs, mut sizes) = (vec![Vec::new(); terms.len()], vec![0.0_f64; terms.len()]);
-    let times = (0..=TIMES).map(|i| from + (to - from) * f64::from(i) / f64::from(TIMES));
+    let times = (0..=INSTANTS as u32).map(|i| from + (to - from) * f64::from(i) / f64::from(INSTANTS as u32));
     for t in times.filter(|&t| t == from || !motion.is_doubted(t)).collect::<Vec<_>>() {
         let (kept, looser) = motion.at_in_both_runs(t).map_err(|fault| fault.to_string())?;
         for (i, (kept, looser)) in zip(read(t, kept)?, read(t, looser)?).enumerate() {

@@ -9,6 +9,7 @@
 //! differences. The minimiser is the crate `levenberg-marquardt`, a port of MINPACK's.
 
 mod search;
+pub use search::AT_ONCE;
 
 use levenberg_marquardt::LevenbergMarquardt;
 use thiserror::Error;

@@ -9,18 +9,16 @@
 use crate::dense::segment_with_slope;
 use crate::events::Segment;
 use crate::options::{Method, Options};
-use crate::root::GOLDEN;
+use crate::root::{GOLDEN, SECTIONS};
+use crate::step_resolution::HUGE;
 use crate::system::{Failure, System};
 use crate::taylor_step::{DEFECT, LEAST_RELATIVE};
 
 /// Round-off of rates, at most, over what one rounding makes of their terms.
-const ROUNDINGS: f64 = 16.0;
+pub(crate) const ROUNDINGS: f64 = 16.0;
 /// The parabola comes near zero where it comes under this part of the smaller end.
 const NEAR: f64 = 0.02;
-/// A divisor is followed down to this part of what it was.
-const LEAST: f64 = 1e-100;
-/// Approaches along the polynomial, then on the straight line between two states, to their last digits.
-const APPROACHES: usize = 40;
+/// Approaches on the straight line between two states, to their last digits.
 const LAST_DIGITS: usize = 1200;
 /// Slopes of polynomials that other methods leave behind are not as good as their ends.
 const OTHERS: f64 = 1e4;
@@ -144,7 +142,7 @@ impl DivisorZeros {
             _ => (0.5, 1.0),
         };
         let mut crosses = differs(middle) || differs(end);
-        for _ in 0..APPROACHES {
+        for _ in 0..SECTIONS {
             let [left, right] = inner(low, high);
             let values = [self.at(system, segment, left, j)?, self.at(system, segment, right, j)?];
             crosses |= values.into_iter().any(differs);
@@ -165,7 +163,7 @@ impl DivisorZeros {
                 self.place.y.copy_from_slice(&place.y);
                 *value = self.judge(system, segment.width, j)?;
             }
-            if values.iter().any(|value| value.abs() < LEAST * begin.abs()) {
+            if values.iter().any(|value| value.abs() < HUGE.recip() * begin.abs()) {
                 break;
             }
             crosses |= values.into_iter().any(differs);

@@ -10,17 +10,15 @@ use crate::dop853_tableau::*;
 use crate::options::Options;
 use crate::problem::Start;
 use crate::status::StopCause;
-use crate::stepper::{Attempt, Stepper, next_step};
+use crate::stepper::{Attempt, SAFETY, Stepper, next_step};
 use crate::system::{Failure, System};
+use crate::taylor_step::LEAST_RELATIVE;
 
-const SAFETY: f64 = 0.9;
-const SLOWEST: f64 = 0.333;
-const FASTEST: f64 = 6.0;
+/// How much steps may shrink and grow.
+const FACTORS: [f64; 2] = [0.333, 6.0];
 const ORDER: f64 = 8.0;
 /// From here on the longest first step goes with the root of the tolerance.
 const COARSE: f64 = 1e-6;
-/// Below this the error estimate measures round-off.
-const TIGHTEST: f64 = 2e-15;
 
 pub(crate) struct Dop853<'s, 'p> {
     system: &'s System<'p>,
@@ -54,7 +52,7 @@ impl<'s, 'p> Dop853<'s, 'p> {
         Ok(Self {
             system,
             end,
-            relative_tolerance: options.relative_tolerance.max(TIGHTEST),
+            relative_tolerance: options.relative_tolerance.max(LEAST_RELATIVE),
             absolute_tolerances: options.absolute_tolerances(n),
             t: start.t,
             y: start.y.clone(),
@@ -191,11 +189,11 @@ impl Stepper for Dop853<'_, '_> {
         }
         let factor = SAFETY * error.powf(-1.0 / ORDER);
         if error > 1.0 {
-            self.step = h * factor.max(SLOWEST);
+            self.step = h * factor.max(FACTORS[0]);
             self.failed = true;
             return Attempt::Rejected;
         }
-        self.next = h * factor.clamp(SLOWEST, if self.failed { 1.0 } else { FASTEST });
+        self.next = h * factor.clamp(FACTORS[0], if self.failed { 1.0 } else { FACTORS[1] });
         Attempt::Candidate { t: self.taken_to, rejected: 0 }
     }
 

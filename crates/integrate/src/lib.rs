@@ -91,7 +91,7 @@ mod taylor;
 mod taylor_step;
 mod time_loop;
 
-pub use boundary::{BoundaryError, Residuals, ShootOptions, Shot, fit, shoot};
+pub use boundary::{AT_ONCE, BoundaryError, Residuals, ShootOptions, Shot, fit, shoot};
 pub use dense::DenseOutput;
 pub use error::{CallError, DenseError};
 pub use interrupt::Interrupt;
@@ -99,7 +99,7 @@ pub use lanes::{LANES, Lane, LaneProblem, LaneRun, LaneStart, Left, Shortest, in
 pub use options::{Dense, LinkedMethod, Method, Options, Projection};
 pub use problem::{EvaluationError, Gauge, Problem, Start};
 pub use rank::{cosine, may_lose as may_lose_rank, orthonormal};
-pub use root::find_root;
+pub use root::{GOLDEN, find_root, least};
 pub use status::{Before, ProjectionReport, Solution, Status, StopCause, Work};
 pub use step_resolution::{GAUGE_LIMIT, GAUGE_NODES, gauge_growth};
 

@@ -6,6 +6,7 @@ use std::sync::Arc;
 use crate::interrupt::Interrupt;
 use crate::problem::Start;
 use crate::status::{Before, Solution};
+use crate::step_resolution::HUGE;
 use crate::stepper::shortest_step;
 use crate::system::System;
 
@@ -173,8 +174,7 @@ impl Options {
     /// That of a component of this size; a start in the tail of a pulse, at 1e-304 of it, asks for none of
     /// zero.
     pub(crate) fn absolute_tolerance_of(&self, size: f64) -> f64 {
-        const LEAST: f64 = 1e-200;
-        (self.absolute_tolerance * size).max(LEAST)
+        (self.absolute_tolerance * size).max((HUGE * HUGE).recip())
     }
 
     /// The breakpoints on the way from `start` to `end`, and `end`.

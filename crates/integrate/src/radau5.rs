@@ -21,15 +21,12 @@ use crate::options::Options;
 use crate::problem::Start;
 use crate::radau5_tableau::{ERROR, NODES};
 use crate::status::StopCause;
-use crate::stepper::{Attempt, Stepper, next_step};
+use crate::stepper::{Attempt, SAFETY, Stepper, next_step};
 use crate::system::{Failure, System, check_finite};
+use crate::taylor_step::LEAST_RELATIVE;
 
-/// Below this the error estimate measures round-off.
-const TIGHTEST: f64 = 1e-14;
-const SAFETY: f64 = 0.9;
 /// Steps shrink and grow by 8 at most, by 5 before that for the estimate's sake (RADAU5's `FACL`, `FACR`).
-const SLOWEST: f64 = 5.0;
-const FASTEST: f64 = 0.125;
+const QUOTIENTS: [f64; 2] = [0.125, 5.0];
 /// Largest `θ (θ − c₁)(θ − c₂)(1 − θ)` on a step.
 const BETWEEN: f64 = 0.018;
 /// Newton iterations of one step.
@@ -90,7 +87,7 @@ impl<'s, 'p> Radau5<'s, 'p> {
         let n = system.dimension();
         let mut rates = vec![0.0; n];
         system.rates(start.t, &start.y, &mut rates)?;
-        let relative = options.relative_tolerance.max(TIGHTEST);
+        let relative = options.relative_tolerance.max(LEAST_RELATIVE);
         let absolute = options.absolute_tolerances(n);
         let scale = |i: usize| absolute[i] + relative * start.y[i].abs();
         let norm = |v: &[f64]| rms(v.iter().enumerate().map(|(i, x)| x / scale(i)));
@@ -214,7 +211,7 @@ impl Stepper for Radau5<'_, '_> {
         }
         let turns = 2.0 * ITERATIONS as f64;
         let safety = SAFETY.min(SAFETY * (1.0 + turns) / (iterations as f64 + turns));
-        let mut quotient = (error.powf(0.25) / safety).clamp(FASTEST, SLOWEST);
+        let mut quotient = (error.powf(0.25) / safety).clamp(QUOTIENTS[0], QUOTIENTS[1]);
         if error >= 1.0 {
             self.step = if self.accepted.is_none() { 0.1 * h } else { h / quotient };
             self.failed = true;
@@ -222,7 +219,7 @@ impl Stepper for Radau5<'_, '_> {
         }
         if let Some((before, error_before)) = self.accepted {
             let predicted = (before / h) * (error * error / error_before).powf(0.25) / SAFETY;
-            quotient = quotient.max(predicted.clamp(FASTEST, SLOWEST));
+            quotient = quotient.max(predicted.clamp(QUOTIENTS[0], QUOTIENTS[1]));
         }
         let longest = if self.failed { h.abs() } else { f64::INFINITY };
         self.next = h.signum() * (h / quotient).abs().min(longest);

@@ -1,15 +1,15 @@
 //! Roots and minima of scalar functions.
 
 /// The golden section.
-pub(crate) const GOLDEN: f64 = 0.618_033_988_749_894_9;
-/// The bracket of a minimum becomes shorter by eight digits.
-const SECTIONS: usize = 38;
+pub const GOLDEN: f64 = 0.618_033_988_749_894_9;
+/// Sections of the bracket of a minimum, which becomes shorter by eight digits: half of those of a number.
+pub(crate) const SECTIONS: usize = 40;
 
 /// Where a function is least between `a` and `d`, and its value there, by golden sections.
 ///
 /// # Errors
 /// The first one of `f`.
-pub(crate) fn least<E>(mut f: impl FnMut(f64) -> Result<f64, E>, [mut a, mut d]: [f64; 2]) -> Result<(f64, f64), E> {
+pub fn least<E>(mut f: impl FnMut(f64) -> Result<f64, E>, [mut a, mut d]: [f64; 2]) -> Result<(f64, f64), E> {
     let (mut b, mut c) = (d - GOLDEN * (d - a), a + GOLDEN * (d - a));
     let (mut at_b, mut at_c) = (f(b)?, f(c)?);
     for _ in 0..SECTIONS {

@@ -14,7 +14,8 @@ const MANY_STEPS: usize = 3_000;
 const TIMES_ALLOWED: f64 = 10.0;
 const TO_GO: f64 = 1e7;
 const STRETCHES: usize = 4;
-const STRETCH: usize = 500;
+/// Attempts of a window.
+pub const STRETCH: usize = 500;
 const MOST: f64 = 0.8;
 
 /// Also stalled: at the pace of the last `LONG` attempts the rest needs as many, and that pace is below

@@ -7,6 +7,7 @@
 //! than [`GAUGE_LIMIT`]: the method has to look closer. So is one along which it would if arguments were off
 //! by their round-off.
 
+use crate::divisor_zeros::ROUNDINGS;
 use crate::events::Segment;
 use crate::problem::Gauge;
 use crate::system::{Failure, System};
@@ -19,10 +20,8 @@ pub const GAUGE_NODES: usize = 9;
 const PARTS: usize = 16;
 /// Round-off of differences of arguments, in parts of the largest argument.
 const ARGUMENT_DIGITS: f64 = 64.0 * f64::EPSILON;
-/// Error of the polynomial between the nodes, in parts of the largest sum of terms behind an argument.
-const BLUR: f64 = 16.0 * f64::EPSILON;
-/// Arguments are clamped to ± this, so that differences stay finite.
-const HUGE: f64 = 1e100;
+/// Numbers are clamped to ± this, so that differences and squares stay finite.
+pub(crate) const HUGE: f64 = 1e100;
 
 /// Arguments of gauges, at the time reached and along the step.
 pub(crate) struct StepResolution {
@@ -68,7 +67,9 @@ impl StepResolution {
             system.terms_of_gauged(segment.time(theta), &self.state, &mut self.terms)?;
             self.most.iter_mut().zip(&self.terms).for_each(|(most, terms)| *most = most.max(*terms));
         }
-        let is_blurred = |j: usize| growth(self.gauges[j], &self.arguments(j), BLUR * self.most[j]) > GAUGE_LIMIT;
+        let is_blurred = |j: usize| {
+            growth(self.gauges[j], &self.arguments(j), ROUNDINGS * f64::EPSILON * self.most[j]) > GAUGE_LIMIT
+        };
         match (0..self.gauges.len()).any(is_blurred) {
             true => Err(Failure::Blurred { t: segment.begin }),
             false => Ok(()),

@@ -4,6 +4,9 @@ use crate::dense::Basis;
 use crate::status::StopCause;
 use crate::system::Failure;
 
+/// The next step over the one that would just do: estimates are right to some ten per cent.
+pub(crate) const SAFETY: f64 = 0.9;
+
 /// A time-stepping method at a point `(t, y)` of its way.
 ///
 /// The loop calls `attempt`; on a candidate it may move the candidate's state (projection), then calls

@@ -35,7 +35,9 @@ use crate::root::GOLDEN;
 use crate::status::StopCause;
 use crate::stepper::{Attempt, Stepper, next_step};
 use crate::system::{Failure, System};
-use crate::taylor_step::{DEFECT, Ends, LEAST_RELATIVE, MANY, UNLIMITED, first_powers, longest_step, once, order};
+use crate::taylor_step::{
+    DEFECT, Ends, GROUP, LEAST_RELATIVE, MANY, UNLIMITED, first_powers, longest_step, once, order,
+};
 
 /// Where coefficients overflow, the unit of time is shortened by this factor, this often.
 const SHORTER_UNIT: f64 = 1e-8;
@@ -93,7 +95,7 @@ impl<'s, 'p> Taylor<'s, 'p> {
     pub(crate) fn new(system: &'s System<'p>, start: &Start, end: f64, options: &Options) -> Result<Self, Failure> {
         let n = system.dimension();
         let order = order(options.relative_tolerance);
-        let groups = (order + 1).div_ceil(PARTS);
+        let groups = (order + 1).div_ceil(GROUP);
         let mut taylor = Self {
             system,
             end,
@@ -118,9 +120,9 @@ impl<'s, 'p> Taylor<'s, 'p> {
             highest_power: system.highest_power(),
             step: 0.0,
             sizes: vec![0.0; order + 1],
-            powers: vec![[0.0; PARTS]; groups],
+            powers: vec![[0.0; GROUP]; groups],
             terms: vec![0.0; (order + 1) * n],
-            exponents: (0..groups).map(|i| from_fn(|l| (i * PARTS + l) as f64)).collect(),
+            exponents: (0..groups).map(|i| from_fn(|l| (i * GROUP + l) as f64)).collect(),
             taken: 0.0,
             taken_to: start.t,
         };
@@ -269,22 +271,20 @@ impl<'s, 'p> Taylor<'s, 'p> {
     }
 }
 
-/// Number of partial sums.
-const PARTS: usize = 8;
-type Parts = [f64; PARTS];
+type Parts = [f64; GROUP];
 
 /// Writes the terms of a polynomial; their sum, and their sum weighted by the exponents. The first power is 0
 /// instead of 1. Powers and exponents may go on behind the last term.
 #[inline(always)]
 fn sums(row: &[f64], powers: &[Parts], exponents: &[Parts], terms: &mut [f64]) -> (f64, f64) {
-    let (mut sum, mut weighted) = ([0.0; PARTS], [0.0; PARTS]);
-    let (of_row, rest_of_row) = row.as_chunks::<PARTS>();
-    let (groups, rest) = terms.as_chunks_mut::<PARTS>();
+    let (mut sum, mut weighted) = ([0.0; GROUP], [0.0; GROUP]);
+    let (of_row, rest_of_row) = row.as_chunks::<GROUP>();
+    let (groups, rest) = terms.as_chunks_mut::<GROUP>();
     let last = groups.len();
     for (((group, c), power), k) in groups.iter_mut().zip(of_row).zip(powers).zip(exponents) {
         let terms: Parts = from_fn(|l| c[l] * power[l]);
         *group = terms;
-        for l in 0..PARTS {
+        for l in 0..GROUP {
             sum[l] += terms[l];
             weighted[l] += terms[l] * k[l];
         }

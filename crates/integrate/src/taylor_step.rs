@@ -2,8 +2,6 @@
 
 use std::array::from_fn;
 
-/// Orders per factor e of the tolerance.
-const ORDERS: f64 = 1.0;
 /// Tolerances below are for the order as this one.
 const TIGHTEST: f64 = 1e-18;
 const LEAST_ORDER: f64 = 4.0;
@@ -21,9 +19,9 @@ pub(crate) const LEAST_RELATIVE: f64 = 1e-14;
 pub(crate) const MANY: usize = 16;
 pub(crate) const UNLIMITED: f64 = 100.0;
 
-/// The order for a relative tolerance.
+/// The order for a relative tolerance: one more per factor e.
 pub(crate) fn order(relative_tolerance: f64) -> usize {
-    (1.0 - ORDERS * relative_tolerance.max(TIGHTEST).ln()).ceil().max(LEAST_ORDER) as usize
+    (1.0 - relative_tolerance.max(TIGHTEST).ln()).ceil().max(LEAST_ORDER) as usize
 }
 
 /// The longest step, in the unit of the coefficients (component after component), whose last terms are below
@@ -50,7 +48,7 @@ pub(crate) fn longest_step<const N: usize>(
         }
     }
     let p = sizes.len() - 1;
-    let fall = (-1.0 / ORDERS).exp();
+    let fall = (-1.0_f64).exp();
     let root = |size: f64, k: usize| (-size.ln() / k as f64).exp();
     let shorter = (-0.7 / (p - 1) as f64).exp();
     let last = |l: usize| root(sizes[p][l] / LAST, p).min(root(sizes[p - 1][l] * fall / LAST, p - 1));
@@ -76,7 +74,7 @@ pub(crate) fn longest_step<const N: usize>(
 }
 
 /// Number of independent products at a time.
-const GROUP: usize = 8;
+pub(crate) const GROUP: usize = 8;
 
 /// The first powers `x⁰ … x⁷`, and `x⁸`.
 #[inline(always)]

@@ -92,8 +92,6 @@ impl Judgement {
 
 /// Residuals up to this many times the least, or the noise, are not distinguished from it.
 const NOISES: f64 = 3.0;
-/// What explains a residual leaves this much less of it.
-const MUCH: f64 = 3.0;
 
 /// Which law does the program that computed these samples integrate?
 ///
@@ -131,13 +129,14 @@ pub fn judge(scene: &Scene, samples: &Samples, tolerance: f64) -> Result<Judgeme
     };
     let coordinates: Vec<String> = scene.system.coordinates.iter().map(|c| c.name.clone()).collect();
     let mut misfits = misfits(&fine, &balance.parameters, &coordinates);
-    let as_little = misfits.first().map_or(0.0, |least| MUCH * least.residual.max(noise));
-    misfits
-        .retain(|m| numbers.balance > NOISES * noise && MUCH * m.residual < numbers.balance && m.residual <= as_little);
+    let as_little = misfits.first().map_or(0.0, |least| NOISES * least.residual.max(noise));
+    misfits.retain(|m| {
+        numbers.balance > NOISES * noise && NOISES * m.residual < numbers.balance && m.residual <= as_little
+    });
     let of_the_law = |number: Option<Number>, without: f64| {
         let is_noise = numbers.balance <= NOISES * noise;
         let is_number = |n: &Number| {
-            is_noise || misfits.is_empty() && without >= MUCH * numbers.balance || n.value.abs() <= NOISES * n.error
+            is_noise || misfits.is_empty() && without >= NOISES * numbers.balance || n.value.abs() <= NOISES * n.error
         };
         number.filter(is_number)
     };

@@ -3,17 +3,14 @@
 use mechanics::{ConstantsRule, SingularValues, State};
 use motion::{CHETAEV, Choice, Setting};
 use nalgebra::{DMatrix, DVector};
+use symbolic::limits::{ITERATIONS, NOTHING};
 
 use crate::LinearError;
 use crate::linearization::{Moving, moving};
 use crate::point::{COORDINATES, Point, VELOCITIES};
 
-/// Newton steps allowed.
-const ITERATIONS: usize = 50;
-/// Singular values up to this part of the largest belong to directions in which motions stay steady.
-const FLAT: f64 = 1e-9;
-/// What is left of a velocity after so many halvings, over the last digit of what it was.
-const DIGITS: f64 = 64.0;
+/// Round-off of a sum or of what was halved as often, over its last digit.
+pub(crate) const ROUNDINGS: f64 = 64.0;
 /// Steps of Runge and Kutta along one displacement.
 const PARTS: usize = 100;
 
@@ -67,7 +64,7 @@ impl Point {
                 Some(Moving { place, rate, .. })
                     if iterations == ITERATIONS && rate.abs() <= f64::EPSILON * first[place] =>
                 {
-                    let is_rest = |&&i: &&usize| self.y[i].abs() <= DIGITS * f64::EPSILON * begun[i].abs();
+                    let is_rest = |&&i: &&usize| self.y[i].abs() <= ROUNDINGS * f64::EPSILON * begun[i].abs();
                     let rest: Vec<usize> = speeds.iter().filter(is_rest).copied().collect();
                     rest.into_iter().for_each(|i| self.y[i] = 0.0);
                     return self.state();
@@ -99,7 +96,7 @@ impl Point {
             let sizes = DVector::from_fn(kept.len(), |i, _| if sizes[i] > 0.0 { sizes[i] } else { 1.0 });
             let scaled = DMatrix::from_fn(kept.len(), 2 * m, |i, k| columns[(i, k)] * units[k] / sizes[i]);
             let svd = SingularValues::of(&scaled);
-            let step = svd.solve(&-residual.component_div(&sizes), FLAT * svd.values.max()).component_mul(&units);
+            let step = svd.solve(&-residual.component_div(&sizes), NOTHING * svd.values.max()).component_mul(&units);
             self.displace(&places, &speeds, &step.as_slice()[..m])?;
             for (&w, change) in speeds.iter().zip(&step.as_slice()[m..]) {
                 self.y[w] += change;

@@ -5,6 +5,7 @@ use std::fmt;
 use equations::{Compiled, Role};
 use motion::{Choice, Ending, Form, Setting, Settings, SolveError, solve_from};
 use nalgebra::DMatrix;
+use symbolic::limits::NOTHING;
 use symbolic::question;
 
 use crate::point::{COORDINATES, Point, VELOCITIES, in_quasi_velocities};
@@ -43,9 +44,6 @@ pub struct Linearization {
     coordinates: Vec<usize>,
     velocities: Vec<usize>,
 }
-
-/// Rates up to this fraction of the sum of terms behind them count as zero.
-const STEADY: f64 = 1e-9;
 
 /// The equations of `choice` to first order about the start of `setting`, which has to be a steady motion.
 ///
@@ -199,7 +197,7 @@ pub(crate) fn moving(
     let (rates, terms, scales) = (point.rates(&y)?, point.terms()?, point.scales(kept, matrix)?);
     let over = kept.iter().zip(matrix.row_iter()).enumerate().filter_map(|(place, (&i, row))| {
         let size: f64 = row.iter().zip(&scales).map(|(a, s)| a.abs() * s).sum();
-        let (rate, limit) = (rates[i], STEADY * (size + terms[i]));
+        let (rate, limit) = (rates[i], NOTHING * (size + terms[i]));
         (rate.abs() > limit).then_some(Moving { place, rate, limit })
     });
     let most = over.max_by(|a, b| (a.rate.abs() / a.limit).total_cmp(&(b.rate.abs() / b.limit)));

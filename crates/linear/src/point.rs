@@ -6,6 +6,7 @@ use motion::{Choice, Prepared, Setting, Settings, derive_at, formulation_in, pre
 use nalgebra::DMatrix;
 
 use crate::LinearError;
+use crate::find::ROUNDINGS;
 use crate::weyl::Weyl;
 
 /// Compiled equations and a point `(t, y)`.
@@ -27,8 +28,6 @@ const APART: [f64; 9] = [1e-1, 1e-3, 1e-5, 1e-7, 1e-9, 1e-11, 1e-13, 1e-15, 0.0]
 const DIGITS: f64 = 100.0;
 /// Where the sum of terms behind an entry exceeds this many times the entry, its round-off counts as noise.
 const CANCELLED: f64 = 1e4;
-/// Entries up to this fraction of the sum of terms behind them are round-off.
-const OF_TERMS: f64 = 64.0 * f64::EPSILON;
 
 impl Point {
     pub(crate) fn start(setting: Setting, choice: &Choice) -> Result<Point, LinearError> {
@@ -78,7 +77,7 @@ impl Point {
         Ok(noise.zip_zip_map(jacobian, &terms, |noise, entry, terms| {
             let is_cancelled = entry != 0.0 && terms > CANCELLED * entry.abs();
             let digits = if is_cancelled { f64::EPSILON * terms } else { 0.0 };
-            let all = if entry.abs() <= OF_TERMS * terms { entry.abs() } else { 0.0 };
+            let all = if entry.abs() <= ROUNDINGS * f64::EPSILON * terms { entry.abs() } else { 0.0 };
             noise.max(digits).max(all)
         }))
     }

@@ -7,8 +7,7 @@ use crate::point::Point;
 use crate::spectrum::{components, coupled, reached};
 use crate::weyl::Weyl;
 
-/// Powers of ten by which states are moved: from one up to the other.
-const LEAST: i32 = -30;
+/// Powers of ten by which states are moved: from minus this to this.
 const MOST: i32 = 30;
 /// A change of the Jacobian by this fraction of its length counts.
 const ANOTHER: f64 = 0.1;
@@ -49,7 +48,7 @@ impl Point {
             Ok((DMatrix::from_fn(n, n, entry) - &here).norm() > limit)
         };
         // what cannot be evaluated is far enough, too
-        let mut reaches = (LEAST..=MOST).map(|k| 10_f64.powi(k));
+        let mut reaches = (-MOST..=MOST).map(|k| 10_f64.powi(k));
         let reach = reaches.find(|&reach| is_another(reach).unwrap_or(true))?;
         Some(units.iter().map(|unit| reach * unit).collect())
     }

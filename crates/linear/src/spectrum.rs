@@ -3,6 +3,7 @@
 use mechanics::SingularValues;
 use nalgebra::DMatrix;
 use num_complex::Complex;
+use symbolic::limits::HALF_THE_DIGITS;
 
 use crate::core::{Core, allowed, balanced, nullity, structural_rank};
 use crate::discs::Discs;
@@ -78,8 +79,6 @@ pub struct Spectrum {
     pub chains: Vec<Chain>,
 }
 
-/// Discs larger than this fraction of the norm of the matrix (half of the digits) decide nothing on the axis.
-const WIDE: f64 = 1e-8;
 /// Eigenvalues closer than this number of errors are one cluster.
 const CLUSTER: f64 = 4.0;
 
@@ -142,7 +141,7 @@ impl Spectrum {
             let alone = |block: &Block| whole.contains(&block.places) && part(noise, &block.places).amax() == 0.0;
             alone(one) && alone(other) && part(matrix, &one.places) == part(matrix, &other.places)
         };
-        spectrum.chains = spectrum.chains_on_the_axis(&discs, WIDE * size, equal);
+        spectrum.chains = spectrum.chains_on_the_axis(&discs, HALF_THE_DIGITS * size, equal);
         Some(spectrum)
     }
 

@@ -4,6 +4,7 @@ use equations::Compiled;
 use mechanics::{ConstantsRule, State};
 use motion::{Choice, Ensemble, EnsembleStart, Form, Settings, SolveError, setting};
 use scene::{Scene, Starts};
+use symbolic::limits::LAST_DIGITS;
 
 use crate::find::chetaev;
 use crate::point::{Point, in_quasi_velocities};
@@ -52,8 +53,6 @@ pub struct Change {
     pub frequency: f64,
 }
 
-/// Bisection ends where the values are closer than this, over their size.
-const CLOSE: f64 = 1e-14;
 /// So near, over the size of a value, errors decide again what eigenvalues on the axis do.
 const NEAR: [f64; 5] = [1e-12, 1e-11, 1e-9, 1e-7, 1e-5];
 
@@ -198,7 +197,7 @@ fn bisect(
     mut high: SweepPoint,
     count: impl Fn(&Part) -> usize,
 ) -> Result<[SweepPoint; 2], LinearError> {
-    let limit = CLOSE * (low.asked.abs() + high.asked.abs());
+    let limit = LAST_DIGITS * (low.asked.abs() + high.asked.abs());
     while (high.asked - low.asked).abs() > limit {
         let middle = at(0.5 * (low.asked + high.asked))?;
         if count(&middle.part) == count(&low.part) { low = middle } else { high = middle }

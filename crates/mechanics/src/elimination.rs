@@ -13,15 +13,13 @@
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::ops::{Add, Mul, Neg, Sub};
 
+use symbolic::limits::DEPENDENT;
 use symbolic::{Bounded, Expr, Graph, Scalar, Symbol};
 
 use crate::RemovalError;
 
 /// A pivot may be this much smaller than the largest one if it is better otherwise.
 pub(crate) const PIVOT_CHOICE: f64 = 0.2;
-
-/// Pivots under this size, rows scaled to 1, are zero: the equations are dependent.
-const PIVOT_LIMIT: f64 = 1e-10;
 
 /// Numbers of a matrix.
 pub trait Entry:
@@ -240,8 +238,8 @@ pub struct Candidate {
 /// [`RemovalError::Dependent`] where none is.
 pub fn choose_pivot(mut candidates: Vec<Candidate>) -> Result<(usize, usize), RemovalError> {
     let largest = candidates.iter().fold(0.0_f64, |a, c| a.max(c.size));
-    if largest < PIVOT_LIMIT {
-        return Err(RemovalError::Dependent { pivot: largest, limit: PIVOT_LIMIT });
+    if largest < DEPENDENT {
+        return Err(RemovalError::Dependent { pivot: largest, limit: DEPENDENT });
     }
     candidates.retain(|c| c.size >= PIVOT_CHOICE * largest);
     candidates.sort_by(|a, b| a.cost.cmp(&b.cost).then(b.size.total_cmp(&a.size)).then(a.place.cmp(&b.place)));

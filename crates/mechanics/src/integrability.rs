@@ -1,5 +1,6 @@
 //! Is the constraint integrable? Frobenius' test by the Lie flag of the admissible directions.
 
+use symbolic::limits::TOO_LONG;
 use symbolic::{Expr, Graph, Matrix, Stopped, Symbol, Vanishing, question};
 
 use crate::rank::{Surroundings, generic_rank};
@@ -89,9 +90,6 @@ pub enum Undecided {
     /// They take longer than a question may.
     Stopped(Stopped),
 }
-
-/// Nodes over which a bracket is too long: each bracket around it makes it several times longer.
-const LONGEST: usize = 10_000;
 
 /// Brackets of which ranks at the start are looked at.
 const MANY: usize = 500;
@@ -225,7 +223,7 @@ fn by_brackets(system: &System, state: &State, end: f64, ranks: ExactRank) -> Re
             integrals => Integrability::PartlyIntegrable { integrals, constraints: h, exact: true },
         })
     };
-    if g.size(&admissible.concat()) > LONGEST {
+    if g.size(&admissible.concat()) > TOO_LONG {
         return undecided(Undecided::TooLong, depth, system.constraints.len());
     }
     let rank_of =
@@ -246,7 +244,7 @@ fn by_brackets(system: &System, state: &State, end: f64, ranks: ExactRank) -> Re
             if rank == space.len() {
                 break;
             }
-            if g.size(&z) > LONGEST {
+            if g.size(&z) > TOO_LONG {
                 return undecided(Undecided::TooLong, depth, space.len() - rank);
             }
             if z.iter().all(|&e| g.is_zero(e)) {
@@ -321,7 +319,7 @@ fn growth_at_start(
         let next: Vec<Vec<Expr>> = brackets(g, space, admissible, &newest, ranks.len() == 1).collect();
         newest = next.into_iter().filter(|z| !all.contains(z)).collect();
         all.extend(newest.iter().cloned());
-        if all.len() > MANY || g.size(&all.concat()) > LONGEST {
+        if all.len() > MANY || g.size(&all.concat()) > TOO_LONG {
             break;
         }
         ranks.push(rank_at_start(&all, space.len()));

@@ -3,12 +3,10 @@
 
 use std::collections::HashMap;
 
+use symbolic::limits::SAME;
 use symbolic::{Expr, Symbol};
 
 use crate::{State, System};
-
-/// A slope under this part of the largest is not divided by.
-const LEAST: f64 = 1e-6;
 
 impl System {
     /// The system and its state in the coordinates of the leaf `g(q, t) = 0` of `state`: each `g` that is
@@ -49,7 +47,7 @@ impl System {
             let slopes: Vec<Expr> = self.coordinates.iter().map(|c| g.derivative(e, c.position)).collect();
             let numbers: Vec<f64> = slopes.iter().map(|&slope| number(slope)).collect();
             let largest = numbers.iter().fold(0.0_f64, |size, x| size.max(x.abs()));
-            let given = (0..slopes.len()).filter(|&i| numbers[i].abs() > LEAST * largest);
+            let given = (0..slopes.len()).filter(|&i| numbers[i].abs() > SAME * largest);
             let given = given.filter_map(|i| {
                 let s = self.coordinates[i].position;
                 let value = self.value_of(e, s, slopes[i], numbers[i])?;

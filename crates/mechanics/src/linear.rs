@@ -4,6 +4,8 @@
 //! rows, where a general factorization mostly allocates. What runs once is left to nalgebra.
 
 use symbolic::Scalar;
+/// Pivots under this fraction of the scaled matrix are taken for zero.
+pub use symbolic::limits::OF_TERMS as PIVOT_LIMIT;
 
 /// A number type in which linear systems are solved.
 pub trait Entry: Scalar {
@@ -24,9 +26,6 @@ pub struct Singular {
     /// Smallest pivot over the largest.
     pub reciprocal: f64,
 }
-
-/// Pivots under this fraction of the scaled matrix are taken for zero.
-pub const PIVOT_LIMIT: f64 = 1e-13;
 
 /// A smaller pivot may be the work of units.
 const DOUBTFUL: f64 = 1e-6;

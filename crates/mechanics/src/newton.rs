@@ -6,6 +6,7 @@
 //! one step, and every root gets one step more for the sake of its last digits.
 
 use nalgebra::{DMatrix, DVector};
+use symbolic::limits::ITERATIONS;
 
 use crate::SingularValues;
 
@@ -202,12 +203,11 @@ fn damped(
     here: &Evaluation,
     step: &DVector<f64>,
 ) -> Option<(DVector<f64>, Evaluation)> {
-    const HALVINGS: i32 = 40;
     const SUFFICIENT: f64 = 1e-4;
     let weights = here.row_weights();
     let merit = |e: &Evaluation| e.residual.component_mul(&weights).norm();
     let before = merit(here);
-    for halving in 0..HALVINGS {
+    for halving in 0..ITERATIONS as i32 {
         let fraction = 0.5_f64.powi(halving);
         let next = moved(evaluate, x, step, fraction);
         if next.0 == *x {

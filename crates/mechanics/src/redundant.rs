@@ -3,20 +3,19 @@
 use std::collections::BTreeMap;
 
 use nalgebra::{DMatrix, DVector};
+use symbolic::limits::{ITERATIONS, NOTHING};
 use symbolic::{Evaluator, Expr, SplitMix};
 
 use crate::elimination::{LinearForms, PIVOT_CHOICE, eliminate, largest, open};
 use crate::{SingularValues, System};
 
-/// Singular values under this part of the largest are zero at the start, and behind a way from it.
-const AT_START: f64 = 1e-9;
+/// Singular values under this part of the largest are zero behind a way from the start.
 const BEHIND: f64 = 1e-5;
 /// Ways in random directions that the constraints allow, each as long as changes their matrix by this part,
 /// in steps that double.
 const WAYS: u64 = 6;
 const CHANGE: f64 = 0.05;
 const FIRST: f64 = 1e-6;
-const DOUBLED: usize = 60;
 
 impl System {
     /// Indices of constraints that all others follow from, in their order, where some do: of `A v + b = 0`,
@@ -36,10 +35,10 @@ impl System {
         let place: Vec<f64> = q.iter().copied().chain([t]).collect();
         let mut rows = Rows::new(self)?;
         let start = rows.at(&place)?;
-        if SingularValues::least_at_least(&start) > AT_START * start.norm() {
+        if SingularValues::least_at_least(&start) > NOTHING * start.norm() {
             return None;
         }
-        let rank_of = |matrix: &DMatrix<f64>| rank(&SingularValues::of(matrix), AT_START);
+        let rank_of = |matrix: &DMatrix<f64>| rank(&SingularValues::of(matrix), NOTHING);
         let rank = rank_of(&start);
         if rank == rows.count || rank_of(&start.columns(0, q.len()).into_owned()) < rank {
             return None;
@@ -163,7 +162,7 @@ impl Rows {
         let mut random = SplitMix::new(way);
         let wanted = DVector::from_fn(start.len(), |_, _| 2.0 * random.unit() - 1.0);
         let (mut place, mut step) = (DVector::from_column_slice(start), FIRST);
-        for _ in 0..DOUBLED {
+        for _ in 0..ITERATIONS {
             // by Runge and Kutta's method
             let a = self.allowed(place.as_slice(), &wanted, rank)?;
             let b = self.allowed((&place + &a * (step / 2.0)).as_slice(), &wanted, rank)?;

@@ -4,9 +4,7 @@
 //! solution is off by 4e-10. Rotations find every singular value to its own last digits.
 
 use nalgebra::{DMatrix, DVector};
-
-/// Sweeps over all pairs of columns; six to ten are usual, since each squares what is left.
-const SWEEPS: usize = 60;
+use symbolic::limits::ITERATIONS;
 
 /// `A = U diag(σ) V`, σ falling: `U` is m×k, `V` k×n, k = min(m, n). Columns of `U` with σ = 0 are zero.
 pub struct SingularValues {
@@ -35,7 +33,7 @@ impl SingularValues {
         let n = matrix.ncols();
         let (mut u, mut v) = (matrix.clone(), DMatrix::identity(n, n));
         let mut squares: Vec<f64> = u.column_iter().map(|column| column.norm_squared()).collect();
-        for _ in 0..SWEEPS {
+        for _ in 0..ITERATIONS {
             let mut turned = false;
             for (i, j) in (0..n).flat_map(|i| (i + 1..n).map(move |j| (i, j))) {
                 let (a, b) = (squares[i], squares[j]);

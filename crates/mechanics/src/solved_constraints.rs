@@ -2,6 +2,7 @@
 
 use std::collections::{BTreeMap, HashMap};
 
+use symbolic::limits::{NOTHING, TOO_LONG};
 use symbolic::{Expr, Graph, Matrix, Symbol};
 
 use crate::elimination::{Candidate, LinearForms, Pivot, SparseMatrix, choose_pivot};
@@ -13,13 +14,6 @@ const TERMS: usize = 5_000;
 
 /// Nodes of a coefficient that is not multiplied out: how many terms it would have is not even counted.
 const LONG: usize = 1_000;
-
-/// Terms of a coefficient that is multiplied out to clear it of denominators.
-const CLEARED: usize = 10_000;
-
-/// A difference under this part of its terms, at the start, is tested for being zero: what is so exactly is
-/// taken out, what is only round-off there stays as 0 there, and so is not a pivot.
-const CANCELLED: f64 = 1e-9;
 
 /// What is multiplied out may add up this much more than what it stands for: near `q = 24` the powers of `q`
 /// that are `(q − 24)⁴` add up a million to come to nothing.
@@ -79,7 +73,7 @@ impl SolvedConstraints {
             let e = g.sub(before.e, g.mul(factor.e, entry.e));
             let subtracted = factor.number * entry.number;
             // where nothing cancels, the numbers are as good as the expression
-            let same = (before.number - subtracted).abs() > CANCELLED * (before.number.abs() + subtracted.abs());
+            let same = (before.number - subtracted).abs() > NOTHING * (before.number.abs() + subtracted.abs());
             let mut rest = sized(e, if same { before.number - subtracted } else { number(e) });
             // sin²/cos + cos is 1/cos
             let over_pivot = g.sub(g.mul(before.e, pivot), g.mul(factor.e, undivided));
@@ -93,7 +87,7 @@ impl SolvedConstraints {
             }
             // what cancels unsimplified would be taken for a pivot, or for a dependence that is none
             let terms = before.number.abs() + subtracted.abs();
-            let cancels = was_zero || rest.number.abs() <= CANCELLED * terms;
+            let cancels = was_zero || rest.number.abs() <= NOTHING * terms;
             let stays = !(g.is_zero(rest.e) || cancels && g.vanishes_exactly(rest.e));
             if was_zero || cancels && g.is_round_off(rest.e, &values) {
                 rest.number = 0.0;
@@ -177,7 +171,7 @@ fn candidates(matrix: &SparseMatrix<Entry>, taken: &BTreeMap<usize, usize>, spee
 
 /// `e` multiplied out where fewer denominators are left so: the others are none, and would end a motion.
 pub(crate) fn cleared(g: &Graph, e: Expr) -> Expr {
-    if g.expanded_terms(e) > CLEARED {
+    if g.expanded_terms(e) > TOO_LONG {
         return e;
     }
     let expanded = g.expand(e);

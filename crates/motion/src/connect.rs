@@ -37,7 +37,9 @@ use std::sync::{Mutex, PoisonError};
 use integrate::{BoundaryError, Interrupt, ShootOptions, shoot};
 use mechanics::{ConstantsRule, State};
 use scene::Scene;
+use symbolic::limits::HALF_THE_DIGITS;
 
+use crate::band::SEARCH_STEPS;
 use crate::constants::constant_names;
 use crate::shooting::{Minimum, distinct};
 use crate::variational::{VariationalRun, Which};
@@ -112,14 +114,10 @@ pub struct Connection {
 impl Connection {
     /// Whether no other motion is beside it: otherwise it may be one of a family.
     pub fn is_isolated(&self) -> bool {
-        self.condition < ISOLATED
+        self.condition < HALF_THE_DIGITS.recip()
     }
 }
 
-/// Condition number above which a motion counts as not isolated.
-const ISOLATED: f64 = 1e8;
-/// Constants move the end by less than this part of what all unknowns do where a curve has them all.
-const ABNORMAL: f64 = 1e-8;
 /// Tolerance of the runs of a search, and of what it misses; the latter also of the final one, over its
 /// tolerance.
 const SEARCH: f64 = 1e-8;
@@ -130,8 +128,6 @@ const ITERATIONS: usize = 40;
 /// can be followed by less than the other. Every second guess goes that way first.
 const FIRST: f64 = 0.1;
 const LEAST: f64 = 1e-3;
-/// Steps that a run of a search may take.
-const STEPS: usize = 5_000;
 /// Two results of searches, or two final ones, are one where unknowns differ by less, in units of the
 /// problem.
 const ONE: [f64; 2] = [1e-4, 1e-6];
@@ -169,7 +165,8 @@ pub fn connect(scene: &Scene, choice: &Choice, aim: &Aim, settings: &Settings) -
             return Ok(Connections { unknowns: problem.names, found, failures, runs: [0, 0], every_constant, none });
         }
     }
-    let coarse = Settings { tolerance: SEARCH / TIGHTER, max_steps: STEPS.min(settings.max_steps), ..settings.clone() };
+    let coarse =
+        Settings { tolerance: SEARCH / TIGHTER, max_steps: SEARCH_STEPS.min(settings.max_steps), ..settings.clone() };
     let guesses = guesses::guesses(&problem, aim.starts)?;
     let problem = Mutex::new(problem.scaled(&guesses.units, &guesses.sizes));
     let searched = from_all(&problem, aim.threads, &guesses.values, |problem, i, guess| {
@@ -355,13 +352,15 @@ fn complete(
         (choice.formulation == VAKONOMIC || scene.system.constraints.is_empty()) && !scene.system.has_forces();
     let kernel_of_constants = || {
         let free = problem.velocities.free.len();
-        let columns = (free..x.len()).filter(|&j| matrix.column(j).norm() <= ABNORMAL * matrix.norm()).count();
+        let columns = (free..x.len()).filter(|&j| matrix.column(j).norm() <= HALF_THE_DIGITS * matrix.norm()).count();
         conjugate.is_none() && columns > 0
     };
     let second_variation = match is_stationary {
         false => SecondVariation::Unknown,
         true if *several || kernel_of_constants() => SecondVariation::Abnormal,
-        true => second_variation(&scene.system, &mut motion, conjugate.as_deref(), condition < ISOLATED)?,
+        true => {
+            second_variation(&scene.system, &mut motion, conjugate.as_deref(), condition < HALF_THE_DIGITS.recip())?
+        }
     };
     Ok(Connection {
         errors: errors.collect(),

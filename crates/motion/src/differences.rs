@@ -18,6 +18,8 @@
 //! unit and is judged by its own size; its round-off is what it scatters by where x moves by its last digits.
 
 use crate::SolveError;
+use crate::band::limits::BETWEEN;
+use symbolic::limits::OF_TERMS;
 
 /// Weights of the differences of order 8 and of order 6.
 const ORDER_8: [f64; 4] = [4.0 / 5.0, -1.0 / 5.0, 4.0 / 105.0, -1.0 / 280.0];
@@ -29,11 +31,8 @@ const KINK: [f64; 4] = [14.0 / 5.0, -7.0 / 5.0, 2.0 / 5.0, -1.0 / 20.0];
 const DISTANCES: std::ops::Range<i32> = 2..16;
 /// Error of a derivative over the largest one that is accepted.
 const LIMIT: f64 = 1e-10;
-/// With an error like this, of what is linear, no other distance is tried.
-const AT_ONCE: f64 = 1e-13;
-/// Round-off is looked for at this distance; it is a sample, and may be larger by a factor.
+/// Round-off is looked for at this distance; it is a sample.
 const LAST_DIGITS: f64 = 1.0 / (1_u64 << 44) as f64;
-const LARGER: f64 = 8.0;
 /// A kink is looked for at these powers of 1/4, is the same at three in turn, and differs by this part of
 /// itself at most.
 const POWERS: std::ops::Range<i32> = 4..20;
@@ -93,12 +92,12 @@ fn best(x: f64, here: &[f64], round_off: &[f64], at: &mut dyn FnMut(f64) -> Valu
             let digits = f64::EPSILON * here[i].abs() / h;
             let scale = high.abs() + here[i].abs() / size + round_off[i] / (h * LIMIT);
             error = error.max(((high - low).abs() + digits) / scale.max(f64::MIN_POSITIVE));
-            even |= kink.abs() > LARGER * digits;
+            even |= kink.abs() > BETWEEN * digits;
         }
         if least.as_ref().is_none_or(|least: &Found| error < least.error) {
             least = Some(Found { derivative: sums.iter().map(|[high, ..]| *high).collect(), error, even });
         }
-        if error <= AT_ONCE {
+        if error <= OF_TERMS {
             break;
         }
     }
@@ -131,7 +130,7 @@ fn round_off(here: &[f64], at: &mut dyn FnMut(f64) -> Values) -> Values {
         let step = LAST_DIGITS * f64::from(j);
         let (after, before) = (at(step)?, at(-step)?);
         for (i, found) in found.iter_mut().enumerate() {
-            *found = found.max(LARGER * (after[i] + before[i] - 2.0 * here[i]).abs());
+            *found = found.max(BETWEEN * (after[i] + before[i] - 2.0 * here[i]).abs());
         }
     }
     Ok(found)

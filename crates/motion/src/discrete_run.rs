@@ -7,6 +7,7 @@ use equations::{Compiled, Equations, EvaluationFailure};
 use integrate::{GAUGE_LIMIT, GAUGE_NODES, cosine, gauge_growth, may_lose_rank, orthonormal};
 use mechanics::System;
 use symbolic::Symbol;
+use symbolic::limits::{ITERATIONS, SAME};
 
 use crate::ending::in_own_names;
 use crate::start_values::StartValues;
@@ -168,16 +169,13 @@ fn between(from: &Node, to: &Node, theta: f64) -> Node {
 
 /// The first angle that passes from π to −π or back from node to node, where the rates jump with it.
 fn jump(compiled: &mut Compiled, from: &Node, to: &Node) -> Result<Option<usize>, EvaluationFailure> {
-    /// Rates that differ by less than this part of the largest on both sides of a place do not jump there.
-    const CONTINUOUS: f64 = 1e-6;
-    const HALVINGS: usize = 45;
     let places: [Node; GAUGE_NODES] = std::array::from_fn(|k| between(from, to, k as f64 / (GAUGE_NODES - 1) as f64));
     for pair in places.windows(2) {
         let passes = |a: f64, b: f64| (a - b).abs() > PI;
         let (low, high) = (compiled.angles(pair[0].0, &pair[0].1)?, compiled.angles(pair[1].0, &pair[1].1)?);
         for j in (0..low.len()).filter(|&j| passes(low[j], high[j])) {
             let (mut low, mut high) = (pair[0].clone(), pair[1].clone());
-            for _ in 0..HALVINGS {
+            for _ in 0..ITERATIONS {
                 let middle = between(&low, &high, 0.5);
                 match passes(compiled.angles(low.0, &low.1)?[j], compiled.angles(middle.0, &middle.1)?[j]) {
                     true => high = middle,
@@ -187,7 +185,7 @@ fn jump(compiled: &mut Compiled, from: &Node, to: &Node) -> Result<Option<usize>
             let [mut before, mut behind] = [vec![0.0; low.1.len()], vec![0.0; low.1.len()]];
             let read = compiled.rates(low.0, &low.1, &mut before).and(compiled.rates(high.0, &high.1, &mut behind));
             let largest = before.iter().chain(&behind).fold(0.0_f64, |most, x| most.max(x.abs()));
-            let jumps = |(a, b): (&f64, &f64)| (a - b).abs() > CONTINUOUS * largest;
+            let jumps = |(a, b): (&f64, &f64)| (a - b).abs() > SAME * largest;
             if read.is_err() || before.iter().zip(&behind).any(jumps) {
                 return Ok(Some(j));
             }

@@ -8,6 +8,7 @@ use mechanics::SingularValues;
 use nalgebra::{DMatrix, DVector};
 use symbolic::Expr;
 
+use crate::band::SAME_STOP;
 use crate::lost_rank;
 
 /// What helps where steps became too short and no divisor of the equations vanishes.
@@ -86,8 +87,7 @@ impl Ending {
     /// How the kept run ended, unless the looser one stopped while that went on, in a run over this time.
     pub fn joint(kept: Ending, looser: Ending, [start, end]: [f64; 2]) -> Ending {
         // both stop near the same singularity, or for different causes
-        const NEAR: f64 = 1e-3;
-        let much_before = |t: f64, later: f64| (later - t) * (end - start).signum() > NEAR * (later - start).abs();
+        let much_before = |t: f64, later: f64| (later - t) * (end - start).signum() > SAME_STOP * (later - start).abs();
         match (kept, looser) {
             (Ending::Completed, Ending::Stopped { t, cause }) => Ending::unconfirmed(t, &cause),
             (Ending::Stopped { t: later, .. }, Ending::Stopped { t, cause }) if much_before(t, later) => {

@@ -5,6 +5,7 @@ use std::fmt::Write;
 
 use equations::Equations;
 use mechanics::System;
+use symbolic::limits::LINE;
 use symbolic::{Expr, Graph, Symbol};
 
 /// How formulas are printed.
@@ -15,9 +16,6 @@ pub enum EquationStyle {
     /// LaTeX in fenced `math` blocks.
     Latex,
 }
-
-/// Expressions with more nodes than this are written with named intermediate quantities.
-const LONG: usize = 60;
 
 /// The same for what the user wrote.
 const LONG_SYSTEM: usize = 200;
@@ -32,7 +30,7 @@ pub fn equations_text(equations: &Equations, style: EquationStyle) -> String {
     let sides = equations.statements.iter().flat_map(|s| [s.left, s.right]);
     let mut whole: Vec<Expr> = values.into_iter().chain(sides).collect();
     let mut pieces = Vec::new();
-    if whole.iter().any(|&e| g.size(&[e]) > LONG || g.printed_length(e) > LONG_PRINTED) {
+    if whole.iter().any(|&e| g.size(&[e]) > LINE || g.printed_length(e) > LONG_PRINTED) {
         (pieces, whole) = g.abbreviate(&whole, "s");
     }
     let order: Vec<Symbol> = pieces.iter().map(|(symbol, _)| *symbol).collect();

@@ -1,7 +1,5 @@
 //! Equidistant values, as the decimals that are meant.
 
-/// Digits, of the larger end, that values between the ends are rounded to.
-const DIGITS: i32 = 15;
 /// Steps in the last of these digits from one value to the next, at least: closer ones are not rounded.
 const STEPS: f64 = 1e3;
 /// Powers of ten up to this one are exact.
@@ -22,7 +20,7 @@ pub fn equidistant_value(from: f64, to: f64, count: usize, place: usize) -> f64 
         _ => {
             let part = place as f64 / (count - 1) as f64;
             let value = from * (1.0 - part) + to * part;
-            let last = DIGITS - 1 - from.abs().max(to.abs()).log10().floor().max(-400.0) as i32;
+            let last = f64::DIGITS as i32 - 1 - from.abs().max(to.abs()).log10().floor().max(-400.0) as i32;
             let tens = 10_f64.powi(last.abs());
             let step = (to - from).abs() / (count - 1) as f64;
             match last {

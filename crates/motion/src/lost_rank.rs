@@ -6,6 +6,7 @@ use equations::{Compiled, ConstraintRows, Equations};
 use integrate::DenseOutput;
 use mechanics::{SingularValues, System};
 use nalgebra::DMatrix;
+use symbolic::limits::SHOWN;
 use symbolic::{Expr, Matrix, Symbol, Vanishing};
 
 use crate::Metric;
@@ -73,8 +74,6 @@ pub(crate) fn column_factors(compiled: &mut Compiled, metric: &mut Metric, t: f6
 const TOLD: f64 = 1e-3;
 /// A coordinate under this part of what it or another of its kind was is zero to the reader.
 const ZERO: f64 = 1e-5;
-/// As many coordinates are told.
-const PLACES: usize = 8;
 
 /// Which constraints say nothing of the velocities at the end of a run, and where that is.
 pub(crate) fn words(equations: &Equations, compiled: &mut Compiled, dense: &DenseOutput) -> String {
@@ -108,7 +107,7 @@ pub(crate) fn words(equations: &Equations, compiled: &mut Compiled, dense: &Dens
 }
 
 fn place(equations: &Equations, dense: &DenseOutput) -> Option<String> {
-    if equations.coordinates.len() > PLACES {
+    if equations.coordinates.len() > SHOWN {
         return None;
     }
     let symbols: Vec<Symbol> = [equations.time].into_iter().chain(equations.state_symbols()).collect();

@@ -2,6 +2,7 @@
 
 use mechanics::System;
 use nalgebra::{DMatrix, DVector, Dyn, SymmetricEigen};
+use symbolic::limits::NOTHING;
 use symbolic::{CompileError, Evaluator, Symbol};
 
 /// The length `sqrt(Δqᵀ |M| Δq)` with `M = ∂²L/∂v²`, and the constraint residuals, at a point of a motion.
@@ -130,7 +131,7 @@ impl Metric {
                     let product = units[i] * units[j];
                     if product > 0.0 { mass[(i, j)] / product } else { 0.0 }
                 });
-                let negative = eigen(&scaled).is_some_and(|eigen| eigen.eigenvalues.min() < -NEGATIVE);
+                let negative = eigen(&scaled).is_some_and(|eigen| eigen.eigenvalues.min() < -NOTHING);
                 (units, negative)
             }
         }
@@ -160,9 +161,6 @@ impl Metric {
         self.at(t, q, v).1.iter().fold(0.0, |a, f| larger(a, f.abs()))
     }
 }
-
-/// An eigenvalue of `M` with rows and columns of length 1 is negative below minus this.
-const NEGATIVE: f64 = 1e-9;
 
 /// `R` with `RᵀR = |M|`; NaN where `M` is not finite.
 fn absolute_root(mass: &DMatrix<f64>) -> DMatrix<f64> {

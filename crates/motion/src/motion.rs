@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use equations::{Compiled, Equations, Outputs};
+use integrate::stall_detector::STRETCH;
 use integrate::{Method, ProjectionReport, Work};
 use mechanics::ConstantsRule;
 use scene::Scene;
@@ -15,7 +16,7 @@ use crate::constants::resolve;
 use crate::form::derive_in_form;
 use crate::method::Chosen;
 use crate::metric::{larger, subtract};
-use crate::stiffness_probe::{FARTHER, NotSuited, TRIAL};
+use crate::stiffness_probe::{FARTHER, NotSuited};
 use crate::trajectory::Trajectory;
 use crate::wanted::kept_before;
 use crate::{Choice, ChosenForm, Doubt, Ending, Prepared, Setting, Settings, SolveError, setting};
@@ -198,7 +199,7 @@ fn run(setting: Setting, prepared: &mut Prepared, settings: &Settings) -> Result
                 patience = f64::INFINITY;
                 if stiff {
                     method = Method::Radau5;
-                    why = format!("the equations are stiff: by {TRIAL} steps it comes {FARTHER} times farther");
+                    why = format!("the equations are stiff: by {STRETCH} steps it comes {FARTHER} times farther");
                 }
             }
         }

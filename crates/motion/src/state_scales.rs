@@ -3,7 +3,7 @@
 use equations::{Compiled, Outputs};
 
 use crate::Metric;
-use crate::band::limits::ROUND_OFF;
+use crate::band::limits::{ROUND_OFF, UNITS};
 use crate::band::ulp_perturbation::signs;
 use crate::metric::subtract;
 
@@ -15,8 +15,6 @@ const LARGE: f64 = 1e-5;
 const MOVE: f64 = 1.0 / (1 << 20) as f64;
 const LEAST: f64 = 1e-30;
 const MOVES: usize = 11;
-/// Changes of the last digits are a sample; round-off may be larger by this factor.
-const DIGITS: f64 = 4.0;
 /// A quantity that changes by less than this fraction of itself does not depend on the displaced state.
 const SEEN: f64 = 1.0 / (1 << 30) as f64;
 
@@ -83,7 +81,7 @@ impl Noise {
         let (coordinates, velocities) = (none(&here.coordinates), none(&here.velocities));
         let mut noise = Noise { rates: none(rates), coordinates, velocities };
         let join = |noise: &mut [f64], there: &[f64], here: &[f64]| {
-            let changes = there.iter().zip(here).map(|(there, here)| DIGITS * (there - here).abs());
+            let changes = there.iter().zip(here).map(|(there, here)| UNITS * (there - here).abs());
             noise.iter_mut().zip(changes).for_each(|(noise, change)| *noise = noise.max(change));
         };
         for pattern in 0..3 {

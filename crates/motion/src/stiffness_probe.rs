@@ -1,11 +1,10 @@
 //! Detects from a run that its method does not suit the motion.
 
+use integrate::stall_detector::STRETCH;
 use integrate::{Method, Options, Status, StopCause};
 
 use crate::{Prepared, SingleRun};
 
-/// Attempts of the trial: one window of the stall detector.
-pub(crate) const TRIAL: usize = 500;
 /// Upper bound on the cost of a step of [`Method::Radau5`] over that of others.
 pub(crate) const FARTHER: f64 = 10.0;
 
@@ -23,7 +22,7 @@ pub(crate) fn not_suited(here: &Prepared, kept: &SingleRun, end: f64, options: &
     match cause {
         StopCause::NotSmooth { .. } if options.method == Method::Taylor => Some(NotSuited::NotSmooth),
         StopCause::Slow { moved, .. } => {
-            let (max_steps, patience) = (options.max_steps.min(TRIAL), f64::INFINITY);
+            let (max_steps, patience) = (options.max_steps.min(STRETCH), f64::INFINITY);
             let implicit = Options { method: Method::Radau5, max_steps, patience, before: None, ..options.clone() };
             let mut there = here.clone();
             there.go_on([kept, kept]);

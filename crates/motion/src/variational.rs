@@ -78,7 +78,7 @@ impl<'a> VariationalRun<'a> {
     ) -> Result<Self, SolveError> {
         prepared.complete(options.method)?;
         let mut runs = Vec::new();
-        for part in along.chunks(Tangents::DIRECTIONS) {
+        for part in along.chunks(symbolic::LANES) {
             let mut tangents = Tangents::new(&prepared.compiled, part.len());
             for (l, direction) in part.iter().enumerate() {
                 tangents.set_constants(&prepared.compiled, l, &direction.constants);
@@ -126,7 +126,7 @@ impl<'a> VariationalRun<'a> {
     /// The states at `t`, and how they move along each direction.
     pub(crate) fn moves(&self, prepared: &mut Prepared, t: f64) -> Result<Vec<Moves>, SolveError> {
         let (n, mut all) = (self.states, Vec::new());
-        for ((tangents, run), along) in self.runs.iter().zip(self.along.chunks(Tangents::DIRECTIONS)) {
+        for ((tangents, run), along) in self.runs.iter().zip(self.along.chunks(symbolic::LANES)) {
             let state = states(prepared, tangents, run, t)?;
             let (state, moves) = state.split_at(n);
             let moves = moves.chunks_exact(n).zip(along).map(|(by, direction)| {

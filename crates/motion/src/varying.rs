@@ -150,7 +150,7 @@ fn derived(scene: &Scene, choice: &Choice, varied: &[Parameter], form: Form) -> 
     let mut system = scene.system.clone();
     let is_varied = |p: &&mut Parameter| varied.iter().any(|varied| varied.symbol == p.symbol);
     for (p, part) in system.parameters.iter_mut().filter(is_varied).zip(1..) {
-        p.value += APART * (1.0 + p.value.abs()) * (0.5 + (0.618_033_988_749_894_9 * f64::from(part)).fract());
+        p.value += APART * (1.0 + p.value.abs()) * (0.5 + (integrate::GOLDEN * f64::from(part)).fract());
     }
     Ok(derive_in_form(&system, &scene.start, choice, form)?.0)
 }

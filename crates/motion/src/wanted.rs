@@ -1,20 +1,17 @@
 //! The times at which outputs of a motion are wanted, known before the run: a long run is stored around these
 //! only.
 
+use integrate::GOLDEN;
 use std::sync::Arc;
 
-use crate::band::limits::{SAMPLES, STRETCHES};
+use crate::band::limits::{INSTANTS, SAMPLES, STRETCHES};
 use crate::equidistant::equidistant;
 
-/// A run may end early: number of stretches in its second half, in the second half of the rest, and so on,
-/// [`HALVES`] times.
-const OF_A_HALF: usize = 64;
 /// How often the rest of a run is halved.
 pub const HALVES: i32 = 20;
 
 /// Times from `start` to `end` that no period fits: parts of the golden section.
 pub(crate) fn scattered([start, end]: [f64; 2]) -> impl Iterator<Item = f64> {
-    const GOLDEN: f64 = 0.618_033_988_749_894_8;
     (1..=SAMPLES).map(move |i| start + (end - start) * (i as f64 * GOLDEN).fract())
 }
 
@@ -25,7 +22,7 @@ pub fn wanted(ends: [f64; 2], times: &[f64]) -> Arc<[f64]> {
     let mut all: Vec<f64> = times.iter().copied().chain(scattered(ends)).collect();
     all.extend(STRETCHES.iter().flat_map(|&stretches| equidistant(start, end, stretches + 1)));
     let halves = (0..HALVES).map(|k| start + (end - start) * 0.5_f64.powi(k));
-    all.extend(halves.flat_map(|end| equidistant(start + 0.5 * (end - start), end, OF_A_HALF + 1)));
+    all.extend(halves.flat_map(|end| equidistant(start + 0.5 * (end - start), end, INSTANTS + 1)));
     all.sort_by(f64::total_cmp);
     all.dedup();
     all.into()

@@ -5,6 +5,7 @@ use std::fmt::Write;
 use anyhow::{Context, Result};
 use comparison::words::{Headline, rows, short};
 use comparison::{Comparison, EpsilonTerm, Gap, Pair, Verdict};
+use motion::band::INSTANTS;
 use motion::{CHETAEV, REMOVED_CONSTRAINT, VAKONOMIC, VAKONOMIC_COSTATE};
 use program::File;
 
@@ -151,9 +152,6 @@ fn differ(who: &str, gap: &Gap) -> String {
     }
 }
 
-/// Instants at which the trace is looked at.
-const TRACED: usize = 64;
-
 /// Size of the first-order vakonomic term along Chetaev's motion.
 fn epsilon_term(comparison: &mut Comparison) -> Result<Table> {
     let columns = [">change of acceleration per ms of epsilon (m √kg/s²)", ">part of the largest acceleration (%)"];
@@ -161,7 +159,7 @@ fn epsilon_term(comparison: &mut Comparison) -> Result<Table> {
     let Some(run) = comparison.run(CHETAEV) else { return Ok(table) };
     let Comparison { scene, runs, .. } = comparison;
     let Ok(motion) = &mut runs[run].outcome else { return Ok(table) };
-    let Some(EpsilonTerm { slope, acceleration }) = comparison::epsilon_term(scene, motion, TRACED)? else {
+    let Some(EpsilonTerm { slope, acceleration }) = comparison::epsilon_term(scene, motion, INSTANTS)? else {
         return Ok(table);
     };
     let part = slope / acceleration;

@@ -2,6 +2,7 @@
 
 use anyhow::Result;
 use comparison::{Comparison, Gap, Pair, Verdict};
+use motion::band::BEFORE_THE_END;
 use motion::{ChartChange, Ending};
 
 use crate::table::Table;
@@ -9,9 +10,6 @@ use comparison::words::{at_most, by_half, or_dash, precise, reached, short, unse
 
 /// Times at which invariants and residuals are sampled.
 const SAMPLES: usize = 400;
-
-/// Part of a motion that stopped early over which invariants are looked at.
-const BEFORE_A_STOP: f64 = 0.95;
 
 /// The word on a pair, with the time from which it holds.
 pub fn verdict_words(gap: &Gap) -> String {
@@ -178,7 +176,7 @@ pub(crate) fn invariants(comparison: &mut Comparison) -> Result<[Table; 2]> {
         let Ok(motion) = &mut run.outcome else { continue };
         let mut residual = 0.0_f64;
         // near a singularity everything is large; a motion that stops there is judged by what came before
-        let part = if motion.is_complete() { 1.0 } else { BEFORE_A_STOP };
+        let part = if motion.is_complete() { 1.0 } else { BEFORE_THE_END };
         let until = motion.start() + part * (motion.end() - motion.start());
         let times: Vec<f64> = motion.grid(SAMPLES).into_iter().filter(|&t| t <= until).collect();
         for &t in &times {

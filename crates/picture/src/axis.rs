@@ -6,10 +6,9 @@ use super::error::PictureError;
 use super::plot::{Axis, Scale};
 use super::text::{decimal, power_of_ten, width};
 
-/// Values beyond are treated as not finite, so that differences of two values stay finite.
+/// Values beyond are treated as not finite, so that differences of two values stay finite; on a logarithmic
+/// axis those below its inverse as zero.
 const LARGEST: f64 = 1e300;
-/// Values below are treated as zero on a logarithmic axis.
-const SMALLEST: f64 = 1e-300;
 /// Font size of tick labels, in pixels.
 pub const TICK_SIZE: f64 = 12.0;
 
@@ -77,7 +76,7 @@ pub fn measure(scale: Scale, value: f64) -> Result<f64, LeftOut> {
     }
     match scale {
         Scale::Linear => Ok(value),
-        Scale::Log if value >= SMALLEST => Ok(value.log10()),
+        Scale::Log if value >= LARGEST.recip() => Ok(value.log10()),
         Scale::Log => Err(LeftOut::NotPositive),
     }
 }

@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use equations::Named;
+use motion::band::CHUNK;
 use motion::{Choice, EnsembleOptions, MemberMotion, Settings, SolveError, setting};
 use numpy::PyArrayDyn;
 use pyo3::exceptions::PyValueError;
@@ -64,9 +65,6 @@ pub(crate) struct Task {
     pub(crate) settings: Settings,
     pub(crate) options: EnsembleOptions,
 }
-
-/// Members integrated before they are put into arrays.
-const CHUNK: usize = 4096;
 
 /// Everything that is computed without Python's lock.
 pub(crate) struct Integrated {

@@ -17,12 +17,10 @@ use std::collections::{HashMap, HashSet};
 use equations::{Equations, Named, Role};
 use mechanics::elimination::LinearForms;
 use mechanics::{Coordinate, System, fresh_symbol};
+use symbolic::limits::NOTHING;
 use symbolic::{Expr, Graph, Symbol};
 
 use crate::expressions::{Sparse, point, shortest};
-
-/// A sum under this part of its largest term is tested for being zero.
-const CANCELLED: f64 = 1e-9;
 
 /// A velocity that is squared in `L`.
 struct Link {
@@ -228,7 +226,7 @@ impl Search<'_> {
             let terms: Vec<Expr> = [e].into_iter().chain(by_links).collect();
             let numbers: Vec<f64> = terms.iter().map(|&e| g.evaluate(e, &self.values).unwrap_or(f64::NAN)).collect();
             let largest = numbers.iter().fold(0.0_f64, |a, x| a.max(x.abs()));
-            if numbers.iter().sum::<f64>().abs() <= CANCELLED * largest {
+            if numbers.iter().sum::<f64>().abs() <= NOTHING * largest {
                 cancelled.push(g.mul(g.sum(&terms), g.variable(self.system.coordinates[j].velocity)));
             } else {
                 rest.insert(j, shortest(g, g.sum(&terms)));

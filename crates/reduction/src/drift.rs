@@ -17,12 +17,11 @@ use crate::expressions::{SHORT, Sparse};
 use crate::{Columns, DependentVelocity, QuasiVelocities, Single};
 use equations::{Definitions, Equations};
 use mechanics::System;
+use symbolic::limits::LONG;
 use symbolic::{Expr, Graph, Symbol};
 
 /// Nodes of a time derivative that gets no name of its own.
 const NAME: usize = 1;
-/// What is not over this is multiplied out: squares may add up to a constant.
-const LONG: usize = 96;
 
 /// `γ`, the accelerations at `ẇ = 0`.
 pub(crate) struct Drift {

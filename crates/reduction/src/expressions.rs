@@ -3,10 +3,8 @@
 use std::collections::{BTreeMap, HashMap};
 
 use mechanics::{State, System};
+pub(crate) use symbolic::limits::SHORT;
 use symbolic::{Expr, Graph, Symbol};
-
-/// Nodes of an expression that gets no name of its own.
-pub(crate) const SHORT: usize = 8;
 
 /// A sparse vector.
 pub(crate) type Sparse = BTreeMap<usize, Expr>;

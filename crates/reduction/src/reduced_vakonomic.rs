@@ -41,6 +41,7 @@ use equations::{
     Statement,
 };
 use mechanics::{System, fresh_symbol};
+use symbolic::limits::LONG;
 use symbolic::{Expr, Graph, Symbol};
 use vakonomic::Augmented;
 
@@ -53,8 +54,6 @@ pub const REDUCED_VAKONOMIC: Formulation = Formulation {
     derive: derive_vakonomic,
 };
 
-/// Nodes of an expression that is not multiplied out.
-const LONG: usize = 100;
 /// Nodes of all velocities up to which they are put in: where they are longer, terms no more cancel.
 const WHOLE: usize = 16;
 

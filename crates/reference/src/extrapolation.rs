@@ -4,13 +4,11 @@
 //! Hairer, Nørsett & Wanner, *Solving Ordinary Differential Equations I*, II.9.
 
 use crate::instant::Instant;
+use crate::taylor::SHORTEST;
 use crate::{ReferenceError, Wide};
 
 /// Rows of the table; order 2 · ROWS. More rows magnify round-off: by 1e3 with these, by 1e5 with 18.
 const ROWS: usize = 12;
-
-/// Shortest step, relative to the time.
-const SHORTEST: f64 = 1e-12;
 
 pub(crate) const NAME: &str = "extrapolation";
 

@@ -2,13 +2,11 @@
 
 use equations::Equations;
 use mechanics::linear::Factors;
+use symbolic::limits::ITERATIONS;
 use symbolic::{CompileError, Evaluator, Expr, SeriesTape, SeriesWorkspace, Symbol, Tape};
 
+use crate::start::SMALL;
 use crate::{ReferenceError, Wide};
-
-/// Newton steps allowed for one instant; relative step after which one more leaves round-off only.
-const STEPS: usize = 30;
-const SMALL: f64 = 1e-18;
 
 const INSTANT: &str = "equations of the instant";
 
@@ -177,7 +175,7 @@ impl<T: Wide> Instant<T> {
                     break;
                 }
                 last = relative < SMALL;
-                if !relative.is_finite() || step > STEPS {
+                if !relative.is_finite() || step > ITERATIONS {
                     return Err(ReferenceError::NotConverged {
                         what: INSTANT,
                         time: t.to_f64(),

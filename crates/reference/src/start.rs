@@ -8,14 +8,14 @@
 use equations::Equations;
 use mechanics::linear::{Factors, Singular};
 use mechanics::{Removal, State, System, complete_removal_start};
+use symbolic::limits::ITERATIONS;
 use symbolic::{Evaluator, Expr, Symbol};
 
 use crate::instant::{parameters, subtract};
 use crate::{ReferenceError, Wide};
 
-/// Steps allowed, and the relative step after which one more step leaves round-off only.
-const STEPS: usize = 40;
-const SMALL: f64 = 1e-18;
+/// The relative step after which one more step leaves round-off only.
+pub(crate) const SMALL: f64 = 1e-18;
 
 const VELOCITY: &str = "constraint at the start";
 const REMOVAL: &str = "parametrization at the start";
@@ -192,7 +192,7 @@ fn newton(
     mut step: impl FnMut() -> Result<f64, Singular>,
 ) -> Result<(), ReferenceError> {
     let mut length = f64::INFINITY;
-    for _ in 0..STEPS {
+    for _ in 0..ITERATIONS {
         let last = length < SMALL;
         length = step().map_err(|singular| ReferenceError::Singular { what, time, pivot: singular.reciprocal })?;
         if last {

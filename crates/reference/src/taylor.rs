@@ -10,7 +10,7 @@ use crate::instant::Instant;
 use crate::{ReferenceError, Wide};
 
 /// Shortest step, relative to the time.
-const SHORTEST: f64 = 1e-12;
+pub(crate) const SHORTEST: f64 = 1e-12;
 
 pub(crate) const NAME: &str = "Taylor series";
 

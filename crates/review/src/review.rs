@@ -269,8 +269,10 @@ impl Held<'_> {
 
     fn points(&self, rows: &[Row], tolerance: f64) -> Vec<Point<Bounded>> {
         let largest = |of: &dyn Fn(&Row) -> f64| rows.iter().map(of).fold(0.0, |most: f64, x| most.max(x.abs()));
-        let number =
-            |value: f64, size: f64| Bounded { value, magnitude: size.max(value.abs()) * tolerance / OF_MAGNITUDE };
+        let number = |value: f64, size: f64| Bounded {
+            value,
+            magnitude: size.max(value.abs()) * tolerance / Bounded::ROUND_OFF,
+        };
         let of = |row: &Row| {
             let inputs = self.frame.reading.parameters.iter().map(|p| Bounded::from_f64(p.1));
             let q = (0..row.q.len()).map(|i| number(row.q[i], largest(&|row| row.q[i])));
@@ -305,9 +307,6 @@ impl Held<'_> {
         Vec::new()
     }
 }
-
-/// What of its magnitude may be round-off in a [`Bounded`].
-const OF_MAGNITUDE: f64 = 1e-11;
 
 /// Pairs of a constraint written wrong and another mistake beyond which they are not tried.
 const MOST: usize = 4_000_000;

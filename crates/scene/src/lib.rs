@@ -80,5 +80,5 @@ pub use number::Number;
 pub use reasons::{NameFault, Remark, Unavailable};
 pub use scene::{Filmed, Meant, Scene};
 pub use starts::{Start, Starts};
-pub use table::{TABLE_SIZE, Table, TableError, TableFault, table_cell, table_text};
+pub use table::{MOST_ROWS, TABLE_SIZE, Table, TableError, TableFault, table_cell, table_text};
 pub use write::quoted;

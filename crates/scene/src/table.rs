@@ -13,7 +13,8 @@ use symbolic::excerpt;
 
 /// Bytes of the largest table that is read.
 pub const TABLE_SIZE: usize = 400_000_000;
-const MOST_ROWS: usize = 1_000_000;
+/// Most rows of a table, and members of an ensemble.
+pub const MOST_ROWS: usize = 1_000_000;
 const MOST_COLUMNS: usize = 10_000;
 const MOST_CELLS: usize = 50_000_000;
 const LONGEST_NAME: usize = 1_000;

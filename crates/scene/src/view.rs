@@ -1,15 +1,13 @@
 //! `[view]`: the bodies that are drawn.
 
 use mechanics::{Body, Kind, Shape, State, Touch, View};
+use symbolic::limits::NOTHING;
 use symbolic::{Evaluator, Expr, Graph, Matrix};
 
 use super::context::Context;
 use super::names::check_symbols;
 use super::section::{Entry, Section, Value};
 use crate::{SceneError, SceneErrorKind, Unavailable, format};
-
-/// Tolerance of `R Rᵀ = 1` at the start.
-const LIMIT: f64 = 1e-9;
 
 /// All bodies, in a copy of the system's graph: no equation is to depend on what is drawn.
 pub(super) fn read(context: &Context) -> Result<View, SceneError> {
@@ -138,8 +136,8 @@ fn check_body(context: &Context, section: &Section, g: &Graph, body: &Body, star
     let residual = (0..9).map(|k| off(k / 3, k % 3)).fold(0.0, f64::max);
     let cross = [0, 1, 2].map(|i| r[0][(i + 1) % 3] * r[1][(i + 2) % 3] - r[0][(i + 2) % 3] * r[1][(i + 1) % 3]);
     let determinant = dot(&cross, &r[2]);
-    if residual > LIMIT || determinant < 0.0 {
-        return Err(blame("rotation", SceneErrorKind::NoRotation { residual, limit: LIMIT, determinant }));
+    if residual > NOTHING || determinant < 0.0 {
+        return Err(blame("rotation", SceneErrorKind::NoRotation { residual, limit: NOTHING, determinant }));
     }
     Ok(())
 }

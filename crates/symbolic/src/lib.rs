@@ -43,6 +43,7 @@
 
 mod broken;
 mod cancel;
+pub mod limits;
 mod programs;
 mod questions;
 mod series;

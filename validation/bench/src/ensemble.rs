@@ -9,6 +9,7 @@ use std::time::Instant;
 use anyhow::{Result, bail, ensure};
 use integrate::{Dense, Method, Options, Status};
 use mechanics::{ConstantsRule, State};
+pub use motion::band::CHUNK as MEMBERS;
 use motion::{
     CHETAEV, Choice, Ensemble, EnsembleMember, EnsembleOptions, EnsembleStart, Prepared, REMOVED_CONSTRAINT, Settings,
     VAKONOMIC, choices, prepare, setting,
@@ -19,9 +20,7 @@ use symbolic::Xorshift;
 /// The scene whose members they are.
 pub const ENSEMBLE_SCENE: &str = "sledge";
 
-/// Members of an ensemble for throughput, and in the main job, which has other things to do as well.
-pub const MEMBERS: usize = 4096;
-/// See [`MEMBERS`].
+/// Members of an ensemble in the main job, which has other things to do as well; for throughput [`MEMBERS`].
 pub const FEW_MEMBERS: usize = 256;
 
 /// What was measured of one formulation.

@@ -23,10 +23,12 @@ use review::substitution::SUBSTITUTION;
 const TOLERANCES: [f64; 3] = [1e-11, 1e-9, 1e-7];
 
 /// Steps after which a run is given up.
-const MAX_STEPS: usize = 3_000;
+pub(crate) const MAX_STEPS: usize = 3_000;
 
-/// Instants at which two motions are compared.
-const INSTANTS: usize = 40;
+/// The part of a size that can be told: what is less says nothing of a claim.
+pub(crate) const SEEN: f64 = 1e-3;
+/// Instants at which motions are compared and looked at.
+pub(crate) const INSTANTS: usize = 40;
 
 /// Where a motion stops, all are looked at up to this fraction of the time it lasted.
 const BEFORE_A_STOP: f64 = 0.8;

@@ -21,6 +21,7 @@ use integrate::Method;
 use mechanics::{ConstantsRule, Parameter, Removal, State, System, complete_removal_start};
 use motion::{CHETAEV, Metric, Motion, Setting, Settings, SolveError, solve};
 use nalgebra::{DMatrix, DVector};
+use symbolic::limits::ITERATIONS;
 use symbolic::{CompileError, Expr, Graph, Symbol};
 
 use crate::derived::equations;
@@ -198,9 +199,6 @@ pub fn with_kappa(system: &System, value: f64) -> System {
     other
 }
 
-/// Steps of Newton's method for a momentum; one does where momenta are affine in the velocities.
-const NEWTON: usize = 12;
-
 /// Velocities and `μ = N f` that have the start's momenta `L_v + Aᵀ μ₀`, by Newton's method.
 ///
 /// # Errors
@@ -215,7 +213,7 @@ pub fn at_momentum(setting: Setting, strength: f64, multipliers: &[f64]) -> Resu
     let augmented = g.add(system.lagrangian, g.dot(&g.variables(&symbols), &system.constraints));
     let rows = [&g.gradient(augmented, &v)[..], &system.constraints].concat();
     let slopes = g.jacobian(&rows, &[&v[..], &symbols].concat());
-    for _ in 0..NEWTON {
+    for _ in 0..ITERATIONS {
         let mut numbers_at = values(system, &state);
         numbers_at.extend(symbols.iter().copied().zip(multipliers.iter().copied()));
         let mut left = DVector::from_vec(numbers(g, &rows, &numbers_at)?);

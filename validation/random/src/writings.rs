@@ -1,5 +1,6 @@
 //! Other writings of a scene file: the motions are the same, or are those on one leaf or branch.
 
+use crate::case::INSTANTS;
 use motion::{CHETAEV, Choice, Settings, choices_among, solve_choice};
 use scene::Scene;
 use toml::{Table, Value};
@@ -23,9 +24,6 @@ const fn writing(name: &'static str, adds: usize, keeps_gaps: bool, of: fn(&Tabl
 
 /// Coordinates that start this far from zero, and do not come to it, are written as roots.
 const FROM_ZERO: f64 = 0.25;
-
-/// Instants at which signs are looked at.
-const INSTANTS: usize = 60;
 
 /// All of them.
 pub const WRITINGS: [Writing; 8] = [

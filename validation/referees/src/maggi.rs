@@ -31,7 +31,7 @@ mod error;
 mod motion;
 
 pub use error::MaggiError;
-pub use motion::{Motion, START_LIMIT};
+pub use motion::Motion;
 
 /// Smallest over largest diagonal entry of a pivoted QR factorization; under it a matrix counts as singular.
 pub const PIVOT_LIMIT: f64 = 1e-13;

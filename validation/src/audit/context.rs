@@ -7,14 +7,12 @@ use std::cell::RefCell;
 use std::collections::{BTreeSet, HashMap};
 
 use anyhow::{Context as _, Result, anyhow, bail};
+use symbolic::limits::DEPTH;
 use symbolic::{Expr, Graph, Symbol};
 use toml::{Table, Value};
 
 /// Derivatives of a free function that are symbols.
 const ORDERS: usize = 9;
-
-/// Definitions within definitions that are followed.
-const DEPTH: usize = 60;
 
 /// Names and what they stand for, on one graph.
 #[derive(Clone)]

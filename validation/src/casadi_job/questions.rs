@@ -6,6 +6,7 @@ use anyhow::{Context, Result, bail};
 use comparison::Answer;
 use equations::{Compiled, Derivation, Equations, Formulation, Role};
 use mechanics::{ConstantsRule, complete_removal_start};
+use motion::band::BEFORE_THE_END;
 use motion::{
     CHETAEV, Choice, Motion, REMOVED_CONSTRAINT, Settings, VAKONOMIC, VAKONOMIC_COSTATE, choices, setting, solve,
 };
@@ -103,10 +104,6 @@ pub(super) struct Transcription {
 
 /// How far random states are from the start: positions, parameters and memory; everything else.
 const SPREAD: (f64, f64) = (0.25, 1.0);
-
-/// Where a motion stops at a singularity, or goes on in a chart that the referee does not have, it is
-/// compared up to this fraction of the time until then.
-const BEFORE_A_STOP: f64 = 0.98;
 
 /// States drawn for each one wanted, at most: where our equations cannot be solved another one is drawn.
 const TRIES: usize = 10;
@@ -327,9 +324,9 @@ fn table(scene: &Scene, mut motion: Motion, all: &HashMap<String, Tag>, times: u
     let system = &scene.system;
     let (begin, length) = (motion.start(), motion.end() - motion.start());
     let (until, fraction) = match motion.charts.first() {
-        Some(change) => (Some("its chart changes"), BEFORE_A_STOP * (change.t - begin) / length),
+        Some(change) => (Some("its chart changes"), BEFORE_THE_END * (change.t - begin) / length),
         None if motion.is_complete() => (None, 1.0),
-        None => (Some("it stops"), BEFORE_A_STOP),
+        None => (Some("it stops"), BEFORE_THE_END),
     };
     let times: Vec<f64> = motion.grid(times).into_iter().map(|t| begin + fraction * (t - begin)).collect();
     let differences = times.iter().map(|&t| motion.difference_of_runs(t)).collect::<Result<_, _>>()?;

@@ -5,6 +5,7 @@ use std::fmt::Display;
 use anyhow::Result;
 use serde_json::{Map, Value, json};
 use symbolic::Vanishing;
+use symbolic::limits::HALF_THE_DIGITS;
 
 use crate::audit::{
     Constants, Example, Finding, Form, Paper, STATEMENT, Stationarity, Variant, Verdict, cone, refusal,
@@ -12,9 +13,6 @@ use crate::audit::{
 use comparison::words::{enumerate, short};
 use pages::{DataPackage, Table, fill};
 use program::File;
-
-/// Below this `dI/dε` counts as zero: differences of the perturbed action are good to about 1e-9.
-const STATIONARY: f64 = 1e-8;
 
 /// What the audit found.
 pub struct AuditReport {
@@ -70,8 +68,12 @@ impl AuditReport {
             .iter()
             .flat_map(|f| f.variants.iter().map(move |v| (format!("{}: {}", f.number, v.words), answer(v))))
             .collect();
-        let stationary: Map<String, Value> =
-            self.stationarity.readings.iter().map(|r| (r.name.into(), (r.largest() < STATIONARY).into())).collect();
+        let stationary: Map<String, Value> = self
+            .stationarity
+            .readings
+            .iter()
+            .map(|r| (r.name.into(), (r.largest() < HALF_THE_DIGITS).into()))
+            .collect();
         json!({ "equations": equations, "readings": readings, "stationary": stationary })
     }
 
@@ -127,7 +129,7 @@ impl AuditReport {
         let columns = ["motion of", ">order in $u$", "$dI/d\\varepsilon$, four $\\delta u$", "stationary"];
         let mut readings = Table::new(columns);
         for r in &s.readings {
-            let word = if r.largest() < STATIONARY { "yes" } else { "**no**" };
+            let word = if r.largest() < HALF_THE_DIGITS { "yes" } else { "**no**" };
             readings.row(&[&r.name, &r.order, &list(&r.derivatives), &word]);
         }
         let columns = [">$dI/d\\varepsilon$ measured", ">from $\\delta I$ as printed", ">as corrected"];

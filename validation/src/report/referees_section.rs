@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use anyhow::Result;
 use comparison::Comparison;
+use motion::band::SAME_ESTIMATE;
 use motion::{CERTAINTY, CHETAEV, Metric};
 use pages::{DataPackage, Table, fill};
 use program::File;
@@ -15,8 +16,6 @@ use referees::maggi::{Maggi, Motion};
 const TOLERANCES: [f64; 2] = [1e-11, 1e-13];
 /// Equidistant times at which the motions are compared, besides the start.
 const TIMES: usize = 100;
-/// Difference over the way that counts as none; so does one under [`CERTAINTY`] times the error estimates.
-const SAME: f64 = 1e-8;
 
 /// The page.
 pub const CASADI: &str = "evidence/referees.md";
@@ -74,7 +73,7 @@ fn maggi(comparison: &mut Comparison) -> Result<Option<Row>> {
         what,
         count: TIMES + 1,
         largest: None,
-        tolerance: SAME,
+        tolerance: SAME_ESTIMATE,
         verdict: Word::Failed,
         note: String::new(),
         condition: None,
@@ -110,7 +109,7 @@ fn maggi(comparison: &mut Comparison) -> Result<Option<Row>> {
     }
     let (relative, limit) = (apart / way, CERTAINTY * estimate / way);
     row.largest = relative.is_finite().then_some(relative);
-    if relative > SAME && relative <= limit {
+    if relative > SAME_ESTIMATE && relative <= limit {
         row.note = "as far as the error estimates reach".into();
         row.tolerance = 10_f64.powi(limit.log10().ceil() as i32);
     }

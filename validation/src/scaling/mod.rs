@@ -37,9 +37,6 @@ pub const FORMULATIONS: [(&Formulation, Coordinates); 7] = [
     (REMOVED_CONSTRAINT, Coordinates::Minimal),
 ];
 
-/// Tolerance of solves.
-const TOLERANCE: f64 = 1e-10;
-
 /// Limit on the steps of one run: a motion that runs into a singularity ends there.
 const STEPS: usize = 20_000;
 
@@ -229,7 +226,7 @@ fn point(
     if evaluations.is_none_or(|count| 2.0 * seconds * count as f64 > limits.seconds) {
         return Ok(point);
     }
-    let settings = Settings { tolerance: TOLERANCE, max_steps: STEPS, ..Settings::default() };
+    let settings = Settings { max_steps: STEPS, ..Settings::default() };
     for _ in 0..limits.repeats {
         let motion = solve(Setting { system: &system, ..setting(&scene) }, equations.clone(), &constants, &settings)?;
         let seconds = motion.seconds.integrate;

@@ -1,22 +1,15 @@
 //! The word for a motion, given what it should have been.
 
 use equations::Outputs;
-use motion::{Ending, Metric, Motion, SolveError, TRUSTED};
+use motion::band::SAMPLES;
+use motion::{CERTAINTY, Ending, Metric, Motion, SolveError, TRUSTED};
 use serde::Serialize;
+use symbolic::limits::LAST_DIGITS;
 
 use super::Known;
 
-/// Allowed ratio of the error to the motion's own estimate.
-pub const BETTER_THAN_IT_KNOWS: f64 = 10.0;
-
 /// Relative error that is passed over whatever the estimate says.
 pub const FLOOR: f64 = 1e-7;
-
-/// What coordinates of the size that they have cannot show, over their size.
-const LAST_DIGITS: f64 = 16.0 * f64::EPSILON;
-
-/// Times at which errors are taken, less one.
-const SAMPLES: usize = 200;
 
 /// What became of a cell. Errors and estimates are relative to the distance from the start.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -164,7 +157,7 @@ fn verdict(samples: &[Sample], ending: &Ending, doubt: Option<&str>, allowance: 
     for sample in samples {
         estimate = worst(estimate, sample.difference);
         scale = worst(scale, sample.distance);
-        let claimed = BETTER_THAN_IT_KNOWS * estimate;
+        let claimed = CERTAINTY * estimate;
         // an estimate as large as the motion itself claims nothing, nor does one that says so
         let bounded = !sample.doubted && (claimed < scale || scale == 0.0);
         let allowed = claimed.max(floor * scale).max(asked * whole) + sample.uncertainty;

@@ -6,15 +6,15 @@ use equations::Formulation;
 use integrate::Method;
 use mechanics::ConstantsRule;
 use motion::{
-    CHETAEV, Choice, Metric, Motion, REMOVED_CONSTRAINT, Setting, Settings, Stepping, Steps, VAKONOMIC, derive_at,
-    solve, solve_by_steps,
+    CERTAINTY, CHETAEV, Choice, Metric, Motion, REMOVED_CONSTRAINT, Setting, Settings, Stepping, Steps, VAKONOMIC,
+    derive_at, solve, solve_by_steps,
 };
 use scene::Scene;
 use serde::{Serialize, Serializer};
 use symbolic::Evaluator;
 
 use super::cases::{choice, sledge_reference};
-use super::judge::{Allowance, BETTER_THAN_IT_KNOWS, FLOOR, Verdict, judge};
+use super::judge::{Allowance, FLOOR, Verdict, judge};
 use super::question::tolerance;
 use super::reference::Reference;
 use program::parallel;
@@ -211,7 +211,7 @@ impl Loss {
     /// Where nothing else is known, energy and constraint are judged as places are.
     fn verdict(&self, motion: &Motion) -> Verdict {
         let (error, estimate) = (self.energy.max(self.constraint), self.difference);
-        let off = error > (BETTER_THAN_IT_KNOWS * estimate).max(FLOOR) || error.is_nan() || estimate.is_nan();
+        let off = error > (CERTAINTY * estimate).max(FLOOR) || error.is_nan() || estimate.is_nan();
         match &motion.ending {
             _ if off && motion.doubt.is_none() => Verdict::Wrong { error, estimate, t: motion.end() },
             motion::Ending::Stopped { t, cause } => Verdict::Refused { t: Some(*t), cause: cause.clone() },

@@ -6,10 +6,10 @@ use discrete::Composition;
 use equations::Equations;
 use integrate::Method;
 use mechanics::{ConstantsRule, State, System};
-use motion::{Choice, Metric, Motion, Setting, Settings, TIGHTER, solve, solve_from};
+use motion::{CERTAINTY, Choice, Metric, Motion, Setting, Settings, TIGHTER, solve, solve_from};
 use serde::{Deserialize, Serialize, Serializer};
 
-use super::judge::{Allowance, BETTER_THAN_IT_KNOWS, FLOOR, Verdict, judge};
+use super::judge::{Allowance, FLOOR, Verdict, judge};
 use super::reference::{Known, Reference};
 use program::parallel;
 
@@ -54,7 +54,7 @@ impl Answering {
         match self {
             Answering::Method(method) => {
                 let asked = tolerance(method);
-                Allowance { floor: FLOOR.max(BETTER_THAN_IT_KNOWS * asked * TIGHTER), asked, end, compared, each }
+                Allowance { floor: FLOOR.max(CERTAINTY * asked * TIGHTER), asked, end, compared, each }
             }
             Answering::Steps(_) => Allowance { floor: FLOOR, asked: 0.0, end, compared, each },
         }

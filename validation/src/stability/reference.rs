@@ -3,6 +3,7 @@
 use equations::Formulation;
 use integrate::{DenseOutput, EvaluationError, Options, Problem, Start, Status, integrate};
 use mechanics::{ConstantsRule, State, System};
+use motion::band::SAME_STOP;
 use motion::{Choice, Ending, Motion, Setting, Settings, derive_at, solve};
 use referees::maggi::{self, Maggi};
 
@@ -49,9 +50,6 @@ const STEPS: usize = 2_000_000;
 
 /// Tolerances of the runs of [`Reference::Maggi`] and [`Reference::Equivalent`]: their solves round off more.
 const MAGGI: [f64; 2] = [1e-10, 1e-12];
-
-/// A reference that stops by this part earlier stops at the same singularity; no comparison in between.
-const SAME_STOP: f64 = 1e-3;
 
 /// Length of a run that is needed only for its start.
 const SHORTEST: f64 = 1e-9;

@@ -11,11 +11,12 @@
 //! where that comes to another gap, the number of starts matters.
 
 use equations::Equations;
+use motion::band::COARSEST;
 use motion::shooting::{Minimum, least_from, spread};
 use motion::{Metric, Motion, Setting, Settings, SolveError};
 
 use super::squares::Power;
-use super::{COARSE, Differences, FINE, LOOKED_AT, MANY_TOLERANCE};
+use super::{COARSE, Differences, FINE, LOOKED_AT};
 
 /// Number of starts: as many as this work allows (steps times operations times runs), within these bounds.
 const WORK: usize = 1_300_000;
@@ -80,7 +81,7 @@ pub(crate) fn search(
     settings: &Settings,
 ) -> Result<Option<Found>, SolveError> {
     let mut differences = Differences::new(setting, equations, target, LOOKED_AT, metric, settings)?;
-    differences.tolerance = MANY_TOLERANCE;
+    differences.tolerance = COARSEST;
     let Some(first) = differences.closest(aim.guesses) else { return Ok(None) };
     let work = differences.limit_steps(&first) * (1 + first.len());
     let mut count = (WORK / work.max(1)).clamp(STARTS[0], STARTS[1]);

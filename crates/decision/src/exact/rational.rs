@@ -10,8 +10,6 @@ use super::Flaw;
 /// Multiples of `π/PARTS` are known: of `π/d` for every d up to 16, of degrees and of their halves and
 /// quarters.
 pub const PARTS: i64 = 720_720;
-/// Number of digits from which a decimal may be a multiple of π in the digits of a double.
-const LONG: usize = 15;
 
 /// `fraction + turns · π/PARTS`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -58,7 +56,7 @@ impl Exact {
     pub fn of(x: f64) -> Result<Self, Flaw> {
         let text = format!("{x:e}");
         let digits = text.split('e').next().unwrap_or_default().bytes().filter(u8::is_ascii_digit).count();
-        if digits >= LONG
+        if digits >= f64::DIGITS as usize
             && (1..=360).any(|d| {
                 let times = (x / PI * f64::from(d)).round();
                 times != 0.0 && (x - times * PI / f64::from(d)).abs() <= f64::EPSILON * x.abs()

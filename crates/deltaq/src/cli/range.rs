@@ -1,9 +1,7 @@
 //! Equidistant values, and their combinations.
 
 use motion::equidistant_value;
-
-/// Members of an ensemble, or points of a sweep, at most.
-pub const MOST_MEMBERS: usize = 1_000_000;
+use scene::MOST_ROWS;
 
 /// Equidistant values of something that varies.
 #[derive(Clone, Debug, PartialEq)]
@@ -35,7 +33,7 @@ impl Range {
     /// How many combinations there are, if not too many.
     pub fn combinations(ranges: &[Range]) -> Option<usize> {
         let count = ranges.iter().try_fold(1_usize, |count, range| count.checked_mul(range.count));
-        count.filter(|count| *count <= MOST_MEMBERS)
+        count.filter(|count| *count <= MOST_ROWS)
     }
 }
 
@@ -53,8 +51,8 @@ pub(super) fn range(text: &str) -> Result<Range, String> {
         Err(error) => Err(format!("`{x}` in `{text}`: {error}")),
     };
     let count: usize = count.trim().parse().map_err(|_| format!("`{count}` in `{text}` is not a count"))?;
-    if !(1..=MOST_MEMBERS).contains(&count) {
-        return Err(format!("`{text}` asks for {count} values; 1 to {MOST_MEMBERS} are possible"));
+    if !(1..=MOST_ROWS).contains(&count) {
+        return Err(format!("`{text}` asks for {count} values; 1 to {MOST_ROWS} are possible"));
     }
     Ok(Range { name: name.trim().into(), from: number(from)?, to: number(to)?, count })
 }

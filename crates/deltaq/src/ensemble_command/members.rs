@@ -4,9 +4,9 @@ use std::path::Path;
 
 use anyhow::{Result, bail, ensure};
 use motion::{Choice, costate_names};
-use scene::{Scene, Table, table_text};
+use scene::{MOST_ROWS, Scene, Table, table_text};
 
-use crate::cli::{EnsembleArguments, MOST_MEMBERS, Range};
+use crate::cli::{EnsembleArguments, Range};
 
 /// Values of what varies, one row per member. Rows are made where they are needed.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -59,7 +59,7 @@ impl Members {
             bail!("{place}: `{}` varies already: {}", range.name, self.places[i]);
         }
         let count = self.count.saturating_mul(range.count);
-        ensure!(count <= MOST_MEMBERS, "{place}: that makes {count} members; at most {MOST_MEMBERS} are possible");
+        ensure!(count <= MOST_ROWS, "{place}: that makes {count} members; at most {MOST_ROWS} are possible");
         self.count = count;
         self.ranges.push(range.clone());
         self.names.push(range.name.clone());

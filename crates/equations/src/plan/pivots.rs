@@ -4,6 +4,7 @@ use std::cmp::Ordering;
 use std::collections::BTreeMap;
 
 use mechanics::elimination::{Pivot, SparseMatrix};
+use symbolic::limits::PIVOT;
 
 /// Points at which pivots are tried: at the first none may be small, at the others it is better if none is.
 pub const POINTS: usize = 10;
@@ -11,9 +12,6 @@ pub(crate) const NEAR: usize = 2;
 
 /// A pivot is not smaller than this part of the largest entry under it, …
 const THRESHOLD: f64 = 0.1;
-
-/// … and than this in the scaled matrix, whose rows have a largest entry of 1.
-const SMALLEST: f64 = 1e-4;
 
 /// Extra cost of a pivot that is not a number: a division and the check of its size.
 const MOVING: usize = 4;
@@ -94,10 +92,7 @@ impl Pattern {
                 }
             }
             let small = |j: usize, e: &Entry, point: usize| {
-                e.values[point]
-                    .abs()
-                    .partial_cmp(&SMALLEST.max(THRESHOLD * largest[j][point]))
-                    .is_none_or(Ordering::is_lt)
+                e.values[point].abs().partial_cmp(&PIVOT.max(THRESHOLD * largest[j][point])).is_none_or(Ordering::is_lt)
             };
             let mut best: Option<((bool, usize), (usize, usize))> = None;
             for (i, row) in matrix.rows().iter().enumerate() {

@@ -7,11 +7,10 @@ use nalgebra::storage::Owned;
 use nalgebra::{DMatrix, DVector, Dyn};
 
 use super::{BoundaryError, Residuals, SINGULAR, ShootOptions, Shot};
+use crate::step_resolution::HUGE;
 
-/// Stands for the residuals where they cannot be evaluated: the minimiser then tries a shorter step.
-const OUT_OF_REACH: f64 = 1e100;
 /// A guess this much better than the tolerance is not improved; for others Jacobians are taken.
-const AT_ONCE: f64 = 1e-3;
+pub const AT_ONCE: f64 = 1e-3;
 
 fn condition(jacobian: &DMatrix<f64>) -> f64 {
     let values = jacobian.singular_values();
@@ -191,7 +190,7 @@ impl LeastSquaresProblem<f64, Dyn, Dyn> for Target<'_> {
             Some(values) => Ok(values),
             None => search.values(&at),
         };
-        let values = values.unwrap_or_else(|_| vec![OUT_OF_REACH; search.residuals]);
+        let values = values.unwrap_or_else(|_| vec![HUGE; search.residuals]);
         Some(DVector::from_vec(values))
     }
 

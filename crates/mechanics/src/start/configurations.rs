@@ -1,6 +1,7 @@
 //! Coordinates at the start that constraints on positions leave nothing of.
 
 use nalgebra::{DMatrix, DVector};
+use symbolic::limits::SAME;
 use symbolic::{CompileError, Evaluator, Expr, SplitMix, Symbol};
 
 use crate::System;
@@ -8,8 +9,6 @@ use crate::newton::{Evaluation, NewtonOptions, solve};
 
 /// Points from which Newton's method begins.
 const STARTS: usize = 300;
-/// Configurations nearer to one another than this, in parts of their size, are one.
-const APART: f64 = 1e-6;
 
 /// Values of the coordinates `free` with which the constraints on positions hold, the others being given.
 #[derive(Clone)]
@@ -91,7 +90,7 @@ impl Configurations {
                 }
             }
             let is_known =
-                |known: &Vec<f64>| known.iter().zip(x.iter()).all(|(a, b)| (a - b).abs() <= APART * (size + b.abs()));
+                |known: &Vec<f64>| known.iter().zip(x.iter()).all(|(a, b)| (a - b).abs() <= SAME * (size + b.abs()));
             if !found.iter().any(is_known) {
                 found.push(x.as_slice().to_vec());
             }

@@ -1,6 +1,7 @@
 //! Why there is no start.
 
 use symbolic::CompileError;
+use symbolic::limits::SHOWN;
 
 use crate::newton::NewtonError;
 use crate::{State, System};
@@ -147,7 +148,6 @@ fn listed(names: &[String]) -> String {
 }
 
 fn values(numbers: &[f64]) -> String {
-    const SHOWN: usize = 8;
     let mut shown: Vec<String> = numbers.iter().take(SHOWN).map(|x| format!("{x:.4e}")).collect();
     if numbers.len() > SHOWN {
         shown.push(format!("… {} in all", numbers.len()));

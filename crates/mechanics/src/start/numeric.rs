@@ -3,6 +3,7 @@
 use std::collections::BTreeSet;
 
 use nalgebra::{DMatrix, DVector};
+use symbolic::limits::HALF_THE_DIGITS;
 use symbolic::{Bounded, CompileError, Evaluator, Expr, Scalar, Symbol};
 
 use crate::newton::{Evaluation, NewtonError, NewtonOptions, Root, solve};
@@ -49,9 +50,6 @@ pub(super) fn state_symbols(system: &System, varied: &[Symbol]) -> Vec<Symbol> {
 pub(super) fn bounded(point: &[f64]) -> Vec<Bounded> {
     point.iter().map(|&x| Bounded::from_f64(x)).collect()
 }
-
-/// Part of a kernel direction that is not round-off.
-pub(super) const OPEN: f64 = 1e-8;
 
 /// Equations `e(x; known) = 0` in some symbols `x` of a graph, and outputs in them, compiled.
 #[derive(Clone)]
@@ -149,7 +147,7 @@ impl Problem {
         let open = |i: usize| {
             let gradient = DVector::from_column_slice(&derivatives[i * n..(i + 1) * n]);
             let change = root.null_space.tr_mul(&gradient);
-            change.norm() > OPEN * gradient.norm()
+            change.norm() > HALF_THE_DIGITS * gradient.norm()
         };
         Ok((values.to_vec(), (0..self.count).map(open).collect()))
     }

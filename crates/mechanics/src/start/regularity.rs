@@ -1,6 +1,7 @@
 //! Whether a system has well-posed equations of motion at a point, whatever its units.
 
 use nalgebra::{DMatrix, DVector};
+use symbolic::limits::{DEPENDENT, ITERATIONS, OF_TERMS, SAME};
 use symbolic::{Bounded, Symbol};
 
 use super::error::{Quantity, StartError, check_lengths};
@@ -8,14 +9,7 @@ use super::numeric::{AtState, Program, bounded, state_symbols};
 use crate::newton::decompose;
 use crate::{SingularValues, State, System};
 
-/// Ratios of singular values under this are taken for zero.
-pub(super) const SINGULAR_LIMIT: f64 = 1e-10;
-
-/// An entry under this part of what was added up to it is round-off.
-const OF_TERMS: f64 = 1e-13;
-
-/// Steps of a balance of `M`, and the part of its rows that is balance enough.
-const BALANCE_STEPS: usize = 60;
+/// The part of the rows of `M` that is balance enough.
 const BALANCED: f64 = 0.5;
 
 /// Checks at `state` that `L`, `f` and `Q` are finite, that `A = ∂f/∂v` has full row rank and that `NᵀMN` is
@@ -42,15 +36,13 @@ pub fn check_reactions(system: &System, state: &State) -> Result<(), StartError>
     let scaled = |system: &System| Regularity::new(system, &[]).scaled(state, &[]);
     let own = System { constraints: system.virtual_conditions.clone(), ..system.clone() };
     let (own, kept) = (scaled(&own)?, scaled(system)?);
-    let singular =
-        |singular_values, ratio| StartError::SingularReactions { singular_values, ratio, limit: SINGULAR_LIMIT };
-    if let Err(StartError::DependentConstraints { singular_values, ratio, .. }) = own.check_constraints(SINGULAR_LIMIT)
-    {
+    let singular = |singular_values, ratio| StartError::SingularReactions { singular_values, ratio, limit: DEPENDENT };
+    if let Err(StartError::DependentConstraints { singular_values, ratio, .. }) = own.check_constraints(DEPENDENT) {
         return Err(singular(singular_values, ratio));
     }
     let between = own.kernel()?.tr_mul(&(&kept.mass * kept.kernel()?));
     match ratio(&decompose(&between)?.values) {
-        (ratio, _) if ratio > SINGULAR_LIMIT => Ok(()),
+        (ratio, _) if ratio > DEPENDENT => Ok(()),
         (ratio, singular_values) => Err(singular(singular_values, ratio)),
     }
 }
@@ -105,13 +97,13 @@ impl Regularity {
             }
         }
         let scaled = self.scaled(state, varied)?;
-        scaled.check_constraints(SINGULAR_LIMIT)?;
+        scaled.check_constraints(DEPENDENT)?;
         scaled.check_mass()
     }
 
     /// Checks the constraint Jacobian alone.
     pub(super) fn check_constraints(&mut self, state: &State, varied: &[f64]) -> Result<(), StartError> {
-        self.scaled(state, varied)?.check_constraints(SINGULAR_LIMIT).map(|_| ())
+        self.scaled(state, varied)?.check_constraints(DEPENDENT).map(|_| ())
     }
 
     fn scaled(&mut self, state: &State, varied: &[f64]) -> Result<ScaledMatrices, StartError> {
@@ -163,23 +155,22 @@ impl ScaledMatrices {
             _ => decompose(&self.constraint_jacobian)?.values,
         };
         let (ratio, singular_values) = ratio(&values);
-        if ratio > SINGULAR_LIMIT {
+        if ratio > DEPENDENT {
             return Ok(ratio);
         }
         let combination = self.redundant()?;
-        Err(StartError::DependentConstraints { combination, singular_values, ratio, limit: SINGULAR_LIMIT })
+        Err(StartError::DependentConstraints { combination, singular_values, ratio, limit: DEPENDENT })
     }
 
     /// The combination of constraints that is nearest to zero, the largest factor 1; small ones left out.
     fn redundant(&self) -> Result<Vec<(usize, f64)>, StartError> {
-        const PART: f64 = 1e-6;
         let product = &self.constraint_jacobian * self.constraint_jacobian.transpose();
         let right = decompose(&product)?.right;
         let last = right.row(right.nrows() - 1);
         let of_rows: Vec<f64> = last.iter().zip(self.rows.iter()).map(|(x, row)| x * row).collect();
         let largest = of_rows.iter().copied().fold(0.0_f64, |a, x| if x.abs() > a.abs() { x } else { a });
         let factors = of_rows.iter().map(|x| x / largest).enumerate();
-        Ok(factors.filter(|(_, x)| x.abs() > PART).map(|(i, x)| (i + 1, x)).collect())
+        Ok(factors.filter(|(_, x)| x.abs() > SAME).map(|(i, x)| (i + 1, x)).collect())
     }
 
     /// Whether the circles of Gershgorin tell that `M`, and with it `NᵀMN`, is far from singular.
@@ -189,7 +180,7 @@ impl ScaledMatrices {
             (row[i] + row[i].abs() - sizes, sizes)
         });
         let (least, largest) = circles.fold((f64::INFINITY, 1.0_f64), |(a, b), (c, d)| (a.min(c), b.max(d)));
-        least > SINGULAR_LIMIT * largest
+        least > DEPENDENT * largest
     }
 
     /// A basis of ker `A`, in columns.
@@ -208,10 +199,10 @@ impl ScaledMatrices {
         }
         let kernel = self.kernel()?;
         let (ratio, singular_values) = ratio(&decompose(&kernel.tr_mul(&(&self.mass * &kernel)))?.values);
-        if ratio > SINGULAR_LIMIT {
+        if ratio > DEPENDENT {
             return Ok(());
         }
-        Err(StartError::SingularMassMatrix { singular_values, ratio, limit: SINGULAR_LIMIT })
+        Err(StartError::SingularMassMatrix { singular_values, ratio, limit: DEPENDENT })
     }
 }
 
@@ -234,7 +225,7 @@ fn inverse_or_one(x: f64) -> f64 {
 fn column_scale(a: &DMatrix<f64>, m: &DMatrix<f64>) -> DVector<f64> {
     let has_mass: Vec<bool> = m.row_iter().map(|row| row.amax() > 0.0).collect();
     let mut scale = DVector::from_fn(m.nrows(), |j, _| if has_mass[j] { 1.0 } else { 0.0 });
-    for _ in 0..BALANCE_STEPS {
+    for _ in 0..ITERATIONS {
         let largest = |i: usize| m.row(i).transpose().component_mul(&scale).amax() * scale[i];
         let largest: Vec<f64> = (0..m.nrows()).map(largest).collect();
         scale.iter_mut().zip(&largest).for_each(|(s, size)| *s *= inverse_or_one(size.sqrt()));

@@ -3,10 +3,11 @@
 use std::collections::HashMap;
 
 use nalgebra::{DMatrix, DVector};
+use symbolic::limits::HALF_THE_DIGITS;
 use symbolic::{Bounded, Expr, Symbol};
 
 use super::error::{StartError, check_lengths};
-use super::numeric::{AtState, OPEN, Problem, Program, Solved, bounded, state_symbols};
+use super::numeric::{AtState, Problem, Program, Solved, bounded, state_symbols};
 use crate::newton::{Evaluation, NewtonOptions, Root};
 use crate::{DisplacementParameter, Removal, State, System};
 
@@ -121,7 +122,7 @@ impl RemovalProgram {
         };
         let [parameters, rates, second_rates, memory] =
             [0, 1, 2, 3].map(|i: usize| self.variables[i].iter().filter_map(|&s| value(s)).collect());
-        let open = |i: &usize| root.null_space.row(*i).norm() > OPEN;
+        let open = |i: &usize| root.null_space.row(*i).norm() > HALF_THE_DIGITS;
         let free = (0..unknowns.len()).filter(open).map(|i| unknowns[i]).collect();
         RemovalStart { parameters, rates, second_rates, memory, free, residual: root.residual }
     }

@@ -1,5 +1,6 @@
 //! The velocities that were not given.
 
+use symbolic::limits::{DEPENDENT, SAME};
 use symbolic::{Expr, Symbol};
 
 use super::data::{StartNumbers, StartShape};
@@ -8,11 +9,6 @@ use super::numeric::{Problem, Solved};
 use super::regularity::Regularity;
 use crate::newton::Root;
 use crate::{State, System};
-
-/// Two velocities closer than this part of the larger are one solution, and so is what in one that vanishes
-/// is round-off of the others.
-const SAME: f64 = 1e-6;
-const OF_OTHERS: f64 = 1e-10;
 
 /// The equations for the velocities that were not given, compiled.
 #[derive(Clone)]
@@ -157,7 +153,7 @@ impl VelocityProgram {
 
 /// The places of velocities that differ.
 fn differing(a: &[f64], b: &[f64]) -> Vec<usize> {
-    let round_off = OF_OTHERS * a.iter().chain(b).fold(0.0_f64, |size, x| size.max(x.abs()));
+    let round_off = DEPENDENT * a.iter().chain(b).fold(0.0_f64, |size, x| size.max(x.abs()));
     let same = |i: usize| (a[i] - b[i]).abs() <= (SAME * a[i].abs().max(b[i].abs())).max(round_off);
     (0..a.len()).filter(|&i| !same(i)).collect()
 }

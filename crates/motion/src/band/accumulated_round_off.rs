@@ -9,7 +9,7 @@
 use equations::Compiled;
 
 use super::estimate_failure::Doubt;
-use super::limits::{CERTAINTY, NEARLY, ROUND_OFF, ROUNDED, TOLD};
+use super::limits::{CERTAINTY, ROUND_OFF, ROUNDED, TOLD, UNITS};
 
 /// Time, states, and what is added up to their rates.
 pub type Looked = (f64, Vec<f64>, Vec<f64>);
@@ -91,9 +91,9 @@ impl Sums {
         }
     }
 
-    /// States whose round-off exceeds that of their numbers and `NEARLY` times the difference of the runs.
+    /// States whose round-off exceeds that of their numbers and `UNITS` times the difference of the runs.
     fn over<'a>(&'a self, sizes: &'a [f64]) -> impl Iterator<Item = usize> + 'a {
-        let is_over = |i: &usize| self.sums[*i] > (NEARLY * self.differences[*i]).max(ROUND_OFF * sizes[*i]);
+        let is_over = |i: &usize| self.sums[*i] > (UNITS * self.differences[*i]).max(ROUND_OFF * sizes[*i]);
         (0..self.sums.len()).filter(is_over)
     }
 }
@@ -154,7 +154,7 @@ pub fn accumulated(
 /// `d`, then `η`: the mean round-off of rates up to some instant, where that is largest, in the direction of
 /// the way that a state goes by its rate, and as a part of the largest rate; of states whose round-off
 /// counts. All of one sign: that in which the looser run is apart from the kept one.
-fn offsets_of(rates_at: &mut Rates, looked: &[Looked], looser: &[Vec<f64>], counts: &[bool]) -> Vec<f64> {
+pub(crate) fn offsets_of(rates_at: &mut Rates, looked: &[Looked], looser: &[Vec<f64>], counts: &[bool]) -> Vec<f64> {
     let zeros = vec![0.0_f64; counts.len()];
     let [mut sums, mut means, mut way, mut farthest] = [(); 4].map(|()| zeros.clone());
     let [mut largest, mut apart, mut rates] = [(); 3].map(|()| zeros.clone());

@@ -2,7 +2,7 @@
 
 use std::fmt::{self, Display, Formatter};
 
-use super::limits::{ALONE, CERTAINTY, ROUND_OFF};
+use super::limits::{CERTAINTY, ROUND_OFF};
 use crate::metric::larger;
 
 /// A number of a motion and how wrong it may be.
@@ -106,8 +106,8 @@ pub fn ask(difference: f64, bounds: Option<f64>) -> Answer {
     }
 }
 
-/// [`ask()`] of a single quantity, whose error is estimated less well: the difference counts from `ALONE`
-/// times as much on.
+/// [`ask()`] of a single quantity, whose error is estimated less well: the difference counts from as many
+/// times as much on again.
 pub fn ask_alone(difference: f64, bounds: Option<f64>) -> Answer {
-    ask(difference / ALONE, bounds)
+    ask(difference / CERTAINTY, bounds)
 }

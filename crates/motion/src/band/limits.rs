@@ -3,10 +3,6 @@
 /// How many times the sum of both errors a difference has to be to count.
 pub use decision::CERTAINTY;
 
-/// The difference of a single coordinate has to be this many times as large again, because the errors of
-/// single coordinates are estimated less well than the length of all.
-pub(crate) const ALONE: f64 = 10.0;
-
 /// Relative error above which neither a motion nor a coordinate nor a multiplier is trusted: three digits are
 /// the least that a reader of a table expects.
 pub const TRUSTED: f64 = 1e-3;
@@ -23,24 +19,21 @@ pub(crate) const ROUND_OFF: f64 = 256.0 * f64::EPSILON;
 pub(crate) const ROUNDED: f64 = 0.5 * f64::EPSILON;
 
 /// Units in the last place by which a start is moved: fewer may vanish in the first sum, and more would be an
-/// error of the start.
+/// error of the start. Round-off may be so many times what a sample of it shows, and what the difference of
+/// the runs does: sums of it are upper bounds.
 pub(crate) const UNITS: f64 = 4.0;
 
 /// Accumulated round-off above this part of a state raises a doubt: less of it can be put into a run, which
 /// shows how it grows; more would make another motion.
 pub(crate) const TOLD: f64 = 1e-6;
 
-/// Accumulated round-off up to this many times the difference of the runs counts as no more than that
-/// difference: it is an upper bound.
-pub(crate) const NEARLY: f64 = 4.0;
-
-/// Sums of terms may be so many times as large between the instants of a first look as at these:
-/// a pulse between them may be.
+/// Sums of terms may be so many times as large between the instants of a first look as at these, as may be
+/// round-off beside a sample of it: a pulse between them may be.
 pub(crate) const BETWEEN: f64 = 8.0;
 
 /// The part of a stopped motion that is judged: just before a singularity steps are short and terms large at
 /// any tolerance.
-pub(crate) const BEFORE_THE_END: f64 = 0.9;
+pub const BEFORE_THE_END: f64 = 0.9;
 
 /// Fewer steps than this may be those of the start, or of a motion that is a polynomial.
 pub(crate) const FEW_STEPS: usize = 200;
@@ -57,13 +50,15 @@ pub(crate) const TOGETHER: usize = 20;
 /// Stretches of a motion at whose ends both runs are compared; at whose ends rates and constraints are looked
 /// at; and the same in a first look. A long run is kept at these times.
 pub const STRETCHES: [usize; 3] = [SAMPLES, LOOKS, FEW];
-pub(crate) const SAMPLES: usize = 200;
+/// Of these, the stretches at whose ends both runs are compared.
+pub const SAMPLES: usize = 200;
 pub(crate) const LOOKS: usize = 32;
 pub(crate) const FEW: usize = 4;
 
-/// So many ends of steps are looked at in addition, or all: half of them a like number of steps apart, and
-/// those of the shortest, which are where rates are large.
-pub(crate) const ENDS: usize = 64;
+/// Instants at which something is looked at that passes between two samples: ends of steps (all, or half of
+/// so many a like number of steps apart and those of the shortest, which are where rates are large), the
+/// last half of a run that ends early, Legendre's condition.
+pub const INSTANTS: usize = 64;
 
 /// Number of instants at which sums of terms behind multipliers, and in members behind rates, are computed:
 /// they are evaluated in numbers that carry their magnitude, which takes longer than rates.
@@ -71,3 +66,16 @@ pub(crate) const SUMS: usize = 16;
 
 /// Instants within the time of all members of an ensemble at which their constraints are looked at.
 pub const WATCHED: usize = 8;
+
+/// Two runs that stop within this part of the way stop at the same place.
+pub const SAME_STOP: f64 = 1e-3;
+
+/// Steps that a run of a search for unknowns may take: more are those of a singularity.
+pub const SEARCH_STEPS: usize = 5_000;
+
+/// The coarsest tolerance of a motion of a search: less than can be seen.
+pub const COARSEST: f64 = 1e-6;
+
+/// Members of an ensemble that are integrated before they are handed on: all lanes of all processors are busy
+/// for a moment, and little memory is.
+pub const CHUNK: usize = 4096;

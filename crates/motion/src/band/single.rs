@@ -3,7 +3,7 @@
 use equations::{Compiled, Outputs};
 
 use super::invariant_monitor::InvariantMonitor;
-use super::limits::{BEFORE_THE_END, ENDS, LOOKS};
+use super::limits::{BEFORE_THE_END, INSTANTS, LOOKS};
 use super::{Doubt, TwoRuns};
 use crate::{Motion, Setting, Settings, SolveError};
 
@@ -37,11 +37,11 @@ impl TwoRuns for Motion {
     fn ends_of_steps(&self) -> Vec<f64> {
         let (start, length) = (self.start(), self.judged() * (self.end() - self.start()).abs());
         let ends = self.kept.step_times();
-        let number = if ends.len() > ENDS { ENDS / 2 } else { ends.len() };
+        let number = if ends.len() > INSTANTS { INSTANTS / 2 } else { ends.len() };
         let mut shortest: Vec<[f64; 2]> = ends.windows(2).map(|step| [(step[1] - step[0]).abs(), step[1]]).collect();
         shortest.sort_by(|a, b| a[0].total_cmp(&b[0]));
         let some = (1..=number).map(|k| ends[k * ends.len() / number - 1]);
-        let some = some.chain(shortest.into_iter().take(ENDS - number).map(|[_, end]| end));
+        let some = some.chain(shortest.into_iter().take(INSTANTS - number).map(|[_, end]| end));
         let judged = some.filter(|t| (t - start).abs() <= length).map(|t| self.kept_before(t));
         judged.filter(|t| self.is_in_first_chart(*t)).collect()
     }

@@ -5,7 +5,7 @@ use mechanics::System;
 use crate::{Motion, SolveError};
 
 /// Panels of the coarser quadrature.
-const PANELS: usize = 48;
+pub(super) const PANELS: usize = 48;
 /// Nodes and weights of Gauss and Legendre on [−1, 1], four points; both signs.
 const NODES: [[f64; 2]; 2] =
     [[0.339_981_043_584_856_3, 0.652_145_154_862_546_1], [0.861_136_311_594_052_6, 0.347_854_845_137_453_9]];

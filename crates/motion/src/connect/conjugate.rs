@@ -4,8 +4,10 @@
 //! nothing is looked for before they are independent as far as round-off tells.
 
 use nalgebra::DMatrix;
+use symbolic::limits::{HALF_THE_DIGITS, ITERATIONS};
 
 use crate::SolveError;
+use crate::band::SAMPLES;
 
 /// A time conjugate to the start of a motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -18,23 +20,17 @@ pub struct ConjugateTime {
     pub multiplicity: usize,
 }
 
-/// Columns of length 1 are dependent at first while the smallest singular value is below this.
-const BEGIN: f64 = 1e-8;
 /// A singular value vanishes where it is this part of what it is beside.
 const VANISHES: f64 = 1e-3;
-/// Samples to a step, and equidistant ones.
+/// Samples to a step.
 const TO_A_STEP: usize = 6;
-const EQUIDISTANT: usize = 240;
-const BISECTIONS: usize = 60;
-/// Refinements of a minimum by the golden section.
-const SECTIONS: usize = 40;
 
 /// `∂q(t)/∂x`.
 pub type Matrix<'a> = dyn FnMut(f64) -> Result<DMatrix<f64>, SolveError> + 'a;
 
 /// Times at which it is looked at.
 pub fn samples(start: f64, end: f64, steps: &[f64]) -> Vec<f64> {
-    let mut all: Vec<f64> = (1..=EQUIDISTANT).map(|i| start + (end - start) * i as f64 / EQUIDISTANT as f64).collect();
+    let mut all: Vec<f64> = (1..=SAMPLES).map(|i| start + (end - start) * i as f64 / SAMPLES as f64).collect();
     for step in steps.windows(2).filter(|step| step[1] > step[0]) {
         all.extend((1..TO_A_STEP).map(|i| step[0] + (step[1] - step[0]) * i as f64 / TO_A_STEP as f64));
     }
@@ -95,7 +91,7 @@ pub(super) fn condition(matrix: &DMatrix<f64>) -> f64 {
 pub fn times(matrix: &mut Matrix, samples: &[f64]) -> Result<Option<Vec<(f64, usize)>>, SolveError> {
     let mut looks = Vec::new();
     for &t in samples {
-        if !looks.is_empty() || smallest(&normalized(matrix(t)?)) > BEGIN {
+        if !looks.is_empty() || smallest(&normalized(matrix(t)?)) > HALF_THE_DIGITS {
             looks.push(look(matrix, t)?);
         }
     }
@@ -122,7 +118,7 @@ pub fn times(matrix: &mut Matrix, samples: &[f64]) -> Result<Option<Vec<(f64, us
 /// Where the sign changes between two times.
 fn crossing(matrix: &mut Matrix, [a, b]: [&Look; 2]) -> Result<f64, SolveError> {
     let (mut from, mut to) = (a.t, b.t);
-    for _ in 0..BISECTIONS {
+    for _ in 0..ITERATIONS {
         let middle = 0.5 * (from + to);
         if middle <= from || middle >= to {
             break;
@@ -137,29 +133,21 @@ fn crossing(matrix: &mut Matrix, [a, b]: [&Look; 2]) -> Result<f64, SolveError> 
 
 /// The zeros between two times of the same sign: none, two, or one at which the rank falls by two or more.
 fn touching(matrix: &mut Matrix, [a, b]: [&Look; 2]) -> Result<Vec<(f64, usize)>, SolveError> {
-    const GOLDEN: f64 = 0.618_033_988_749_894_8;
-    let (mut from, mut to) = (a.t, b.t);
-    let mut inner = [to - GOLDEN * (to - from), from + GOLDEN * (to - from)];
-    let mut values = [look(matrix, inner[0])?, look(matrix, inner[1])?];
-    for _ in 0..SECTIONS {
-        if let Some(other) = values.iter().find(|look| look.positive != a.positive) {
-            let other = Look { ..*other };
+    let least = integrate::least(
+        |t| match look(matrix, t) {
+            Ok(other) if other.positive == a.positive => Ok(other.smallest),
+            other => Err(other),
+        },
+        [a.t, b.t],
+    );
+    let t = match least {
+        Ok((t, _)) => t,
+        Err(other) => {
+            let other = other?;
             let both = [crossing(matrix, [a, &other])?, crossing(matrix, [&other, b])?];
             return Ok(both.into_iter().map(|t| (t, 1)).collect());
         }
-        if values[0].smallest < values[1].smallest {
-            to = inner[1];
-            inner = [to - GOLDEN * (to - from), inner[0]];
-            values.swap(0, 1);
-            values[0] = look(matrix, inner[0])?;
-        } else {
-            from = inner[0];
-            inner = [inner[1], from + GOLDEN * (to - from)];
-            values.swap(0, 1);
-            values[1] = look(matrix, inner[1])?;
-        }
-    }
-    let t = 0.5 * (from + to);
+    };
     let found = multiplicity(matrix, [a.t, t, b.t])?;
     Ok(if found > 0 { vec![(t, found)] } else { Vec::new() })
 }

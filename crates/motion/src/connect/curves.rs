@@ -2,12 +2,12 @@
 
 use crate::connect::two_point::TwoPoint;
 use crate::shooting::Minimum;
+use symbolic::limits;
 
 /// Instants at which curves are compared, and how much more constants differ than curves where they do.
 const COMPARED: usize = 16;
-/// Curves are one where they differ by less, in units of the problem; smaller differences are none.
+/// Curves are one where they differ by less, in units of the problem.
 const SAME: f64 = 1e-4;
-const LEAST: f64 = 1e-6;
 const MORE: f64 = 100.0;
 
 /// Motions that are one curve, once, with the least constants: one for several constants has an abnormal
@@ -22,7 +22,9 @@ pub(super) fn one_per_curve(exact: Vec<Minimum>, problem: &mut TwoPoint) -> Vec<
         let curve = problem.curve(x, COMPARED).unwrap_or_default();
         let is_same = |((other, _), known): &&mut ((Minimum, bool), Vec<f64>)| {
             let apart = largest(&curve, known);
-            !curve.is_empty() && apart <= SAME && largest(&x[free..], &other.unknowns[free..]) > MORE * apart.max(LEAST)
+            !curve.is_empty()
+                && apart <= SAME
+                && largest(&x[free..], &other.unknowns[free..]) > MORE * apart.max(limits::SAME)
         };
         match kept.iter_mut().find(is_same) {
             None => kept.push(((found, false), curve)),

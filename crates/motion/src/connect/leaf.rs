@@ -1,14 +1,10 @@
 //! Integrable constraints: ends on another leaf than the start.
 
 use mechanics::{State, System};
+use symbolic::limits::SAME;
 
 use crate::SolveError;
-use crate::connect::action::integral;
-
-/// Panels of the quadrature.
-const PANELS: usize = 100;
-/// A function of the position is another at the end where it differs by more than this part of its terms.
-const OTHER: f64 = 1e-6;
+use crate::connect::action::{PANELS, integral};
 
 /// Why no motion leads from `start` to the coordinates `end`: a constraint that is the rate of a function of
 /// the position, `A_i·v = dh_i/dt` with `∂A_ij/∂q_k = ∂A_ik/∂q_j` identically, and h_i has another value
@@ -31,7 +27,7 @@ pub(super) fn other_leaf(system: &System, start: &State, end: &[f64]) -> Result<
     for i in (0..system.constraints.len()).filter(|&i| is_rate(i)) {
         let mut row = system.evaluator::<f64>(&inputs, &entries[i * n..(i + 1) * n])?;
         let mut sum = |of: fn(f64) -> f64| {
-            integral([0.0, 1.0], PANELS, &mut |part| {
+            integral([0.0, 1.0], 2 * PANELS, &mut |part| {
                 let q = start.q.iter().zip(end).map(|(a, b)| a + part * (b - a));
                 let at: Vec<f64> = q.chain([start.t]).collect();
                 let terms = row.evaluate(&at).iter().zip(start.q.iter().zip(end)).map(|(a, (p, q))| a * (q - p));
@@ -39,7 +35,7 @@ pub(super) fn other_leaf(system: &System, start: &State, end: &[f64]) -> Result<
             })
         };
         let (change, size) = (sum(|x| x)?, sum(f64::abs)?);
-        if change.abs() > OTHER * size {
+        if change.abs() > SAME * size {
             let constraint = g.plain(system.constraints[i]);
             return Ok(Some(format!(
                 "`{constraint}` is the rate of a function of the position, constant along every motion; at the end it \

@@ -3,14 +3,12 @@
 use mechanics::{SingularValues, System, fresh_symbol};
 use nalgebra::DMatrix;
 use symbolic::Symbol;
+use symbolic::limits::NOTHING;
 
+use crate::band::limits::INSTANTS;
 use crate::connect::conjugate::ConjugateTime;
 use crate::{Metric, Motion, SolveError};
 
-/// Instants at which Legendre's condition is looked at.
-const INSTANTS: usize = 48;
-/// Eigenvalues within this part of the largest count as zero; directions within it of none are held.
-const NONE: f64 = 1e-9;
 /// A conjugate time this part of the whole before the end is at the end.
 const AT_THE_END: f64 = 1e-7;
 
@@ -112,13 +110,13 @@ fn signs(system: &System, motion: &mut Motion) -> Result<[bool; 2], SolveError> 
         metric.set_parameters(&multipliers);
         let a = program.evaluate(&[&at.coordinates[..], &at.velocities, &[t]].concat());
         let held = SingularValues::of(&DMatrix::from_row_slice(jacobian.rows(), jacobian.columns(), a));
-        let free = held.on_kernel(NONE * held.values.iter().fold(0.0, |m: f64, x| m.max(*x)));
+        let free = held.on_kernel(NOTHING * held.values.iter().fold(0.0, |m: f64, x| m.max(*x)));
         let w = metric.matrix(t, &at.coordinates, &at.velocities);
         if w.iter().any(|x| !x.is_finite()) {
             return Ok([false; 2]);
         }
         let values = (&free * w * &free).symmetric_eigenvalues();
-        let limit = NONE * values.amax();
+        let limit = NOTHING * values.amax();
         // as many are zero as directions are held
         if values.iter().filter(|x| x.abs() > limit).count() != free.trace().round() as usize {
             return Ok([false; 2]);

@@ -1,7 +1,7 @@
 //! Constants that are natural at a horizon: a boundary value.
 
 use equations::Equations;
-use integrate::{BoundaryError, Dense, Interrupt, Options, Residuals, ShootOptions, Shot, Status, shoot};
+use integrate::{AT_ONCE, BoundaryError, Dense, Interrupt, Options, Residuals, ShootOptions, Shot, Status, shoot};
 
 use nalgebra::{DMatrix, DVector};
 
@@ -49,8 +49,6 @@ pub(super) fn natural_constants(
 /// Steps by the same Jacobian; each has to lessen the residual to this part.
 const CHORDS: usize = 5;
 const LESS: f64 = 0.1;
-/// A residual below this fraction of the accepted one is not improved.
-const AT_ONCE: f64 = 1e-3;
 
 /// The chord of this motion; `None` where its constants are not found, or derivatives are not carried.
 pub(crate) fn chord(prepared: &mut Prepared, horizon: f64, settings: &Settings) -> Option<Chord> {

@@ -3,15 +3,10 @@
 use std::collections::{BTreeSet, HashMap, HashSet};
 
 use mechanics::elimination::{Pivot, SparseMatrix};
+use symbolic::limits::{LONG, PIVOT};
 use symbolic::{Expr, Graph, Symbol};
 
 use crate::expressions::{Sparse, shortest};
-
-/// What cancels in a pivot may leave this part of the entry that was there, at the start.
-const CANCELLED: f64 = 1e-4;
-
-/// An entry of more nodes belongs to no frame that would be cheaper, and takes long to be multiplied out.
-const LONG: usize = 100;
 
 /// `c (s (v_k + Σ l_j v_j))²`
 pub(super) struct Square {
@@ -68,7 +63,7 @@ impl Known<'_> {
             let Pivot { entry: e, row: others, .. } = matrix.take(pivot, pivot)?;
             let (inertia, scale) = g.square(e, &|s| self.parameters.contains(&s))?;
             let (size, whole) = (self.number(e), self.number(mass[pivot][&pivot]));
-            if !(self.number(inertia) > 0.0 && size >= CANCELLED * whole.abs() && size > 0.0) {
+            if !(self.number(inertia) > 0.0 && size >= PIVOT * whole.abs() && size > 0.0) {
                 return None;
             }
             let factors: Vec<(usize, Expr)> =

@@ -2,6 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
 
+use symbolic::limits::LONG;
 use symbolic::{Expr, Graph, Symbol};
 
 use super::recursion::QuasiVelocities;
@@ -11,9 +12,7 @@ use equations::Definitions;
 /// Nodes of a link's coefficient, a sum, that gets no name of its own: those of links after it contain it.
 const LINK: usize = 3;
 /// Nodes of a side of reduced equations that gets no name of its own.
-const SIDE: usize = 24;
-/// What is not over this is multiplied out: what the columns of `S` have in common with a force cancels.
-const LONG: usize = 4 * SIDE;
+pub(super) const SIDE: usize = 24;
 
 /// `S(q, t)`, n×(n − h), sparse: one column a quasi-velocity, in which the entries stand by coordinate.
 #[derive(Clone, Debug)]

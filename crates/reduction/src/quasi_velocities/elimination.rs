@@ -3,23 +3,16 @@
 use std::cmp::Reverse;
 use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
 
+use symbolic::limits::{DEPENDENT, NOTHING, PIVOT};
 use symbolic::{Expr, Graph, Symbol};
 
+use super::columns::SIDE;
 use super::recursion::{DependentVelocity, EliminatedConstraint, QuasiVelocities, QuasiVelocity};
 use crate::Frame;
 use crate::expressions::point;
 use equations::Definitions;
 use mechanics::elimination::{Candidate, LinearForms, SparseMatrix, choose_pivot};
 use mechanics::{Coordinate, RemovalError, State, System, fresh_symbol};
-
-/// A constant pivot under this part of the row's largest constant coefficient is treated as not constant.
-const CONSTANT_CHOICE: f64 = 1e-4;
-/// So is one under this part of any coefficient: what is constant cannot vanish along the way, however small.
-const FAINT: f64 = 1e-10;
-/// What is left of a difference under this part of its terms is tested for being zero.
-const CANCELLED: f64 = 1e-9;
-/// Nodes of a coefficient that gets no name of its own.
-const SHORT: usize = 24;
 
 /// The columns of a row with coefficients and their values at the start.
 type Terms = BTreeMap<usize, (Expr, f64)>;
@@ -245,7 +238,7 @@ impl<'a> Elimination<'a> {
         let value = self.number(sum);
         let size = old.map_or(0.0, |old| old.1.abs());
         self.rows[row].scale = self.rows[row].scale.max(value.abs()).max(size);
-        let cancelled = old.is_some() && value.abs() <= CANCELLED * size;
+        let cancelled = old.is_some() && value.abs() <= NOTHING * size;
         let known_zero = is_zero && old.is_none_or(|old| old.1 == 0.0);
         let entry = if g.is_zero(sum) || (cancelled || known_zero && old.is_some()) && g.vanishes_exactly(sum) {
             None
@@ -266,10 +259,10 @@ impl<'a> Elimination<'a> {
             self.queue.remove(&candidate);
         }
         let terms = &self.matrix.rows()[row];
-        let faint = FAINT * largest(terms);
+        let faint = DEPENDENT * largest(terms);
         let constants = terms.iter().filter(|(_, (e, x))| x.abs() >= faint && *x != 0.0 && self.is_constant(*e));
         let constants: Vec<(usize, f64)> = constants.map(|(&column, (_, x))| (column, x.abs())).collect();
-        let limit = constants.iter().fold(0.0, |limit: f64, (_, x)| limit.max(CONSTANT_CHOICE * x));
+        let limit = constants.iter().fold(0.0, |limit: f64, (_, x)| limit.max(PIVOT * x));
         let large = constants.into_iter().filter(|(_, x)| *x >= limit);
         let queued: Vec<ConstantPivot> =
             large.map(|(column, _)| (self.fill(row, column), Reverse(column), row)).collect();
@@ -293,7 +286,7 @@ impl<'a> Elimination<'a> {
                 for &(second, b, y) in &terms[i + 1..] {
                     let square = self.g.add(self.g.powi(a, 2), self.g.powi(b, 2));
                     let length = x.hypot(y);
-                    if self.is_constant(square) && length > CONSTANT_CHOICE * largest(&self.matrix.rows()[row]) {
+                    if self.is_constant(square) && length > PIVOT * largest(&self.matrix.rows()[row]) {
                         return Some((row, Couple { columns: (first, second), coefficients: (a, b), square }));
                     }
                 }
@@ -319,7 +312,7 @@ impl<'a> Elimination<'a> {
     }
 
     fn named(&mut self, e: Expr) -> Expr {
-        let named = self.coefficients.short(self.g, "c", SHORT, e);
+        let named = self.coefficients.short(self.g, "c", SIDE, e);
         if named != e
             && let Some(symbol) = self.g.as_symbol(named)
         {

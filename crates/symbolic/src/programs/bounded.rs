@@ -3,9 +3,6 @@
 use crate::Scalar;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-/// A value below this fraction of its magnitude counts as round-off.
-const RELATIVE_BOUND: f64 = 1e-11;
-
 /// Added in every product, so that what underflows counts as round-off.
 const UNDERFLOW: f64 = 1e-300;
 
@@ -35,9 +32,12 @@ pub struct Bounded {
 }
 
 impl Bounded {
+    /// A value below this fraction of its magnitude counts as round-off.
+    pub const ROUND_OFF: f64 = 1e-11;
+
     /// Bound of the round-off in the value.
     pub fn round_off(self) -> f64 {
-        RELATIVE_BOUND * self.magnitude
+        Self::ROUND_OFF * self.magnitude
     }
 
     /// Whether the value is zero up to round-off.

@@ -1,15 +1,13 @@
 //! Expressions as straight-line code in other languages: the program that is compiled, line by line.
 
 use super::lower;
+use crate::limits::LINE;
 use crate::programs::program::{Id, Value};
 use crate::programs::tape::order_of_need;
 use crate::store::number::Number;
 use crate::text::print::{ATOM, PRODUCT, SUM};
 use crate::text::print_plain::number_text;
 use crate::{CompileError, Expr, Function, Graph, Symbol};
-
-/// A value of more characters than this gets a name, so that lines stay short.
-const LONG: usize = 60;
 
 /// A language that expressions are written in.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -100,7 +98,7 @@ impl Graph {
                 Value::Constant(n) => language.number(n),
                 _ => language.operation(value, &texts),
             };
-            let shared = uses[id as usize] > 1 || written.0.len() > LONG && !results.contains(&id);
+            let shared = uses[id as usize] > 1 || written.0.len() > LINE && !results.contains(&id);
             if shared && !matches!(value, Value::Input(_) | Value::Constant(_)) {
                 let name = loop {
                     number += 1;

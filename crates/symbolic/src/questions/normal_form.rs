@@ -1,5 +1,6 @@
 //! Normal forms in which an identity becomes the number zero.
 
+use crate::limits::LONG;
 use crate::store::arena::{Arena, Node};
 use crate::store::number::{Number, Rational};
 use crate::{Expr, Function, Graph};
@@ -7,8 +8,6 @@ use rustc_hash::FxHashMap;
 
 /// sin(n u) is taken apart up to this n.
 const MULTIPLE_LIMIT: i64 = 8;
-/// Terms of a formula of numbers that are multiplied out.
-const TERMS: usize = 100;
 /// Prime factors under this are looked for under roots of numbers.
 const TRIED: i64 = 4096;
 /// Rounds of clearing denominators.
@@ -26,7 +25,7 @@ impl Graph {
     pub fn constant(&self, e: Expr) -> Expr {
         let mut arena = self.arena.borrow_mut();
         let split = arena.with_split_angles(e);
-        let number = arena.expand(split, TERMS);
+        let number = arena.expand(split, LONG);
         if arena.as_number(number).is_some_and(Number::is_exact) { number } else { e }
     }
 }

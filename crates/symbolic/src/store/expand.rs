@@ -1,12 +1,11 @@
 //! Multiplying out.
 
+use crate::limits::TOO_LONG;
 use crate::store::arena::{Arena, Node};
 use crate::store::number::{Number, Rational};
 use crate::{Expr, Graph};
 use rustc_hash::FxHashMap;
 
-/// Terms beyond which [`Graph::expand`] leaves a product as it is.
-const TERM_LIMIT: usize = 10_000;
 /// Powers above this stay as they are: their coefficients would leave the range of numbers.
 const POWER_LIMIT: i64 = 64;
 
@@ -21,7 +20,7 @@ impl Graph {
     /// assert_eq!(g.expand(product), g.sub(g.powi(x, 2), g.powi(y, 2)));
     /// ```
     pub fn expand(&self, e: Expr) -> Expr {
-        self.arena.borrow_mut().expand(e, TERM_LIMIT)
+        self.arena.borrow_mut().expand(e, TOO_LONG)
     }
 
     /// Terms of `e` multiplied out, before any cancel.
@@ -153,12 +152,12 @@ impl Arena {
     }
 }
 
-/// Terms in the n-th power of a sum of k, at most: (n+k−1 over n), counted to [`TERM_LIMIT`] + 1.
+/// Terms in the n-th power of a sum of k, at most: (n+k−1 over n), counted to [`TOO_LONG`] + 1.
 fn power_terms(k: usize, n: i64) -> usize {
     let mut count = 1_usize;
     for i in 1..=usize::try_from(n).unwrap_or(usize::MAX) {
         count = count.saturating_mul((i - 1).saturating_add(k)) / i;
-        if count > TERM_LIMIT {
+        if count > TOO_LONG {
             break;
         }
     }

@@ -8,9 +8,6 @@ use std::hash::{Hash, Hasher};
 /// Integers up to here are exact in `f64`, so a quotient of two of them is rounded once.
 const EXACT_IN_F64: i64 = 1 << 53;
 
-/// Floats are exact whose shortest decimal has up to this number of digits.
-const DIGITS: usize = 15;
-
 /// The π of `f64` as a quotient of two primes, off by 4e-18: so it differs from every number that is written
 /// without π.
 pub const PI: (i64, i64) = (29_111_083_649, 9_266_345_723);
@@ -365,5 +362,5 @@ fn exact_decimal(literal: &str) -> Option<Number> {
         |r: Rational| r.denominator() == 1 || r.numerator().abs() <= EXACT_IN_F64 && r.denominator() <= EXACT_IN_F64;
     let mantissa = literal.split(['e', 'E']).next().unwrap_or(literal);
     let digits = || mantissa.replace('.', "").trim_matches('0').len();
-    (matches!(n, Number::Exact(r) if fits(r)) || digits() <= DIGITS).then_some(n)
+    (matches!(n, Number::Exact(r) if fits(r)) || digits() <= f64::DIGITS as usize).then_some(n)
 }

@@ -1,5 +1,6 @@
 //! Long expressions cut into named pieces.
 
+use crate::limits::LINE;
 use crate::store::arena::{Arena, Node};
 use crate::store::number::Number;
 use crate::{Expr, Graph, Symbol};
@@ -9,10 +10,6 @@ use rustc_hash::FxHashMap;
 const SHARED_LEAVES: usize = 4;
 /// One that has a name already ([`Graph::give_name`]).
 const NAMED_LEAVES: usize = 2;
-/// An expression of more printed leaves than this is cut.
-const LONG_LEAVES: usize = 60;
-/// Terms of a long sum are put together up to this many leaves.
-const GROUP_LEAVES: usize = 30;
 
 impl Graph {
     /// Pulls out shared or long subexpressions as `prefix1`, `prefix2`, … so that what remains can be read:
@@ -43,7 +40,7 @@ impl Graph {
         let mut names = Names { prefix, number: 0, definitions: Vec::new() };
         for n in order {
             let mut new = arena.rebuild(n, &image);
-            if arena.leaves(new) > LONG_LEAVES {
+            if arena.leaves(new) > LINE {
                 new = arena.split_long(new, &mut names);
             }
             let named = arena.given_names.get(&n).cloned();
@@ -137,7 +134,7 @@ impl Arena {
                         }
                         _ => {
                             groups.push(vec![(t, c)]);
-                            room = GROUP_LEAVES.saturating_sub(leaves);
+                            room = (LINE / 2).saturating_sub(leaves);
                         }
                     }
                 }
@@ -147,12 +144,12 @@ impl Arena {
                     parts.push((names.name(self, sum), Number::ONE));
                 }
                 let sum = self.linear(constant, parts);
-                if self.leaves(sum) > LONG_LEAVES { self.split_long(sum, names) } else { sum }
+                if self.leaves(sum) > LINE { self.split_long(sum, names) } else { sum }
             }
             Node::Product(factors) => {
                 let mut named = Vec::with_capacity(factors.len());
                 for (base, exponent) in factors.iter() {
-                    let long = self.leaves(*base) > GROUP_LEAVES / 2;
+                    let long = self.leaves(*base) > LINE / 4;
                     let base = if long { names.name(self, *base) } else { *base };
                     named.push((base, *exponent));
                 }
@@ -176,7 +173,7 @@ impl Arena {
                 }
                 node => node.each_child(|c| stack.push(c)),
             }
-            if count > LONG_LEAVES {
+            if count > LINE {
                 break;
             }
         }

@@ -1,7 +1,6 @@
 //! A line of a text with carets under a place in it.
 
-/// Characters shown on each side of the place.
-const WINDOW: usize = 60;
+use crate::limits::LINE;
 
 /// A window of `line` round `column` (in characters, from 1), with carets under the next `length` characters.
 ///
@@ -11,12 +10,12 @@ const WINDOW: usize = 60;
 pub fn excerpt(line: &str, column: usize, length: usize) -> [String; 2] {
     let line = line.trim_end_matches('\r');
     let before = column.saturating_sub(1);
-    let first = before.saturating_sub(WINDOW);
+    let first = before.saturating_sub(LINE);
     let dots = |cut: bool| if cut { "…" } else { "" };
     // control characters, tabs among them, become spaces, so that the carets stand right
     let printable = |c: char| if c.is_control() { ' ' } else { c };
-    let shown: String = line.chars().skip(first).take(before - first + WINDOW).map(printable).collect();
-    let shown = format!("{}{shown}{}", dots(first > 0), dots(line.chars().count() > before + WINDOW));
+    let shown: String = line.chars().skip(first).take(before - first + LINE).map(printable).collect();
+    let shown = format!("{}{shown}{}", dots(first > 0), dots(line.chars().count() > before + LINE));
     let margin = before - first + usize::from(first > 0);
-    [shown, " ".repeat(margin) + &"^".repeat(length.clamp(1, WINDOW))]
+    [shown, " ".repeat(margin) + &"^".repeat(length.clamp(1, LINE))]
 }

@@ -1,5 +1,6 @@
 //! Formulas as text to expressions.
 
+use crate::limits::NOTHING;
 use crate::text::lexer::{Fault, Spanned, Token, token_at};
 use crate::text::value::{Scope, Value};
 use crate::{Expr, Graph, ParseError, ParseErrorKind};
@@ -79,9 +80,6 @@ impl Graph {
         Err(ParseError { also: errors.collect(), ..first })
     }
 }
-
-/// What rounded numbers leave of themselves in a sum, at least.
-const LEFT: f64 = 1e-9;
 
 /// Names that stand for numbers, without time.
 struct Scalars<'a> {
@@ -213,7 +211,7 @@ impl<'a> Parser<'a> {
     fn rounded(&self, terms: &[Expr], sum: Expr, start: usize) -> Result<(), Fault> {
         let numbers: Option<Vec<f64>> = terms.iter().map(|&e| self.graph.as_number(e)).collect();
         let most = numbers.map_or(0.0, |numbers| numbers.iter().map(|x| x.abs()).sum());
-        let stays = |x: f64| x.abs() > LEFT * most;
+        let stays = |x: f64| x.abs() > NOTHING * most;
         let holds = !self.graph.are_exact(&[sum]) && self.graph.as_number(sum).is_none_or(stays);
         match holds || self.graph.are_exact(terms) {
             true => Ok(()),

@@ -3,6 +3,7 @@
 use anyhow::Result;
 use integrate::{Options, Status};
 use mechanics::State;
+use motion::band::BEFORE_THE_END;
 use motion::{Metric, Prepared};
 use reference::{CachedReference, Question, reference};
 use scene::Scene;
@@ -31,9 +32,6 @@ enum Source {
     Narrow(Vec<(Vec<f64>, Vec<f64>)>, Box<Metric>),
 }
 
-/// Of a motion that ends at a singularity this part is measured.
-const PART: f64 = 0.9;
-
 /// Error that is asked of the reference.
 const ACCURACY: f64 = 1e-15;
 
@@ -51,7 +49,7 @@ impl Truth {
         let (looser, tighter) = (looser?, tighter?);
         let shortened = [&looser, &tighter].iter().any(|run| run.solution.status != Status::Completed);
         let reached = tighter.end().min(looser.end());
-        let end = if shortened { ready.t + PART * (reached - ready.t) } else { end };
+        let end = if shortened { ready.t + BEFORE_THE_END * (reached - ready.t) } else { end };
         let at = |i: usize| if i == count { end } else { ready.t + (end - ready.t) * i as f64 / count as f64 };
         let times: Vec<f64> = (1..=count).map(at).collect();
 

@@ -5,9 +5,6 @@ use motion::{Choice, Setting, Settings, error_estimate, solve_from};
 
 use super::{Effort, Truth};
 
-/// The default tolerance of the commands.
-const TOLERANCE: f64 = 1e-10;
-
 /// A motion in the form and by the method that are chosen, as [`motion::solve_from`] gives it.
 #[derive(Clone, Debug)]
 pub struct Usual {
@@ -27,7 +24,7 @@ impl Usual {
     /// Up to the end of the reference; `choice` has its constants in numbers.
     pub(super) fn new(setting: Setting, choice: &Choice, truth: &mut Truth, effort: &Effort) -> Result<Self, String> {
         let setting = Setting { end: truth.end(), ..setting };
-        let settings = Settings { tolerance: TOLERANCE, max_steps: effort.max_steps, ..Settings::default() };
+        let settings = Settings { max_steps: effort.max_steps, ..Settings::default() };
         let (mut seconds, mut total) = (f64::INFINITY, 0.0);
         let mut repeats = 0;
         loop {

@@ -6,6 +6,7 @@ use motion::{Choice, REMOVED_CONSTRAINT, Setting, SolveError, VAKONOMIC, derive}
 use nalgebra::{DMatrix, DVector};
 use scene::Scene;
 use symbolic::Symbol;
+use symbolic::limits::NOTHING;
 
 use super::CheckError;
 use super::growth::is_certain;
@@ -13,9 +14,6 @@ use crate::case::Which;
 use crate::derived::{equations, free_constants};
 use crate::realization::{augmented_start, momenta, numbers};
 use crate::{Case, Findings, Kind, Recipe, Truth};
-
-/// Residual of linear equations under which they have a solution, relative to their terms.
-const SOLVABLE: f64 = 1e-9;
 
 /// T1, by construction: for every `μ₀`, and by coordinate removal for every `P(t₀)`.
 pub(super) fn integrable(case: &mut Case) -> Result<(), CheckError> {
@@ -228,5 +226,5 @@ pub fn solution(matrix: &DMatrix<f64>, right: &DVector<f64>, size: f64) -> Optio
         0 => DVector::zeros(0),
         _ => SingularValues::of(matrix).solve(right, 1e-12),
     };
-    ((matrix * &solution - right).norm() <= SOLVABLE * size).then_some(solution)
+    ((matrix * &solution - right).norm() <= NOTHING * size).then_some(solution)
 }

@@ -5,7 +5,7 @@ use decision::{Finding, Verdict};
 use motion::{Settings, VAKONOMIC, choices, setting};
 
 use super::CheckError;
-use crate::case::Which;
+use crate::case::{SEEN, Which};
 use crate::derived::equations;
 use crate::{Case, Findings, Kind};
 
@@ -127,9 +127,6 @@ fn words(finding: &Finding) -> String {
         other => format!("{other:?}"),
     }
 }
-
-/// A gap that ρ makes over the run is at least this part of `ρ T^{3/2}`.
-const SEEN: f64 = 1e-3;
 
 /// A fit finds nothing where nothing is.
 pub(super) fn fit(case: &mut Case) -> Result<(), CheckError> {

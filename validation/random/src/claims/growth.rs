@@ -7,7 +7,8 @@ use super::CheckError;
 use crate::case::Which;
 use crate::{Case, Findings};
 
-/// Deviation of the measured exponent from the predicted one, beyond its doubt.
+/// Deviation of the measured exponent from the predicted one, and of the coefficient relative to it, beyond
+/// their doubt.
 const EXPONENT: f64 = 1e-2;
 
 /// The doubt in a figure, in its changes where the fit has one term less: a change tells the size of what is
@@ -17,9 +18,6 @@ const CHANGES: f64 = 3.0;
 /// An exponent that is less certain than this is neither judged nor counted, nor is a coefficient with that
 /// relative doubt.
 const UNCERTAIN: f64 = 0.1;
-
-/// Relative deviation of the measured leading coefficient from the predicted one, beyond its doubt.
-const COEFFICIENT: f64 = 1e-2;
 
 /// A predicted gap that does not reach this over the run says nothing: its growth cannot be measured.
 const VISIBLE: f64 = 1e-5;
@@ -72,7 +70,7 @@ pub fn judge(found: &mut Findings, measured: Option<&Growth>, predicted: &Leadin
     let claim = "coefficient of the leading divergence";
     match measured.coefficient_uncertainty {
         doubt if doubt > UNCERTAIN => found.undecided(5, claim, format!("measured with a doubt of {doubt:.1e}")),
-        doubt => found.bound(5, claim, measured.deviation_from(predicted), COEFFICIENT + CHANGES * doubt),
+        doubt => found.bound(5, claim, measured.deviation_from(predicted), EXPONENT + CHANGES * doubt),
     }
     match (predicted.exponent, without) {
         (2, _) => found.observe(5, "growth exponent, mu0 not zero", measured.exponent),

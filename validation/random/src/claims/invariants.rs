@@ -3,16 +3,12 @@
 use equations::Outputs;
 use mechanics::System;
 use motion::{CERTAINTY, Motion, SolveError};
+use symbolic::limits::OF_TERMS;
 use symbolic::{Bounded, Expr, Scalar, Symbol};
 
 use super::CheckError;
 use crate::Case;
-
-/// Instants at which a quantity is looked at.
-const INSTANTS: usize = 24;
-
-/// Round-off relative to the size of a quantity's terms.
-const DIGITS_OF_TERMS: f64 = 1e-13;
+use crate::case::INSTANTS;
 
 /// A quantity along a motion, with its error estimate.
 struct Drift {
@@ -55,7 +51,7 @@ fn drift(
         let multiplier = kept.multipliers.iter().fold(0.0_f64, |largest, mu| largest.max(mu.abs()));
         size = size.max(now.magnitude).max(kept.velocities.iter().map(|v| v * v).sum()).max(multiplier);
     }
-    Ok(Drift { change, limit: CERTAINTY * (error + DIGITS_OF_TERMS * size) + floor * size })
+    Ok(Drift { change, limit: CERTAINTY * (error + OF_TERMS * size) + floor * size })
 }
 
 /// T6: `v·L_v − L` for Chetaev where nothing depends on time, no force acts, and `f` is homogeneous; with

@@ -7,6 +7,7 @@ use nalgebra::{DMatrix, DVector};
 use super::CheckError;
 use super::invariance::values;
 use super::realization::own_error;
+use crate::case::SEEN;
 use crate::derived::equations;
 use crate::realization::{constraint_jacobian, distance, numbers, with_kappa};
 use crate::{Case, Kind};
@@ -17,9 +18,6 @@ const KAPPA_FROM: f64 = 1e2;
 const PAIRS: i32 = 2;
 /// What lies between `O(1/κ)`, a tenth, and `O(1/κ²)`, a hundredth.
 const RATE: f64 = 30.0;
-
-/// Kicks that are less than that are none: `μ₀` is zero, or has no curvature to act on.
-const SEEN: f64 = 1e-3;
 
 const CLAIM: &str = "the law of first order from v0 + Pi C mu0/kappa is O(1/kappa^2) off the family";
 const WITHOUT: &str = "not integrable, and Pi C mu0 is not zero: from v0 it is O(1/kappa) off";

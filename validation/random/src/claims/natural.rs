@@ -4,30 +4,19 @@ use mechanics::{ConstantsRule, Removal};
 use motion::{CERTAINTY, Motion, REMOVED_CONSTRAINT, Setting, Settings, SolveError, TIGHTER, solve};
 use nalgebra::{DMatrix, DVector};
 use symbolic::Expr;
+use symbolic::limits::{OF_TERMS, SAME};
 
 use super::CheckError;
 use crate::Case;
+use crate::case::{INSTANTS, MAX_STEPS};
 use crate::derived::{equations, free_constants};
 use crate::realization::numbers;
 
 /// Tolerance of the looser run.
 const TOLERANCE: f64 = 1e-9;
 
-/// Steps after which a run is given up.
-const MAX_STEPS: usize = 3_000;
-
 /// What the search may leave of a costate, over its size: a thousand times the tolerance of the kept run.
 const LEFT: f64 = 1e3 * TOLERANCE * TIGHTER;
-
-/// A costate under this part of what kinetic energy could make of a momentum is round-off, which no search
-/// makes less.
-const LEAST_COSTATE: f64 = 1e-13;
-
-/// Instants at which a costate's size is looked at.
-const INSTANTS: usize = 12;
-
-/// Relative difference of constants that count as the same.
-const SAME: f64 = 1e-6;
 
 const CLAIM: &str = "natural costates vanish at the horizon";
 const FOUND: &str = "constants natural at the end of the run are found";
@@ -71,7 +60,7 @@ fn judged(case: &mut Case, setting: Setting, removal: &Removal, planted: bool) -
     };
     case.found.count(0, FOUND, found.is_ok());
     let Ok(mut motion) = found else { return Ok(None) };
-    let least: Vec<f64> = momenta(setting)?.into_iter().map(|size| LEAST_COSTATE * size).collect();
+    let least: Vec<f64> = momenta(setting)?.into_iter().map(|size| OF_TERMS * size).collect();
     let (left, limit) = left(&mut motion, &mut run(ConstantsRule::Zero)?, removal, &least)?;
     case.found.bound(0, CLAIM, left, limit);
     Ok(Some(motion))

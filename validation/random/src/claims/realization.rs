@@ -3,7 +3,7 @@
 use motion::{CERTAINTY, Metric, Motion, Setting, SolveError};
 
 use super::CheckError;
-use crate::case::Which;
+use crate::case::{INSTANTS, Which};
 use crate::derived::equations;
 use crate::realization::{Realization, distance, realize, with_kappa};
 use crate::{Case, Kind};
@@ -18,9 +18,6 @@ const KAPPA: f64 = 1e1;
 const FEW: i32 = 3;
 /// Measured where the few have not shown it yet.
 const MORE: i32 = 4;
-
-/// Instants at which a motion's own error is asked for.
-const INSTANTS: usize = 20;
 
 /// What the distance must shrink by at last. `O(1/N)` is ten, and more where the first term vanishes.
 const RATE: f64 = 7.0;

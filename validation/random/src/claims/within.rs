@@ -3,15 +3,13 @@
 use mechanics::{SingularValues, State, System};
 use motion::VAKONOMIC_COSTATE;
 use referees::maggi;
+use symbolic::limits::OF_TERMS;
 
 use super::CheckError;
 use crate::Case;
-use crate::case::Which;
+use crate::case::{INSTANTS, SEEN, Which};
 use crate::derived::equations;
 use crate::realization::constraint_jacobian;
-
-/// Instants at which the constraint is looked at.
-const INSTANTS: usize = 12;
 
 /// Maggi's equations give Chetaev's motion, the costate form the vakonomic one; all keep the constraint.
 pub(super) fn check(case: &mut Case) -> Result<(), CheckError> {
@@ -50,7 +48,7 @@ fn compared(
     let rank = |t: f64, q: &[f64], v: &[f64]| rank(&system, &State { t, q: q.to_vec(), v: v.to_vec() });
     let linear = system.constraints_linear_in_velocity();
     let first = &case.scene.start;
-    let least = if linear { 0.0 } else { FAINT * rank(first.t, &first.q, &first.v)? };
+    let least = if linear { 0.0 } else { SEEN * rank(first.t, &first.q, &first.v)? };
     let motion = case.motion(which);
     for t in motion.grid(INSTANTS).into_iter().filter(|&t| t <= last) {
         let (own, other) = motion.at_in_both_runs(t)?;
@@ -64,7 +62,7 @@ fn compared(
         limit = limit.max(largest(&own.coordinates, &other.coordinates) + largest(&one, &two));
         size = size.max(own.coordinates.iter().fold(0.0, |a, q| a.max(q.abs())));
     }
-    case.found.bound(0, claim, gap, motion::CERTAINTY * (limit + DIGITS_OF_TERMS * size) + case.floor);
+    case.found.bound(0, claim, gap, motion::CERTAINTY * (limit + OF_TERMS * size) + case.floor);
     if last < end {
         let because = match last < kept.end() {
             true => "the constraints nearly lose rank".into(),
@@ -75,18 +73,11 @@ fn compared(
     Ok(())
 }
 
-/// The part of its size at the start under which `∂f/∂v`, where that depends on `v`, tells no direction any
-/// more: at the tip of a cone.
-const FAINT: f64 = 1e-3;
-
 /// The smallest singular value of `∂f/∂v`.
 fn rank(system: &System, state: &State) -> Result<f64, CheckError> {
     let values = SingularValues::of(&constraint_jacobian(system, state)?).values;
     Ok(values.iter().copied().fold(f64::INFINITY, f64::min))
 }
-
-/// Round-off relative to the size of a quantity.
-const DIGITS_OF_TERMS: f64 = 1e-13;
 
 /// `|f|` stays within what the two runs differ by, and round-off.
 fn keeps_constraint(case: &mut Case, which: Which) -> Result<(), CheckError> {
@@ -104,7 +95,7 @@ fn keeps_constraint(case: &mut Case, which: Which) -> Result<(), CheckError> {
         residual = residual.max(own);
         // what both runs are off by is no error of theirs
         let error = error + (own - other).abs();
-        limit = limit.max(motion::CERTAINTY * size * error + DIGITS_OF_TERMS * size * size);
+        limit = limit.max(motion::CERTAINTY * size * error + OF_TERMS * size * size);
     }
     case.found.bound(0, "the constraint is kept", residual, limit);
     Ok(())

@@ -2,11 +2,9 @@
 
 use integrate::{EvaluationError, Options, Problem, Projection, Solution, Start, Status};
 use mechanics::State;
+use symbolic::limits::NOTHING;
 
 use super::{Maggi, MaggiError};
-
-/// Largest [`Maggi::constraint_residual`] of a start.
-pub const START_LIMIT: f64 = 1e-9;
 
 /// A motion, as far as it came.
 #[derive(Clone, Debug)]
@@ -44,8 +42,8 @@ pub(super) fn solve(maggi: &mut Maggi, start: &State, end: f64, tolerance: f64) 
     let State { t, q, v } = start;
     maggi.accelerations(*t, q, v)?;
     let found = maggi.constraint_residual(*t, q, v)?;
-    if found > START_LIMIT {
-        return Err(MaggiError::OffConstraint { found, limit: START_LIMIT });
+    if found > NOTHING {
+        return Err(MaggiError::OffConstraint { found, limit: NOTHING });
     }
     let start = Start { t: *t, y: [&q[..], v].concat() };
     let options = Options { projection: Projection::Off, ..Options::with_tolerance(tolerance) };

@@ -40,8 +40,7 @@ fn compared(scene: Scene, settings: &Settings) -> Result<Comparison> {
     compare_unfitted(scene, choices, control, settings).with_context(|| format!("scene `{name}`"))
 }
 
-/// Tolerance of the ensembles of the main job, and repeats of every way to integrate them.
-const ENSEMBLE_TOLERANCE: f64 = 1e-10;
+/// Repeats of every way to integrate the ensembles of the main job.
 const ENSEMBLE_REPEATS: usize = 2;
 
 /// The rank of the scenes among [`JOBS`]: they are first to answer.
@@ -114,7 +113,8 @@ impl Results {
         let benches = bench_all(prepared, &Effort::brief(&EVERY, every), quiet)?;
         let mut ensembles = Vec::new();
         if names.contains(&bench::ENSEMBLE_SCENE) {
-            ensembles = bench::ensemble_throughput(bench::FEW_MEMBERS, ENSEMBLE_TOLERANCE, ENSEMBLE_REPEATS)?;
+            ensembles =
+                bench::ensemble_throughput(bench::FEW_MEMBERS, Settings::default().tolerance, ENSEMBLE_REPEATS)?;
         }
         let (headline, files) = (bench_headline(&benches), bench_files(&benches, &ensembles)?);
         Ok(Part { page: "error-vs-time.md", headline, verdicts: None, files })

@@ -6,12 +6,12 @@ use motion::{CHETAEV, REMOVED_CONSTRAINT, VAKONOMIC};
 use nalgebra::Vector3;
 use scene::{Scene, SceneError};
 
+use super::GRAVITY;
 use crate::stability::question::Question;
 use crate::stability::reference::Reference;
 
 const RADIUS: f64 = 0.1;
 const HALF_ANGLE: f64 = 0.6;
-const GRAVITY: f64 = 9.81;
 /// `m = 1`, `k² = 2a²/5`.
 const GYRATION: f64 = 0.4 * RADIUS * RADIUS;
 

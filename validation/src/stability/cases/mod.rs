@@ -29,6 +29,9 @@ use scene::{Scene, SceneError};
 use super::question::{Case, MAX_STEPS, Question, Subject, Texts};
 use super::reference::Reference;
 
+/// m/s², as in the scenes.
+const GRAVITY: f64 = 9.81;
+
 /// All cases, in the order of the page.
 pub static CASES: LazyLock<Vec<Case>> = LazyLock::new(|| {
     let texts = toml::from_str::<HashMap<String, Texts>>(include_str!("cases.toml"));

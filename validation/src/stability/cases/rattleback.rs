@@ -4,12 +4,12 @@ use motion::CHETAEV;
 use nalgebra::{Matrix3, Rotation3, Vector3};
 use scene::Scene;
 
+use super::GRAVITY;
 use crate::stability::question::Question;
 use crate::stability::reference::Reference;
 
 /// Squares of the half axes; `m = 1`.
 const SQUARES: [f64; 3] = [0.20 * 0.20, 0.05 * 0.05, 0.04 * 0.04];
-const GRAVITY: f64 = 9.81;
 
 /// `(x, y)`, `(ψ, α, β)` and `ω` in body axes at the start.
 const START: [f64; 8] = [0.0, 0.0, 0.3, 0.0, 0.0, 0.1, 0.4, 3.0];

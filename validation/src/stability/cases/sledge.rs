@@ -5,7 +5,7 @@ use motion::{CHETAEV, REMOVED_CONSTRAINT};
 use referees::closed_forms;
 use scene::{Scene, SceneError};
 
-use super::FORMULATIONS;
+use super::{FORMULATIONS, GRAVITY};
 use crate::stability::question::Question;
 use crate::stability::reference::Reference;
 
@@ -30,7 +30,6 @@ pub(super) struct Sledge {
 
 /// Radius of gyration of the scene.
 pub(super) const RADIUS: f64 = 0.7;
-const GRAVITY: f64 = 9.81;
 const SLOPE: f64 = 0.4;
 const PHI: f64 = 0.3;
 const OMEGA: f64 = 1.1;
