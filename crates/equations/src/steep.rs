@@ -87,13 +87,13 @@ impl Compiled {
     /// The arguments of these functions.
     pub fn gauged(&mut self, t: f64, y: &[f64], arguments: &mut [f64]) {
         self.load(t, y);
-        arguments.copy_from_slice(self.steep.evaluate(&self.inputs[..self.sizes.known()]));
+        arguments.copy_from_slice(self.steep.evaluate(&self.instant.inputs[..self.instant.sizes.known()]));
     }
 
     /// The angles of points in the equations: [`symbolic::Graph::angles`].
     pub fn angles(&mut self, t: f64, y: &[f64]) -> Vec<f64> {
         self.load(t, y);
-        self.angles.evaluate(&self.inputs[..self.sizes.known()]).to_vec()
+        self.angles.evaluate(&self.instant.inputs[..self.instant.sizes.known()]).to_vec()
     }
 
     /// Number of [`Equations::divisors`].
@@ -104,7 +104,7 @@ impl Compiled {
     /// The values of what the equations divide by.
     pub fn divided(&mut self, t: f64, y: &[f64], values: &mut [f64]) {
         self.load(t, y);
-        values.copy_from_slice(self.divisors.evaluate(&self.inputs[..self.sizes.known()]));
+        values.copy_from_slice(self.divisors.evaluate(&self.instant.inputs[..self.instant.sizes.known()]));
     }
 
     /// Rows and columns of [`Equations::rows`]; `(0, 0)` where there are none.
@@ -122,7 +122,7 @@ impl Compiled {
             self.solve_instant(t, y)?;
         }
         if let Some(rows) = &mut self.rows {
-            entries.copy_from_slice(rows.program.evaluate(&self.inputs[..rows.inputs]));
+            entries.copy_from_slice(rows.program.evaluate(&self.instant.inputs[..rows.inputs]));
         }
         Ok(())
     }
