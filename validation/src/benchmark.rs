@@ -10,7 +10,7 @@ use motion::{
     CHETAEV, Choice, REMOVED_CONSTRAINT, Settings, VAKONOMIC, choices, constant_names, derive, prepare, setting,
 };
 use program::File;
-use reference::{DoubleDouble, Point, Question, Wide, reference};
+use reference::{DoubleDouble, Entry, Point, Question, reference};
 use scene::Scene;
 use scene::catalogue::find;
 use serde_json::{Value, json};

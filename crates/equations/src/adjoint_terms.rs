@@ -21,14 +21,14 @@ impl Compiled {
     pub fn adjoint_terms_of_rates(&mut self, t: f64, y: &[f64]) -> Result<Vec<f64>, EvaluationFailure> {
         let along_paths = self.terms_of_rates(t, y)?;
         let sizes = self.adjoint_sizes(t, y)?;
-        let (inputs, rates) = (&self.inputs, 0..along_paths.len());
+        let (inputs, rates) = (&self.instant.inputs, 0..along_paths.len());
         let is_trusted = self.planned.as_mut().is_some_and(|planned| planned.is_trusted(inputs));
         let found = match &self.planned {
             Some(planned) if is_trusted => {
                 let of_plan = |x: &[f64]| planned.places.iter().map(|&i| x[i]).collect::<Vec<f64>>();
                 magnitudes(planned.rates.tape(), &of_plan(inputs), &of_plan(&sizes), rates)
             }
-            _ => magnitudes(self.rates.tape(), inputs, &sizes, rates),
+            _ => magnitudes(self.instant.rates.tape(), inputs, &sizes, rates),
         };
         Ok(lesser(along_paths, found))
     }
@@ -41,27 +41,29 @@ impl Compiled {
     pub fn adjoint_terms_of_multipliers(&mut self, t: f64, y: &[f64]) -> Result<Vec<f64>, EvaluationFailure> {
         let along_paths = self.terms_of_multipliers(t, t, y)?;
         let sizes = self.adjoint_sizes(t, y)?;
-        let first = 2 * self.sizes.coordinates;
-        let found = magnitudes(self.outputs.tape(), &self.inputs, &sizes, first..first + along_paths.len());
+        let first = 2 * self.instant.sizes.coordinates;
+        let found =
+            magnitudes(self.instant.outputs.tape(), &self.instant.inputs, &sizes, first..first + along_paths.len());
         Ok(lesser(along_paths, found))
     }
 
     /// Sizes of `t, y, constants, z`; for `z` the effect of round-off in its equations is added.
     fn adjoint_sizes(&mut self, t: f64, y: &[f64]) -> Result<Vec<f64>, EvaluationFailure> {
         self.solve_instant(t, y)?;
-        let known = self.sizes.known();
-        let mut sizes: Vec<f64> = self.inputs.iter().map(|x| x.abs()).collect();
-        for block in &mut self.equations_of_instant {
+        let known = self.instant.sizes.known();
+        let mut sizes: Vec<f64> = self.instant.inputs.iter().map(|x| x.abs()).collect();
+        for block in &mut self.instant.blocks {
             let (n, first) = (block.size, known + block.first);
-            let count = if block.linear { known } else { self.inputs.len() };
+            let count = if block.linear { known } else { self.instant.inputs.len() };
             // R, of a linear block that at z = 0 and ∂R/∂z z
             let row = |i: usize| -> Combination {
-                let products = (0..n).filter(|_| block.linear).map(|j| (i * n + j, self.inputs[first + j]));
+                let products = (0..n).filter(|_| block.linear).map(|j| (i * n + j, self.instant.inputs[first + j]));
                 products.chain([(n * n + i, 1.0)]).collect()
             };
             let rows: Vec<Combination> = (0..n).map(row).collect();
             let tape = block.program.tape();
-            let terms = tape.record(&self.inputs[..count], &mut tape.workspace()).magnitudes(&rows, &sizes[..count]);
+            let terms =
+                tape.record(&self.instant.inputs[..count], &mut tape.workspace()).magnitudes(&rows, &sizes[..count]);
             for (column, term) in block.inverse().iter().zip(terms) {
                 sizes[first..first + n].iter_mut().zip(column).for_each(|(size, x)| *size += x.abs() * term);
             }

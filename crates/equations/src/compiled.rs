@@ -3,10 +3,11 @@
 use symbolic::{CompileError, Evaluator, Expr};
 
 use crate::blocks::{CompiledBlock, EvaluationFailure};
+use crate::dynamics::Dynamics;
 use crate::equations::Equations;
 use crate::jacobian::Jacobian;
 use crate::of_instant::OfInstant;
-use crate::outputs::{Cost, Outputs, Sizes};
+use crate::outputs::{Cost, Outputs};
 use crate::plan::Plan;
 use crate::planned::Planned;
 use crate::projection::Projector;
@@ -19,9 +20,8 @@ use crate::terms::Terms;
 /// Evaluation needs `&mut self` because registers are reused; clone it for another thread.
 #[derive(Clone)]
 pub struct Compiled {
-    pub(crate) equations_of_instant: Vec<CompiledBlock>,
-    pub(crate) rates: Evaluator<f64>,
-    pub(crate) outputs: Evaluator<f64>,
+    /// The plain plan, and the inputs of every program.
+    pub(crate) instant: Dynamics,
     /// The chosen plan, where there is another than the plain one, and how often it was not to be trusted.
     pub(crate) planned: Option<Planned>,
     pub(crate) left: Vec<usize>,
@@ -40,18 +40,6 @@ pub struct Compiled {
     /// Taylor coefficients in the chosen plan, and in the plain one where that may be needed.
     pub(crate) series: Option<Series>,
     pub(crate) plain_series: Option<Series>,
-    pub(crate) sizes: Sizes,
-    /// `t, y, constants, z` in this order.
-    pub(crate) inputs: Vec<f64>,
-    /// `z` from which blocks that are not linear are solved.
-    anchor: Vec<f64>,
-}
-
-/// Which blocks are solved numerically.
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum Blocks {
-    All,
-    Left,
 }
 
 impl Compiled {
@@ -80,30 +68,18 @@ impl Compiled {
         let mut all = known.clone();
         all.extend(equations.unknowns());
 
-        let mut first = 0;
-        let mut blocks = Vec::new();
-        for block in &equations.blocks {
-            blocks.push(CompiledBlock::new(equations, block, first, &known, &all)?);
-            first += block.unknowns.len();
-        }
-        let rates: Vec<Expr> = equations.states.iter().map(|y| y.rate).collect();
-        let named = |list: &[crate::Named]| list.iter().map(|n| n.expression).collect::<Vec<_>>();
-        let (multipliers, invariants) = (named(&equations.multipliers), named(&equations.invariants));
-        let outputs: Vec<Expr> =
-            [&equations.coordinates[..], &equations.velocities, &multipliers, &invariants].concat();
+        let instant = Dynamics::new(equations)?;
         let steep = equations.steep();
         let chart = equations.chart.iter().flat_map(|chart| &chart.coefficients);
         let guards: Vec<Expr> = equations.guards.iter().chain(chart).copied().collect();
-        let planned = (plan.left.len() < blocks.len() || plan.collected.is_some())
-            .then(|| Planned::new(equations, plan, &all, &outputs))
+        let planned = (plan.left.len() < instant.blocks.len() || plan.collected.is_some())
+            .then(|| Planned::new(equations, plan, &all, &equations.output_expressions()))
             .transpose()?;
         Ok(Compiled {
             planned,
             left: plan.left.clone(),
             fallbacks: 0,
-            equations_of_instant: blocks,
-            rates: equations.evaluator(&all, &rates)?,
-            outputs: equations.evaluator(&all, &outputs)?,
+            instant,
             guards: equations.evaluator(&known, &guards)?,
             highest_power: equations.highest_power(),
             gauges: steep.iter().map(|steep| steep.gauge).collect(),
@@ -116,16 +92,6 @@ impl Compiled {
             jacobian: None,
             series: None,
             plain_series: None,
-            sizes: Sizes {
-                states: rates.len(),
-                constants: equations.free_constants.len(),
-                coordinates: equations.coordinates.len(),
-                multipliers: multipliers.len(),
-                invariants: invariants.len(),
-                guards: equations.guards.len(),
-            },
-            anchor: vec![0.0; all.len() - known.len()],
-            inputs: vec![0.0; all.len()],
         })
     }
 
@@ -176,7 +142,7 @@ impl Compiled {
 
     /// Number of states.
     pub fn dimension(&self) -> usize {
-        self.sizes.states
+        self.instant.sizes.states
     }
 
     /// Sets the values of the free constants.
@@ -184,13 +150,12 @@ impl Compiled {
     /// # Panics
     /// If the length is not that of [`Equations::free_constants`].
     pub fn set_constants(&mut self, constants: &[f64]) {
-        let first = 1 + self.sizes.states;
-        self.inputs[first..first + self.sizes.constants].copy_from_slice(constants);
+        self.instant.set_constants(constants);
     }
 
     /// Whether a block is not linear in its unknowns, so that it matters from where it is solved.
     pub fn needs_guess(&self) -> bool {
-        self.equations_of_instant.iter().any(|block| !block.linear)
+        self.instant.blocks.iter().any(|block| !block.linear)
     }
 
     /// Sets the point `z` from which blocks that are not linear are solved: one on the same branch, near by.
@@ -198,7 +163,7 @@ impl Compiled {
     /// # Panics
     /// If the length is not that of [`Equations::unknowns`].
     pub fn set_guess(&mut self, unknowns: &[f64]) {
-        self.anchor.copy_from_slice(unknowns);
+        self.instant.set_guess(unknowns);
     }
 
     /// Solves for the unknowns at `(t, y)` and returns them; blocks not linear start from there from now on.
@@ -206,10 +171,8 @@ impl Compiled {
     /// # Errors
     /// As [`Compiled::rates`].
     pub fn settle(&mut self, t: f64, y: &[f64]) -> Result<&[f64], EvaluationFailure> {
-        self.solve_instant(t, y)?;
-        let known = self.sizes.known();
-        self.anchor.copy_from_slice(&self.inputs[known..]);
-        Ok(&self.anchor)
+        self.instant.settle(t, y)?;
+        Ok(self.instant.guess())
     }
 
     /// `F(t, y)`.
@@ -219,15 +182,15 @@ impl Compiled {
     pub fn rates(&mut self, t: f64, y: &[f64], rates: &mut [f64]) -> Result<(), EvaluationFailure> {
         if self.planned.is_some() {
             self.load(t, y);
-            self.solve_blocks(Blocks::Left)?;
-            if let Some(values) = self.planned.as_mut().and_then(|s| s.rates(&self.inputs)) {
+            self.solve_left()?;
+            if let Some(values) = self.planned.as_mut().and_then(|s| s.rates(&self.instant.inputs)) {
                 rates.copy_from_slice(values);
                 return Ok(());
             }
             self.fallbacks += 1;
         }
         self.solve_instant(t, y)?;
-        rates.copy_from_slice(self.rates.evaluate(&self.inputs));
+        rates.copy_from_slice(self.instant.rates());
         Ok(())
     }
 
@@ -238,7 +201,7 @@ impl Compiled {
 
     /// Cost of one evaluation of the rates, in the plain plan and in the chosen one.
     pub fn cost(&self) -> [Cost; 2] {
-        let plain = self.cost_of(&|_| true, self.rates.tape().len());
+        let plain = self.cost_of(&|_| true, self.instant.rates.tape().len());
         let chosen = self.planned.as_ref().map(|s| self.cost_of(&|k| self.left.contains(&k), s.len()));
         [plain, chosen.unwrap_or(plain)]
     }
@@ -249,7 +212,7 @@ impl Compiled {
     }
 
     fn cost_of(&self, solved: &dyn Fn(usize) -> bool, rates: usize) -> Cost {
-        let blocks = self.equations_of_instant.iter().enumerate().filter(|(k, _)| solved(*k)).map(|(_, b)| b);
+        let blocks = self.instant.blocks.iter().enumerate().filter(|(k, _)| solved(*k)).map(|(_, b)| b);
         blocks.fold(Cost { instructions: rates, factorization: 0 }, |cost, block| Cost {
             instructions: cost.instructions + block.program.tape().len(),
             factorization: cost.factorization
@@ -265,31 +228,32 @@ impl Compiled {
     pub fn outputs(&mut self, t: f64, y: &[f64]) -> Result<Outputs, EvaluationFailure> {
         if self.planned.is_some() {
             self.load(t, y);
-            self.solve_blocks(Blocks::Left)?;
-            if let Some(values) = self.planned.as_mut().and_then(|s| s.outputs(&self.inputs)) {
-                return Ok(self.sizes.outputs(values));
+            self.solve_left()?;
+            if let Some(values) = self.planned.as_mut().and_then(|s| s.outputs(&self.instant.inputs)) {
+                return Ok(self.instant.sizes.outputs(values));
             }
         }
         self.solve_instant(t, y)?;
-        Ok(self.sizes.outputs(self.outputs.evaluate(&self.inputs)))
+        let sizes = self.instant.sizes;
+        Ok(sizes.outputs(self.instant.outputs()))
     }
 
     /// Number of guards.
     pub fn guards(&self) -> usize {
-        self.sizes.guards
+        self.instant.sizes.guards
     }
 
     /// Values of the guards, whose zeros are singularities; where there is room for one more, after them the
     /// sum of the squares of the chart's coefficients, which those of redundant rows are as well.
     pub fn guard_values(&mut self, t: f64, y: &[f64], values: &mut [f64]) {
         self.load(t, y);
-        let found = self.guards.evaluate(&self.inputs[..self.sizes.known()]);
-        let (guards, coefficients) = found.split_at(self.sizes.guards);
+        let found = self.guards.evaluate(&self.instant.inputs[..self.instant.sizes.known()]);
+        let (guards, coefficients) = found.split_at(self.instant.sizes.guards);
         values[..guards.len()].copy_from_slice(guards);
         if let Some(size) = values.get_mut(guards.len()) {
             *size = coefficients.iter().map(|x| x * x).sum();
             if let Some(rows) = self.rows.as_mut().filter(|rows| rows.replaceable) {
-                *size += rows.dependence(&self.inputs);
+                *size += rows.dependence(&self.instant.inputs);
             }
         }
     }
@@ -298,12 +262,12 @@ impl Compiled {
     /// `z`.
     pub fn block_matrices(&mut self, t: f64, y: &[f64]) -> Vec<Vec<f64>> {
         self.load(t, y);
-        let (inputs, known) = (&self.inputs, self.sizes.known());
+        let (inputs, known) = (&self.instant.inputs, self.instant.sizes.known());
         let matrix = |block: &mut CompiledBlock| {
             let inputs = if block.linear { &inputs[..known] } else { &inputs[..] };
             block.program.evaluate(inputs)[..block.size * block.size].to_vec()
         };
-        self.equations_of_instant.iter_mut().map(matrix).collect()
+        self.instant.blocks.iter_mut().map(matrix).collect()
     }
 
     /// Moves the velocities in `y` onto the constraint; returns the Euclidean length of the move.
@@ -312,10 +276,10 @@ impl Compiled {
     /// [`EvaluationFailure`] where constraint Jacobian or metric are singular.
     pub fn project(&mut self, t: f64, y: &mut [f64]) -> Result<f64, EvaluationFailure> {
         self.load(t, y);
-        let known = self.sizes.known();
+        let known = self.instant.sizes.known();
         match &mut self.projector {
             None => Ok(0.0),
-            Some(projector) => projector.project(&mut self.inputs[..known], y),
+            Some(projector) => projector.project(&mut self.instant.inputs[..known], y),
         }
     }
 
@@ -331,7 +295,7 @@ impl Compiled {
     pub fn jacobian(&mut self, t: f64, y: &[f64], jacobian: &mut [f64]) -> Result<(), EvaluationFailure> {
         self.solve_instant(t, y)?;
         let derivatives = self.jacobian.as_mut().expect("compiled with_jacobian");
-        derivatives.write(&self.inputs, &mut self.equations_of_instant, jacobian);
+        derivatives.write(&self.instant.inputs, &mut self.instant.blocks, jacobian);
         Ok(())
     }
 
@@ -349,8 +313,8 @@ impl Compiled {
         let series = if self.solve_trusted(t, y)? { &mut self.series } else { &mut self.plain_series };
         let order = coefficients.len() / y.len() - 1;
         let series = series.as_mut().expect("compiled with_series");
-        let blocks = (&mut self.equations_of_instant[..], 1);
-        series.expand(&self.inputs, unit, order, blocks, |block, residual| block.factors.solve(residual));
+        let blocks = (&mut self.instant.blocks[..], 1);
+        series.expand(&self.instant.inputs, unit, order, blocks, |block, residual| block.factors.solve(residual));
         series.write(y, coefficients);
         Ok(())
     }
@@ -358,8 +322,8 @@ impl Compiled {
     /// Solves the blocks that the chosen plan leaves, or all where it is not to be trusted, and says which.
     pub(crate) fn solve_trusted(&mut self, t: f64, y: &[f64]) -> Result<bool, EvaluationFailure> {
         self.load(t, y);
-        self.solve_blocks(Blocks::Left)?;
-        let trusted = self.planned.as_mut().is_none_or(|s| s.is_trusted(&self.inputs));
+        self.solve_left()?;
+        let trusted = self.planned.as_mut().is_none_or(|s| s.is_trusted(&self.instant.inputs));
         if !trusted {
             self.fallbacks += 1;
             self.solve_instant(t, y)?;
@@ -368,31 +332,16 @@ impl Compiled {
     }
 
     pub(crate) fn load(&mut self, t: f64, y: &[f64]) {
-        self.inputs[0] = t;
-        self.inputs[1..1 + y.len()].copy_from_slice(y);
+        self.instant.load(t, y);
     }
 
     pub(crate) fn solve_instant(&mut self, t: f64, y: &[f64]) -> Result<(), EvaluationFailure> {
-        self.load(t, y);
-        self.solve_blocks(Blocks::All)
+        self.instant.solve(t, y)
     }
 
-    fn solve_blocks(&mut self, which: Blocks) -> Result<(), EvaluationFailure> {
-        let known = self.sizes.known();
-        for (k, block) in self.equations_of_instant.iter_mut().enumerate() {
-            if which == Blocks::Left && !self.left.contains(&k) {
-                continue;
-            }
-            if block.linear {
-                block.step(&self.inputs[..known])?;
-                let (r, z) = (block.solution(), &mut self.inputs[known + block.first..]);
-                z[..r.len()].copy_from_slice(r);
-            } else {
-                let (first, end) = (block.first, block.first + block.size);
-                self.inputs[known + first..known + end].copy_from_slice(&self.anchor[first..end]);
-                block.newton(&mut self.inputs, known)?;
-            }
-        }
-        Ok(())
+    /// Solves the blocks that the chosen plan leaves.
+    fn solve_left(&mut self) -> Result<(), EvaluationFailure> {
+        let left = &self.left;
+        self.instant.solve_blocks(|k| left.contains(&k))
     }
 }

@@ -63,6 +63,7 @@ mod blocks;
 mod code;
 mod compiled;
 mod definitions;
+mod dynamics;
 mod equations;
 mod formulation;
 mod jacobian;
@@ -85,6 +86,7 @@ mod terms;
 pub use blocks::EvaluationFailure;
 pub use compiled::Compiled;
 pub use definitions::Definitions;
+pub use dynamics::{Dynamics, Real};
 pub use equations::{
     Block, Chart, ConstraintProjection, ConstraintRows, Equations, FreeConstant, LeftOut, Named, Role, StateVariable,
     Statement,
@@ -93,6 +95,7 @@ pub use formulation::{Derivation, DerivationError, Formulation, Needs, parameter
 pub use lanes::LaneEquations;
 pub use outputs::{Cost, Outputs};
 pub use plan::{Collected, Plan};
+pub use series::Series;
 pub use tangents::Tangents;
 
 /// The choice of pivots, which is tested by itself: for `tests/` of this crate, and for nobody else.

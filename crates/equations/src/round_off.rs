@@ -10,8 +10,8 @@ impl Compiled {
     /// With its programs in terms, which are made once.
     fn with_terms<T>(&mut self, evaluate: impl FnOnce(&mut Self, &mut Terms) -> T) -> T {
         let mut terms = self.terms.take().unwrap_or_else(|| {
-            let programs = [&self.rates, &self.outputs, &self.steep.program];
-            Box::new(Terms::new(programs, &self.equations_of_instant, self.planned.as_ref()))
+            let programs = [&self.instant.rates, &self.instant.outputs, &self.steep.program];
+            Box::new(Terms::new(programs, &self.instant.blocks, self.planned.as_ref()))
         });
         let found = evaluate(self, &mut terms);
         self.terms = Some(terms);
@@ -25,7 +25,7 @@ impl Compiled {
     /// As [`Compiled::rates`].
     pub fn terms_of_invariants(&mut self, t: f64, y: &[f64]) -> Result<Vec<f64>, EvaluationFailure> {
         self.solve_instant(t, y)?;
-        let (inputs, count) = (bounded(&self.inputs), self.sizes.invariants);
+        let (inputs, count) = (bounded(&self.instant.inputs), self.instant.sizes.invariants);
         let of_last = |values: &[Bounded]| magnitudes(&values[values.len() - count..]);
         Ok(self.with_terms(|_, terms| of_last(terms.outputs.evaluate(&inputs))))
     }
@@ -60,7 +60,7 @@ impl Compiled {
                 planned.rates(&inputs, &mut rates);
                 planned.outputs(&inputs, &mut outputs);
             }
-            rates.extend(&outputs[2 * compiled.sizes.coordinates..][..compiled.sizes.multipliers]);
+            rates.extend(&outputs[2 * compiled.instant.sizes.coordinates..][..compiled.instant.sizes.multipliers]);
             Ok(rates)
         })
     }
@@ -77,12 +77,13 @@ impl Compiled {
         self.with_terms(|compiled, terms| {
             let inputs = compiled.in_terms(t, y, y, terms)?;
             let matrix = |(block, program): (&CompiledBlock, &mut Evaluator<Bounded>)| {
-                let values = program.evaluate(if block.linear { &inputs[..compiled.sizes.known()] } else { &inputs });
+                let values =
+                    program.evaluate(if block.linear { &inputs[..compiled.instant.sizes.known()] } else { &inputs });
                 magnitudes(&values[..block.size * block.size])
             };
-            let matrices: Vec<_> = compiled.equations_of_instant.iter().zip(&mut terms.blocks).map(matrix).collect();
+            let matrices: Vec<_> = compiled.instant.blocks.iter().zip(&mut terms.blocks).map(matrix).collect();
             let derivatives = compiled.jacobian.as_ref().expect("compiled with_jacobian");
-            Ok(derivatives.terms(&inputs, &mut compiled.equations_of_instant, &matrices))
+            Ok(derivatives.terms(&inputs, &mut compiled.instant.blocks, &matrices))
         })
     }
 
@@ -95,7 +96,7 @@ impl Compiled {
         let rates = self.terms_of_rates(t, y)?;
         let states: Vec<f64> = y.iter().zip(rates).map(|(y, term)| y.abs() + term * (t - begin).abs()).collect();
         let values = self.terms_of_outputs(t, y, &states)?;
-        Ok(values[2 * self.sizes.coordinates..][..self.sizes.multipliers].to_vec())
+        Ok(values[2 * self.instant.sizes.coordinates..][..self.instant.sizes.multipliers].to_vec())
     }
 
     fn terms_of_outputs(&mut self, t: f64, y: &[f64], states: &[f64]) -> Result<Vec<f64>, EvaluationFailure> {
@@ -115,7 +116,7 @@ impl Compiled {
                 true => compiled.in_terms(t, y, y, programs)?,
                 false => {
                     compiled.load(t, y);
-                    bounded(&compiled.inputs)
+                    bounded(&compiled.instant.inputs)
                 }
             };
             terms.copy_from_slice(&magnitudes(programs.steep.evaluate(&inputs[..compiled.steep.inputs])));
@@ -143,10 +144,10 @@ impl Compiled {
         elimination: Elimination,
     ) -> Result<Vec<Bounded>, EvaluationFailure> {
         self.solve_instant(t, y)?;
-        let known = self.sizes.known();
-        let mut inputs = bounded(&self.inputs);
+        let known = self.instant.sizes.known();
+        let mut inputs = bounded(&self.instant.inputs);
         inputs[1..].iter_mut().zip(states).for_each(|(y, size)| y.magnitude = size.abs());
-        for (block, program) in self.equations_of_instant.iter_mut().zip(&mut terms.blocks) {
+        for (block, program) in self.instant.blocks.iter_mut().zip(&mut terms.blocks) {
             let terms = terms_of_unknowns(block, program, &inputs, known, elimination);
             let first = known + block.first;
             inputs[first..].iter_mut().zip(terms).for_each(|(z, terms)| z.magnitude = z.magnitude.max(terms));

@@ -9,7 +9,7 @@ use crate::equations::Equations;
 use crate::plan::Plan;
 
 /// `y(t + τ) = Σ_k c_k (τ/unit)^k` from the equations of motion in some plan and the blocks left in it.
-pub(crate) struct Series<T: SeriesScalar = f64> {
+pub struct Series<T: SeriesScalar = f64> {
     tape: SeriesTape,
     /// From the first expansion on; nothing is kept in it from one to the next, and its room is large.
     workspace: Option<SeriesWorkspace<T>>,
@@ -29,14 +29,24 @@ impl<T: SeriesScalar> Clone for Series<T> {
     }
 }
 
-impl Series {
+impl<T: SeriesScalar> Series<T> {
     pub(crate) fn new(equations: &Equations, plan: &Plan) -> Result<Self, CompileError> {
         let places = plan.places(equations);
         let tape = Series::tape(equations, plan)?;
-        let inputs = vec![0.0; places.len()];
+        let inputs = vec![T::from_f64(0.0); places.len()];
         Ok(Series { tape, workspace: None, left: plan.left.clone(), places, inputs })
     }
 
+    /// Of equations whose blocks are all solved in numbers: for [`crate::Dynamics::expand`].
+    ///
+    /// # Errors
+    /// As [`crate::Dynamics::new`].
+    pub fn plain(equations: &Equations) -> Result<Self, CompileError> {
+        Series::new(equations, &Plan::plain(equations))
+    }
+}
+
+impl Series {
     /// Takes `t, y`, constants and the unknowns of blocks that are left.
     pub(crate) fn tape(equations: &Equations, plan: &Plan) -> Result<SeriesTape, CompileError> {
         let steady = |symbol: Symbol| (symbol, SeriesInput::Steady);
@@ -70,13 +80,13 @@ impl<T: SeriesScalar> Series<T> {
     /// Expands to `order`, from `(t, y, constants, z)`; `z` solves the blocks left, with factors at hand, by
     /// which `solve` takes `(∂R/∂z)⁻¹` of what is handed to it. A block takes `sweeps` of these, and one more
     /// where it is not linear: the factors of a Newton iteration are those of the point before the last.
-    pub(crate) fn expand(
+    pub(crate) fn expand<U>(
         &mut self,
         values: &[T],
         unit: f64,
         order: usize,
-        (blocks, sweeps): (&mut [CompiledBlock], usize),
-        solve: fn(&mut CompiledBlock, &mut [T]),
+        (blocks, sweeps): (&mut [CompiledBlock<U>], usize),
+        solve: fn(&mut CompiledBlock<U>, &mut [T]),
     ) {
         let workspace = self.workspace.get_or_insert_with(|| self.tape.workspace(order));
         self.tape.reorder(workspace, order);
@@ -104,7 +114,12 @@ impl<T: SeriesScalar> Series<T> {
 
     /// The coefficients of a state from the last expansion; none of one that is constant in time.
     pub(crate) fn state(&self, i: usize) -> Option<&[T]> {
-        self.workspace.as_ref().and_then(|workspace| self.tape.input(1 + i, workspace))
+        self.input(1 + i)
+    }
+
+    /// The same of any of `t, y, constants, z`, where all blocks are solved in numbers.
+    pub fn input(&self, place: usize) -> Option<&[T]> {
+        self.workspace.as_ref().and_then(|workspace| self.tape.input(place, workspace))
     }
 }
 

@@ -92,7 +92,7 @@ impl Compiled {
     /// As [`Compiled::rates`].
     pub fn gauged(&mut self, t: f64, y: &[f64], arguments: &mut [f64]) -> Result<(), EvaluationFailure> {
         self.reach(self.steep.need_unknowns, t, y)?;
-        arguments.copy_from_slice(self.steep.evaluate(&self.inputs));
+        arguments.copy_from_slice(self.steep.evaluate(&self.instant.inputs));
         Ok(())
     }
 
@@ -102,7 +102,7 @@ impl Compiled {
     /// As [`Compiled::rates`].
     pub fn angles(&mut self, t: f64, y: &[f64]) -> Result<Vec<f64>, EvaluationFailure> {
         self.reach(self.angles.need_unknowns, t, y)?;
-        Ok(self.angles.evaluate(&self.inputs).to_vec())
+        Ok(self.angles.evaluate(&self.instant.inputs).to_vec())
     }
 
     /// Number of [`Equations::divisors`].
@@ -116,7 +116,7 @@ impl Compiled {
     /// As [`Compiled::rates`].
     pub fn divided(&mut self, t: f64, y: &[f64], values: &mut [f64]) -> Result<(), EvaluationFailure> {
         self.reach(self.divisors.need_unknowns, t, y)?;
-        values.copy_from_slice(self.divisors.evaluate(&self.inputs));
+        values.copy_from_slice(self.divisors.evaluate(&self.instant.inputs));
         Ok(())
     }
 
@@ -132,7 +132,7 @@ impl Compiled {
     pub fn rows(&mut self, t: f64, y: &[f64], entries: &mut [f64]) -> Result<(), EvaluationFailure> {
         self.reach(self.rows.as_ref().is_some_and(|rows| rows.entries.need_unknowns), t, y)?;
         if let Some(rows) = &mut self.rows {
-            entries.copy_from_slice(rows.entries.evaluate(&self.inputs));
+            entries.copy_from_slice(rows.entries.evaluate(&self.instant.inputs));
         }
         Ok(())
     }

@@ -51,13 +51,13 @@ impl Tangents {
         Tangents {
             directions,
             planned: compiled.planned.as_ref().map(|planned| [again(&planned.rates), again(&planned.outputs)]),
-            plain: [again(&compiled.rates), again(&compiled.outputs)],
-            blocks: compiled.equations_of_instant.iter().map(|block| again(&block.program)).collect(),
+            plain: [again(&compiled.instant.rates), again(&compiled.instant.outputs)],
+            blocks: compiled.instant.blocks.iter().map(|block| again(&block.program)).collect(),
             projector: compiled.projector.as_ref().map(|projector| again(&projector.program)),
             factors: Factors::new(room),
             series: compiled.series.as_ref().map(Series::again),
             plain_series: compiled.plain_series.as_ref().map(Series::again),
-            inputs: vec![Dual::from_f64(0.0); compiled.inputs.len()],
+            inputs: vec![Dual::from_f64(0.0); compiled.instant.inputs.len()],
             taken: vec![Dual::from_f64(0.0); compiled.planned.as_ref().map_or(0, |planned| planned.places.len())],
         }
     }
@@ -73,8 +73,8 @@ impl Tangents {
     /// If there is no such direction, or the length is not that of [`crate::Equations::free_constants`].
     pub fn set_constants(&mut self, compiled: &Compiled, direction: usize, tangents: &[f64]) {
         assert!(direction < self.directions, "{} directions", self.directions);
-        assert_eq!(tangents.len(), compiled.sizes.constants, "free constants");
-        for (x, tangent) in self.inputs[1 + compiled.sizes.states..].iter_mut().zip(tangents) {
+        assert_eq!(tangents.len(), compiled.instant.sizes.constants, "free constants");
+        for (x, tangent) in self.inputs[1 + compiled.instant.sizes.states..].iter_mut().zip(tangents) {
             x.tangents.0[direction] = *tangent;
         }
     }
@@ -91,7 +91,7 @@ impl Tangents {
         rates: &mut [f64],
     ) -> Result<(), EvaluationFailure> {
         let values = self.evaluate(compiled, t, y, 0)?;
-        spread(values, compiled.sizes.states, rates);
+        spread(values, compiled.instant.sizes.states, rates);
         Ok(())
     }
 
@@ -107,7 +107,8 @@ impl Tangents {
     ) -> Result<(Outputs, Vec<Outputs>), EvaluationFailure> {
         let directions = self.directions;
         let values = self.evaluate(compiled, t, y, 1)?;
-        let of = |pick: &dyn Fn(&Dual) -> f64| compiled.sizes.outputs(&values.iter().map(pick).collect::<Vec<_>>());
+        let of =
+            |pick: &dyn Fn(&Dual) -> f64| compiled.instant.sizes.outputs(&values.iter().map(pick).collect::<Vec<_>>());
         Ok((of(&|x| x.value), (0..directions).map(|l| of(&|x| x.tangents.0[l])).collect()))
     }
 
@@ -129,8 +130,8 @@ impl Tangents {
         let trusted = self.solve(compiled, t, y)?;
         let series = if trusted { &mut self.series } else { &mut self.plain_series };
         let series = series.as_mut().expect("compiled with_series");
-        let (n, orders) = (compiled.sizes.states, coefficients.len() / y.len());
-        let blocks = (&mut compiled.equations_of_instant[..], 2);
+        let (n, orders) = (compiled.instant.sizes.states, coefficients.len() / y.len());
+        let blocks = (&mut compiled.instant.blocks[..], 2);
         series.expand(&self.inputs, unit, orders - 1, blocks, |block, residual| {
             each_part(residual, |part| block.factors.solve(part));
         });
@@ -152,11 +153,11 @@ impl Tangents {
     /// # Errors
     /// As [`Compiled::project`].
     pub fn project(&mut self, compiled: &mut Compiled, t: f64, y: &mut [f64]) -> Result<f64, EvaluationFailure> {
-        let n = compiled.sizes.states;
+        let n = compiled.instant.sizes.states;
         let moved = compiled.project(t, &mut y[..n])?;
         let (Some(program), Some(projector)) = (&mut self.projector, &compiled.projector) else { return Ok(moved) };
         load(&mut self.inputs, compiled, t, y, self.directions);
-        let (known, size) = (compiled.sizes.known(), projector.places.len() + projector.constraints);
+        let (known, size) = (compiled.instant.sizes.known(), projector.places.len() + projector.constraints);
         let (matrix, f) = program.evaluate(&self.inputs[..known]).split_at(size * size);
         let values: Vec<f64> = matrix.iter().map(|x| x.value).collect();
         self.factors.factorize(&values).map_err(|Singular { reciprocal }| EvaluationFailure::Singular {
@@ -197,13 +198,13 @@ impl Tangents {
     /// The unknowns of the instant with their derivatives: those of blocks left, or where the plan is not to
     /// be trusted, which is then said, of all.
     fn solve(&mut self, compiled: &mut Compiled, t: f64, y: &[f64]) -> Result<bool, EvaluationFailure> {
-        let trusted = compiled.solve_trusted(t, &y[..compiled.sizes.states])?;
+        let trusted = compiled.solve_trusted(t, &y[..compiled.instant.sizes.states])?;
         load(&mut self.inputs, compiled, t, y, self.directions);
-        let known = compiled.sizes.known();
-        for (x, z) in self.inputs[known..].iter_mut().zip(&compiled.inputs[known..]) {
+        let known = compiled.instant.sizes.known();
+        for (x, z) in self.inputs[known..].iter_mut().zip(&compiled.instant.inputs[known..]) {
             *x = Dual::from_f64(*z);
         }
-        for (k, block) in compiled.equations_of_instant.iter_mut().enumerate() {
+        for (k, block) in compiled.instant.blocks.iter_mut().enumerate() {
             if trusted && !compiled.left.contains(&k) {
                 continue;
             }
@@ -249,7 +250,7 @@ fn each_part(x: &mut [Dual], mut apply: impl FnMut(&mut [f64])) {
 
 /// Time, states and constants; the tangents of constants stay.
 fn load(inputs: &mut [Dual], compiled: &Compiled, t: f64, y: &[f64], directions: usize) {
-    let (n, known) = (compiled.sizes.states, compiled.sizes.known());
+    let (n, known) = (compiled.instant.sizes.states, compiled.instant.sizes.known());
     inputs[0].value = t;
     for (i, x) in inputs[1..=n].iter_mut().enumerate() {
         x.value = y[i];
@@ -257,7 +258,7 @@ fn load(inputs: &mut [Dual], compiled: &Compiled, t: f64, y: &[f64], directions:
             x.tangents.0[l] = y[(1 + l) * n + i];
         }
     }
-    let constants = inputs[1 + n..known].iter_mut().zip(&compiled.inputs[1 + n..known]);
+    let constants = inputs[1 + n..known].iter_mut().zip(&compiled.instant.inputs[1 + n..known]);
     constants.for_each(|(x, constant)| x.value = *constant);
 }
 

@@ -11,9 +11,18 @@ pub use symbolic::limits::OF_TERMS as PIVOT_LIMIT;
 pub trait Entry: Scalar {
     /// `|x|` as `f64`: for norms, pivots and step sizes, never for the solution itself.
     fn size(self) -> f64;
+    /// Relative spacing of the numbers.
+    const EPSILON: f64;
+    /// The nearest `f64`.
+    fn to_f64(self) -> f64;
 }
 
 impl Entry for f64 {
+    const EPSILON: f64 = f64::EPSILON;
+    #[inline]
+    fn to_f64(self) -> f64 {
+        self
+    }
     #[inline]
     fn size(self) -> f64 {
         self.abs()

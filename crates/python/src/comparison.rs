@@ -12,23 +12,17 @@ use crate::arrays::fixed;
 use crate::errors;
 use crate::families::{Decided, Fit};
 use crate::motion::{Asked, Motion, Sampled};
-use crate::pickled::kept;
+use crate::pickled::answer;
 use crate::system::System;
 
-/// How a gap grows near the start: gap = length * (t - t0)**exponent.
-#[pyclass(frozen, get_all, module = "deltaq")]
-pub(crate) struct Growth {
-    /// Measured exponent.
-    exponent: f64,
-    /// By how much the exponent is uncertain.
-    uncertainty: f64,
-    /// Leading coefficient of the second motion minus the first, shape (n,).
-    coefficient: Py<PyArrayDyn<f64>>,
-    /// Its length in the kinetic metric.
-    length: f64,
+answer! {
+    Growth {
+        exponent: f64,
+        uncertainty: f64,
+        coefficient: Py<PyArrayDyn<f64>>,
+        length: f64,
+    }
 }
-
-kept!(Growth: exponent uncertainty coefficient length);
 
 #[pymethods]
 impl Growth {
@@ -38,20 +32,14 @@ impl Growth {
     }
 }
 
-/// The leading term of the second motion minus the first, by Taylor coefficients of their accelerations.
-#[pyclass(frozen, get_all, module = "deltaq")]
-pub(crate) struct LeadingTerm {
-    /// Exponent of t - t0.
-    exponent: u32,
-    /// Leading coefficient, shape (n,).
-    coefficient: Py<PyArrayDyn<f64>>,
-    /// Its length in the kinetic metric.
-    length: f64,
-    /// Whether exact numbers prove that this term is the first one, so that the motions differ.
-    proved: bool,
+answer! {
+    LeadingTerm {
+        exponent: u32,
+        coefficient: Py<PyArrayDyn<f64>>,
+        length: f64,
+        proved: bool,
+    }
 }
-
-kept!(LeadingTerm: exponent coefficient length proved);
 
 #[pymethods]
 impl LeadingTerm {
@@ -61,45 +49,25 @@ impl LeadingTerm {
     }
 }
 
-/// Two motions compared.
-#[pyclass(frozen, get_all, module = "deltaq")]
-pub(crate) struct Pair {
-    /// Label of the first motion.
-    first: String,
-    /// Label of the second motion.
-    second: String,
-    /// "same", "different" or "undecided".
-    verdict: String,
-    /// Why the verdict is undecided, else None.
-    because: Option<String>,
-    /// First time at which the gap passes each threshold (1e-6, 1e-3, 0.1); None where it never does.
-    tau: Py<PyDict>,
-    /// Largest gap sqrt(dq' M dq), among the certain ones where there are any.
-    largest_gap: f64,
-    /// Largest difference of each coordinate, by name.
-    largest_by_coordinate: Py<PyDict>,
-    /// First sample at which the gap is certain, None where it never is.
-    certain_from: Option<f64>,
-    /// Largest error estimates of both motions, kinetic metric.
-    error_estimates: (f64, f64),
-    /// Time up to which both motions exist.
-    end: f64,
-    /// Samples of the gap: times, shape (k,).
-    times: Py<PyArrayDyn<f64>>,
-    /// Samples of the gap: gaps, shape (k,).
-    gap: Py<PyArrayDyn<f64>>,
-    /// Samples of the gap: what each has to pass to count, shape (k,).
-    limit: Py<PyArrayDyn<f64>>,
-    /// Growth near the start, None where the gap does not stand out from the errors there.
-    growth: Option<Py<Growth>>,
-    /// Predicted leading term; None if the gap has no growth, or the pair has no Taylor series.
-    predicted: Option<Py<LeadingTerm>>,
+answer! {
+    Pair {
+        first: String,
+        second: String,
+        verdict: String,
+        because: Option<String>,
+        tau: Py<PyDict>,
+        largest_gap: f64,
+        largest_by_coordinate: Py<PyDict>,
+        certain_from: Option<f64>,
+        error_estimates: (f64, f64),
+        end: f64,
+        times: Py<PyArrayDyn<f64>>,
+        gap: Py<PyArrayDyn<f64>>,
+        limit: Py<PyArrayDyn<f64>>,
+        growth: Option<Py<Growth>>,
+        predicted: Option<Py<LeadingTerm>>,
+    }
 }
-
-kept!(
-    Pair: first second verdict because tau largest_gap largest_by_coordinate certain_from error_estimates end
-    times gap limit growth predicted
-);
 
 #[pymethods]
 impl Pair {
@@ -109,24 +77,16 @@ impl Pair {
     }
 }
 
-/// One formulation with all choices made, and what became of it.
-#[pyclass(frozen, get_all, module = "deltaq")]
-pub(crate) struct Run {
-    /// Its identifier: the name of the formulation, and of its removal: "removed-constraint:arc-length".
-    label: String,
-    /// The same in words, for people.
-    title: String,
-    /// Name of the formulation.
-    formulation: String,
-    /// Name of the removal, None where the formulation needs none.
-    removal: Option<String>,
-    /// The motion, None where there is none.
-    motion: Option<Py<Motion>>,
-    /// Why there is no motion, None where there is one.
-    error: Option<String>,
+answer! {
+    Run {
+        label: String,
+        title: String,
+        formulation: String,
+        removal: Option<String>,
+        motion: Option<Py<Motion>>,
+        error: Option<String>,
+    }
 }
-
-kept!(Run: label title formulation removal motion error);
 
 #[pymethods]
 impl Run {
@@ -135,26 +95,17 @@ impl Run {
     }
 }
 
-/// A system in every formulation, pair by pair.
-#[pyclass(frozen, get_all, module = "deltaq")]
-pub(crate) struct Comparison {
-    /// The system that moves.
-    system: Py<System>,
-    /// Frobenius' verdict on the constraints, in words.
-    integrability: String,
-    /// All runs.
-    runs: Vec<Py<Run>>,
-    /// All pairs that were compared.
-    pairs: Vec<Py<Pair>>,
-    /// Fits of free constants.
-    fits: Vec<Py<Fit>>,
-    /// Which families have which motions: decided, not searched.
-    decided: Vec<Py<Decided>>,
-    /// Results that exclude each other, in words: none, unless the program is wrong.
-    contradictions: Vec<String>,
+answer! {
+    Comparison {
+        system: Py<System>,
+        integrability: String,
+        runs: Vec<Py<Run>>,
+        pairs: Vec<Py<Pair>>,
+        fits: Vec<Py<Fit>>,
+        decided: Vec<Py<Decided>>,
+        contradictions: Vec<String>,
+    }
 }
-
-kept!(Comparison: system integrability runs pairs fits decided contradictions);
 
 #[pymethods]
 impl Comparison {

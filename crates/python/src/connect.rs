@@ -10,34 +10,23 @@ use scene::Scene;
 
 use crate::arguments::Numbers;
 use crate::arrays::{Floats, fixed};
-use crate::pickled::kept;
+use crate::pickled::answer;
 use crate::system::{Overrides, System};
 use crate::{arguments, background, errors};
 
-/// What `System.connect` found.
-#[pyclass(frozen, get_all, module = "deltaq")]
-pub(crate) struct Connections {
-    /// Name of the formulation.
-    formulation: String,
-    /// Names of the unknowns: free start velocities, free constants.
-    unknowns: Vec<String>,
-    /// The motions, by rising action.
-    motions: Vec<Py<Connection>>,
-    /// Number of starts of the search.
-    starts: usize,
-    /// Why starts led nowhere, and how many.
-    failures: Py<PyDict>,
-    /// Motions integrated in the search, those with derivatives among them.
-    runs: usize,
-    /// How many of them with derivatives.
-    with_derivatives: usize,
-    /// Whether every mu0 gives the same motions, so that none is unknown.
-    every_constant: bool,
-    /// Why there is no motion at all; None elsewhere.
-    none: Option<String>,
+answer! {
+    Connections {
+        formulation: String,
+        unknowns: Vec<String>,
+        motions: Vec<Py<Connection>>,
+        starts: usize,
+        failures: Py<PyDict>,
+        runs: usize,
+        with_derivatives: usize,
+        every_constant: bool,
+        none: Option<String>,
+    }
 }
-
-kept!(Connections: formulation unknowns motions starts failures runs with_derivatives every_constant none);
 
 #[pymethods]
 impl Connections {
@@ -50,50 +39,27 @@ impl Connections {
     }
 }
 
-/// A motion between two points.
-#[pyclass(frozen, get_all, module = "deltaq")]
-pub(crate) struct Connection {
-    /// The system with the start velocities and multipliers of this motion, until its end: `solve` it with
-    /// `constants`.
-    system: Py<System>,
-    /// The unknowns by name.
-    unknowns: Py<PyDict>,
-    /// How far they may be wrong, by name.
-    errors: Py<PyDict>,
-    /// Free constants, shape (c,).
-    constants: Py<PyArrayDyn<f64>>,
-    /// Start velocities, shape (n,).
-    velocities: Py<PyArrayDyn<f64>>,
-    /// The integral of L over time.
-    action: f64,
-    /// Error of its quadrature.
-    action_error: f64,
-    /// What the end is missed by, by coordinate.
-    residuals: Py<PyDict>,
-    /// Condition number of the end by the unknowns, in units of the problem.
-    condition: f64,
-    /// Whether no other motion is beside it.
-    is_isolated: bool,
-    /// Times conjugate to the start, shape (k,), rising; None where the unknowns are dependent at all times.
-    conjugate_times: Option<Py<PyArrayDyn<f64>>>,
-    /// Their errors, shape (k,): what two runs differ by.
-    conjugate_errors: Option<Py<PyArrayDyn<f64>>>,
-    /// By how much the rank falls there, length k.
-    multiplicities: Option<Vec<usize>>,
-    /// Whether the action has a local minimum, by conjugate times; None where that is not known.
-    is_minimum: Option<bool>,
-    /// What the second variation of the action says, in words.
-    second_variation: String,
-    /// How many starts led here.
-    starts: usize,
-    /// Whether the first half of the starts leads here.
-    by_half: bool,
+answer! {
+    Connection {
+        system: Py<System>,
+        unknowns: Py<PyDict>,
+        errors: Py<PyDict>,
+        constants: Py<PyArrayDyn<f64>>,
+        velocities: Py<PyArrayDyn<f64>>,
+        action: f64,
+        action_error: f64,
+        residuals: Py<PyDict>,
+        condition: f64,
+        is_isolated: bool,
+        conjugate_times: Option<Py<PyArrayDyn<f64>>>,
+        conjugate_errors: Option<Py<PyArrayDyn<f64>>>,
+        multiplicities: Option<Vec<usize>>,
+        is_minimum: Option<bool>,
+        second_variation: String,
+        starts: usize,
+        by_half: bool,
+    }
 }
-
-kept!(
-    Connection: system unknowns errors constants velocities action action_error residuals condition is_isolated
-    conjugate_times conjugate_errors multiplicities is_minimum second_variation starts by_half
-);
 
 #[pymethods]
 impl Connection {

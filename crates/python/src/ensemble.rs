@@ -12,7 +12,7 @@ use pyo3::types::PyDict;
 use scene::Scene;
 
 use crate::arrays::{Floats, fixed, list, times, within};
-use crate::pickled::kept;
+use crate::pickled::answer;
 use crate::system::System;
 
 /// What varies over the members of an ensemble: names, each with as many values as there are members.
@@ -204,50 +204,27 @@ impl Columns {
     }
 }
 
-#[doc = doc!("Ensemble")]
-#[pyclass(frozen, get_all, module = "deltaq")]
-pub(crate) struct Ensemble {
-    /// The system that moves.
-    system: Py<System>,
-    /// Name of the formulation.
-    formulation: String,
-    /// Name of the removal, None where the formulation needs none.
-    removal: Option<String>,
-    /// Times, shape (k,), in the unit of time of the system.
-    times: Py<PyArrayDyn<f64>>,
-    /// What varies, by name, each of shape (m,).
-    varied: Py<PyDict>,
-    /// Names of the coordinates, length n.
-    coordinate_names: Vec<String>,
-    /// Coordinates q, shape (m, k, n), in the units of the system.
-    coordinates: Py<PyArrayDyn<f64>>,
-    /// Velocities q', shape (m, k, n), in units of the coordinates per unit of time.
-    velocities: Py<PyArrayDyn<f64>>,
-    /// Multipliers and costates by name, each of shape (m, k).
-    multipliers: Py<PyDict>,
-    /// Quantities that should stay constant by name, each of shape (m, k).
-    invariants: Py<PyDict>,
-    /// Largest difference of the two runs of each member at these times, in the kinetic metric, shape (m,);
-    /// NaN where there is one run only.
-    error_estimate: Py<PyArrayDyn<f64>>,
-    /// The error estimate over the largest distance from the start at these times, shape (m,).
-    relative_error_estimate: Py<PyArrayDyn<f64>>,
-    /// Per member "completed", "untrusted" (too large an error estimate), "stopped" or "refused" (no motion).
-    status: Vec<String>,
-    /// Of each member why it is not completed, else None.
-    cause: Vec<Option<String>>,
-    /// Of each member how many of the times it reached.
-    reached: Vec<usize>,
-    /// Of each member why it was integrated alone and not in company, else None: slower, and no worse.
-    alone: Vec<Option<String>>,
-    /// Wall-clock seconds of the integration of all members.
-    seconds: f64,
+answer! {
+    Ensemble {
+        system: Py<System>,
+        formulation: String,
+        removal: Option<String>,
+        times: Py<PyArrayDyn<f64>>,
+        varied: Py<PyDict>,
+        coordinate_names: Vec<String>,
+        coordinates: Py<PyArrayDyn<f64>>,
+        velocities: Py<PyArrayDyn<f64>>,
+        multipliers: Py<PyDict>,
+        invariants: Py<PyDict>,
+        error_estimate: Py<PyArrayDyn<f64>>,
+        relative_error_estimate: Py<PyArrayDyn<f64>>,
+        status: Vec<String>,
+        cause: Vec<Option<String>>,
+        reached: Vec<usize>,
+        alone: Vec<Option<String>>,
+        seconds: f64,
+    }
 }
-
-kept!(
-    Ensemble: system formulation removal times varied coordinate_names coordinates velocities multipliers
-    invariants error_estimate relative_error_estimate status cause reached alone seconds
-);
 
 impl Ensemble {
     pub(crate) fn new(system: &Bound<'_, System>, integrated: Integrated) -> PyResult<Ensemble> {

@@ -5,32 +5,21 @@ use comparison::{Answer, Membership};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-use crate::pickled::kept;
+use crate::pickled::answer;
 
-/// The free constants with which one motion comes closest to another.
-#[pyclass(frozen, get_all, module = "deltaq")]
-pub(crate) struct Fit {
-    /// Label of the motion whose constants were fitted.
-    pub(crate) run: String,
-    /// Label of the motion that was to be met.
-    pub(crate) target: String,
-    /// The best constants by name; None where no constants lead to a motion over the whole time.
-    pub(crate) constants: Option<Py<PyDict>>,
-    /// "same", "different" or "undecided" of what is left; None as for `constants`.
-    pub(crate) verdict: Option<String>,
-    /// Largest gap that is left, the least that was found; None as for `constants`.
-    pub(crate) largest_gap: Option<f64>,
-    /// The same from half of the starts; None as for `constants`.
-    pub(crate) largest_gap_by_half: Option<f64>,
-    /// Whether both are the same to 1 percent: if not, digits mean nothing; None as for `constants`.
-    pub(crate) settled: Option<bool>,
-    /// Number of starts of the search, 0 for an identity; None as for `constants`.
-    pub(crate) starts: Option<usize>,
-    /// Whether the constants follow from those of the target, and nothing was searched.
-    pub(crate) by_identity: bool,
+answer! {
+    Fit {
+        run: String,
+        target: String,
+        constants: Option<Py<PyDict>>,
+        verdict: Option<String>,
+        largest_gap: Option<f64>,
+        largest_gap_by_half: Option<f64>,
+        settled: Option<bool>,
+        starts: Option<usize>,
+        by_identity: bool,
+    }
 }
-
-kept!(Fit: run target constants verdict largest_gap largest_gap_by_half settled starts by_identity);
 
 #[pymethods]
 impl Fit {
@@ -42,32 +31,20 @@ impl Fit {
     }
 }
 
-/// Whether a motion belongs to the family that another formulation has for all values of its constants.
-#[pyclass(frozen, get_all, module = "deltaq")]
-pub(crate) struct Decided {
-    /// Label of the run whose constants are asked for.
-    pub(crate) family: String,
-    /// Label of the run that is to be met.
-    pub(crate) motion: String,
-    /// "some", "none" or "undecided".
-    pub(crate) answer: String,
-    /// Whether the answer is proved, in exact numbers or as an identity.
-    pub(crate) proved: bool,
-    /// The Taylor order that proves "none", or through which "some" was checked; None where there is neither.
-    pub(crate) order: Option<usize>,
-    /// What stands in the way of a proof or of a decision, else None.
-    pub(crate) because: Option<String>,
-    /// The constants of least norm, or of the nearest miss, by name.
-    pub(crate) constants: Option<Py<PyDict>>,
-    /// Dimension of the set of constants, None unless the answer is "some".
-    pub(crate) dimension: Option<usize>,
-    /// The constants as functions of the start, where an identity was found.
-    pub(crate) identity: Option<Vec<String>>,
-    /// Least mismatch of accelerations over the motion's own, None where nothing could be computed.
-    pub(crate) mismatch: Option<f64>,
+answer! {
+    Decided {
+        family: String,
+        motion: String,
+        answer: String,
+        proved: bool,
+        order: Option<usize>,
+        because: Option<String>,
+        constants: Option<Py<PyDict>>,
+        dimension: Option<usize>,
+        identity: Option<Vec<String>>,
+        mismatch: Option<f64>,
+    }
 }
-
-kept!(Decided: family motion answer proved order because constants dimension identity mismatch);
 
 #[pymethods]
 impl Decided {

@@ -9,50 +9,29 @@ use pyo3::types::{IntoPyDict, PyDict};
 use scene::Scene;
 
 use crate::arrays::{fixed, read_only};
-use crate::pickled::kept;
+use crate::pickled::answer;
 use crate::system::System;
 use crate::{arguments, background, errors};
 
-/// The equations of motion to first order about a steady motion, or about an instant of any other.
-#[pyclass(frozen, get_all, module = "deltaq")]
-pub(crate) struct Linearization {
-    /// The form of the formulation whose states these are.
-    form: String,
-    /// Time.
-    t: f64,
-    /// Whether the motion is steady; at an instant of any other the eigenvalues are frozen.
-    is_steady: bool,
-    /// Names of the states y, length N: coordinates, and velocities or what stands for them.
-    states: Vec<String>,
-    /// Their values, shape (N,).
-    values: Py<PyArrayDyn<f64>>,
-    /// Coordinates on which no rate depends, with their rates: no states here, their eigenvalues are zero.
-    carried: Py<PyDict>,
-    /// J = dF/dy, shape (N, N).
-    matrix: Py<PyArrayDyn<f64>>,
-    /// Names of the states whose eigenvalues these are.
-    of: Vec<String>,
-    /// Eigenvalues other than zero, complex, shape (k,), by falling real part, in 1 over the unit of time.
-    eigenvalues: Py<PyArray1<Complex64>>,
-    /// How far they move where J moves by its error, shape (k,).
-    errors: Py<PyArrayDyn<f64>>,
-    /// How many more eigenvalues there are, all zero.
-    zeros: usize,
-    /// Independent eigenvectors of all zeros of J: fewer than these where deviations grow as powers of time.
-    zero_vectors: usize,
-    /// How far these may be from zero.
-    zero_error: f64,
-    /// How many eigenvalues have a real part above their error.
-    unstable: usize,
-    /// The same in words: "like t" where an eigenvalue on the imaginary axis has too few eigenvectors,
-    /// "undecided" where errors leave it open or all eigenvalues are zero.
-    growing: String,
+answer! {
+    Linearization {
+        form: String,
+        t: f64,
+        is_steady: bool,
+        states: Vec<String>,
+        values: Py<PyArrayDyn<f64>>,
+        carried: Py<PyDict>,
+        matrix: Py<PyArrayDyn<f64>>,
+        of: Vec<String>,
+        eigenvalues: Py<PyArray1<Complex64>>,
+        errors: Py<PyArrayDyn<f64>>,
+        zeros: usize,
+        zero_vectors: usize,
+        zero_error: f64,
+        unstable: usize,
+        growing: String,
+    }
 }
-
-kept!(
-    Linearization: form t is_steady states values carried matrix of eigenvalues errors zeros zero_vectors zero_error
-    unstable growing
-);
 
 fn linearized(
     mut scene: Scene,
@@ -130,43 +109,27 @@ impl Linearization {
     }
 }
 
-/// Steady motions over one number of a system, and where stability changes.
-#[pyclass(frozen, get_all, module = "deltaq")]
-pub(crate) struct LinearizationSweep {
-    /// The system.
-    system: Py<System>,
-    /// What varies.
-    name: String,
-    /// Its values in the states that are linearized, shape (k,).
-    values: Py<PyArrayDyn<f64>>,
-    /// Its values in the starts from which these states were found, shape (k,); the same without `find`.
-    asked: Py<PyArrayDyn<f64>>,
-    /// The equations to first order at each value.
-    points: Vec<Py<Linearization>>,
-    /// Where the number of eigenvalues with a positive real part changes, by rising value asked for.
-    changes: Vec<Py<StabilityChange>>,
+answer! {
+    LinearizationSweep {
+        system: Py<System>,
+        name: String,
+        values: Py<PyArrayDyn<f64>>,
+        asked: Py<PyArrayDyn<f64>>,
+        points: Vec<Py<Linearization>>,
+        changes: Vec<Py<StabilityChange>>,
+    }
 }
 
-kept!(LinearizationSweep: system name values asked points changes);
-
-/// A value at which stability changes.
-#[pyclass(frozen, get_all, module = "deltaq")]
-pub(crate) struct StabilityChange {
-    /// The value, in the steady motion there.
-    value: f64,
-    /// Width of the interval in which it is: no error leaves another one open.
-    width: f64,
-    /// The value in the start from which that motion was found; the same without `find`.
-    asked: f64,
-    /// Eigenvalues with a positive real part below it.
-    below: usize,
-    /// Eigenvalues with a positive real part above it.
-    above: usize,
-    /// Imaginary part of the eigenvalue that crosses, not negative: 0 for one that does not oscillate.
-    frequency: f64,
+answer! {
+    StabilityChange {
+        value: f64,
+        width: f64,
+        asked: f64,
+        below: usize,
+        above: usize,
+        frequency: f64,
+    }
 }
-
-kept!(StabilityChange: value width asked below above frequency);
 
 #[pymethods]
 impl StabilityChange {

@@ -16,7 +16,7 @@ use crate::arguments::rule_value;
 use crate::arrays::{Floats, columns, fixed, times, within};
 use crate::ensemble::Instants;
 use crate::outputs::{Names, Outputs, Row, observed};
-use crate::pickled::{Pickled, kept};
+use crate::pickled::{Pickled, answer};
 use crate::shared::Shared;
 use crate::system::System;
 use crate::{errors, sensitivities};
@@ -105,116 +105,43 @@ impl Asked<'_> {
     }
 }
 
-#[doc = doc!("Motion")]
-#[pyclass(frozen, module = "deltaq")]
-pub(crate) struct Motion {
+answer! {
+    Motion {
+        _asked: Py<PyDict>,
+        system: Py<System>,
+        coordinate_names: Vec<String>,
+        formulation: String,
+        removal: Option<String>,
+        times: Py<PyArrayDyn<f64>>,
+        reached: usize,
+        coordinates: Py<PyArrayDyn<f64>>,
+        velocities: Py<PyArrayDyn<f64>>,
+        multipliers: Py<PyDict>,
+        invariants: Py<PyDict>,
+        observables: Py<PyDict>,
+        error_estimate: f64,
+        relative_error_estimate: f64,
+        coordinate_error_estimates: Py<PyArrayDyn<f64>>,
+        velocity_error_estimates: Py<PyArrayDyn<f64>>,
+        multiplier_error_estimates: Py<PyDict>,
+        sensitivities: Py<PyDict>,
+        sensitivity_error_estimates: Py<PyDict>,
+        status: String,
+        cause: Option<String>,
+        doubt: Option<String>,
+        start: f64,
+        end: f64,
+        method: Option<(String, String)>,
+        form: (String, String),
+        charts: Vec<(f64, String)>,
+        constants: Py<PyDict>,
+        work: Py<PyDict>,
+        projection: Py<PyDict>,
+        seconds: Py<PyDict>,
+    }
     /// None of one that was pickled, until it is read off.
-    motion: OnceLock<Arc<Integrated>>,
-    /// Arguments of `System.solve` that give it again.
-    #[pyo3(get)]
-    _asked: Py<PyDict>,
-    /// The system that moves.
-    #[pyo3(get)]
-    system: Py<System>,
-    /// Names of the coordinates, length n.
-    #[pyo3(get)]
-    coordinate_names: Vec<String>,
-    /// Name of the formulation.
-    #[pyo3(get)]
-    formulation: String,
-    /// Name of the removal, None where the formulation needs none.
-    #[pyo3(get)]
-    removal: Option<String>,
-    /// Times, shape (k,), in the unit of time of the system. If one time was asked for as a number, all
-    /// arrays lack this axis.
-    #[pyo3(get)]
-    times: Py<PyArrayDyn<f64>>,
-    /// How many of the times it reached.
-    #[pyo3(get)]
-    reached: usize,
-    /// Coordinates q at `times`, shape (k, n), in the units of the system.
-    #[pyo3(get)]
-    coordinates: Py<PyArrayDyn<f64>>,
-    /// Velocities q' at `times`, shape (k, n), in units of the coordinates per unit of time.
-    #[pyo3(get)]
-    velocities: Py<PyArrayDyn<f64>>,
-    /// Multipliers and costates by name, each of shape (k,).
-    #[pyo3(get)]
-    multipliers: Py<PyDict>,
-    /// Quantities that should stay constant by name, each of shape (k,).
-    #[pyo3(get)]
-    invariants: Py<PyDict>,
-    /// Observables of the system by name, each of shape (k,).
-    #[pyo3(get)]
-    observables: Py<PyDict>,
-    /// Largest difference of the two runs, in the kinetic metric sqrt(dq' M dq): in practice an error bound.
-    #[pyo3(get)]
-    error_estimate: f64,
-    /// The error estimate over the largest distance from the start.
-    #[pyo3(get)]
-    relative_error_estimate: f64,
-    /// Largest difference of the two runs in each coordinate up to each of `times`, shape (k, n), in the
-    /// units of the system: the kinetic metric hides those of little inertia.
-    #[pyo3(get)]
-    coordinate_error_estimates: Py<PyArrayDyn<f64>>,
-    /// The same of velocities, shape (k, n).
-    #[pyo3(get)]
-    velocity_error_estimates: Py<PyArrayDyn<f64>>,
-    /// The same of multipliers and costates, by name, each of shape (k,).
-    #[pyo3(get)]
-    multiplier_error_estimates: Py<PyDict>,
-    /// Derivatives of all this by the numbers asked for, by name; NaN from where they are not known.
-    #[pyo3(get)]
-    sensitivities: Py<PyDict>,
-    /// What the derivatives of the two runs differ by at most up to each of `times`, by name.
-    #[pyo3(get)]
-    sensitivity_error_estimates: Py<PyDict>,
-    /// "completed", "untrusted" (the estimate is doubted or too large, for all or for one coordinate),
-    /// "stopped".
-    #[pyo3(get)]
-    status: String,
-    /// Why the motion is not completed, else None.
-    #[pyo3(get)]
-    cause: Option<String>,
-    /// Why the error estimate is not to be trusted, None where nothing speaks against it.
-    #[pyo3(get)]
-    doubt: Option<String>,
-    /// Time of the start.
-    #[pyo3(get)]
-    start: f64,
-    /// Last time at which the motion can be read off.
-    #[pyo3(get)]
-    end: f64,
-    /// The time-stepping method and why it was taken.
-    #[pyo3(get)]
-    method: Option<(String, String)>,
-    /// Name of the form of the equations that was integrated, and why.
-    #[pyo3(get)]
-    form: (String, String),
-    /// Times from which the motion went on by "multipliers" or by "canonical momenta", because pivots became
-    /// small.
-    #[pyo3(get)]
-    charts: Vec<(f64, String)>,
-    /// Values of the free constants, by name.
-    #[pyo3(get)]
-    constants: Py<PyDict>,
-    /// What the kept run cost: steps, rejected, evaluations, jacobians, orders (of Taylor series, summed).
-    #[pyo3(get)]
-    work: Py<PyDict>,
-    /// What the projections moved: count, largest, total (Euclidean lengths of changes of the velocities).
-    #[pyo3(get)]
-    projection: Py<PyDict>,
-    /// Wall-clock seconds: derive, compile, integrate.
-    #[pyo3(get)]
-    seconds: Py<PyDict>,
+    motion: OnceLock<Arc<Integrated>> = OnceLock::new(),
 }
-
-kept!(
-    Motion: _asked system coordinate_names formulation removal times reached coordinates velocities
-    multipliers invariants observables error_estimate relative_error_estimate coordinate_error_estimates
-    velocity_error_estimates multiplier_error_estimates sensitivities sensitivity_error_estimates status cause
-    doubt start end method form charts constants work projection seconds, motion = OnceLock::new()
-);
 
 /// A motion, and the program of what is observed in it.
 type Integrated = Shared<(motion::Motion, Observables)>;

@@ -6,24 +6,17 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use crate::arrays::{columns, fixed};
-use crate::pickled::kept;
+use crate::pickled::answer;
 
-/// Coordinates, velocities, multipliers and invariants at one instant, or at k of them.
-#[pyclass(frozen, get_all, module = "deltaq")]
-pub(crate) struct Outputs {
-    /// Coordinates q, shape (n,) or (k, n), in the units of the system.
-    pub(crate) coordinates: Py<PyArrayDyn<f64>>,
-    /// Velocities q', shape (n,) or (k, n), in units of the coordinates per unit of time.
-    pub(crate) velocities: Py<PyArrayDyn<f64>>,
-    /// Multipliers and costates by name, each a float or of shape (k,).
-    pub(crate) multipliers: Py<PyDict>,
-    /// Quantities that should stay constant by name, each a float or of shape (k,).
-    pub(crate) invariants: Py<PyDict>,
-    /// Observables of the system by name, each a float or of shape (k,).
-    pub(crate) observables: Py<PyDict>,
+answer! {
+    Outputs {
+        coordinates: Py<PyArrayDyn<f64>>,
+        velocities: Py<PyArrayDyn<f64>>,
+        multipliers: Py<PyDict>,
+        invariants: Py<PyDict>,
+        observables: Py<PyDict>,
+    }
 }
-
-kept!(Outputs: coordinates velocities multipliers invariants observables);
 
 #[pymethods]
 impl Outputs {

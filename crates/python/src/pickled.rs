@@ -5,9 +5,21 @@ use pyo3::conversion::FromPyObjectOwned;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-/// `__reduce__` of a class by its fields, and the way back; what is not a field follows with its value.
-macro_rules! kept {
-    ($class:ident: $($field:ident)* $(, $own:ident = $value:expr)*) => {
+/// A class of fields that Python reads, with the docstrings of the stubs. It is pickled by these fields; what
+/// is not a field follows with the value that it has when it is read again.
+macro_rules! answer {
+    ($class:ident { $($field:ident: $type:ty,)* } $($(#[$about:meta])* $own:ident: $kind:ty = $value:expr,)*) => {
+        #[doc = include_str!(concat!(env!("OUT_DIR"), "/", stringify!($class), ".txt"))]
+        #[pyo3::pyclass(frozen, module = "deltaq")]
+        pub(crate) struct $class {
+            $(
+                #[doc = include_str!(concat!(env!("OUT_DIR"), "/", stringify!($class), ".", stringify!($field), ".txt"))]
+                #[pyo3(get)]
+                pub(crate) $field: $type,
+            )*
+            $( $(#[$about])* pub(crate) $own: $kind, )*
+        }
+
         #[pyo3::pymethods]
         impl $class {
             fn __reduce__<'py>(slf: &pyo3::Bound<'py, Self>) -> pyo3::PyResult<$crate::pickled::Reduced<'py>> {
@@ -29,7 +41,7 @@ macro_rules! kept {
         }
     };
 }
-pub(crate) use kept;
+pub(crate) use answer;
 
 /// What `__reduce__` gives: a function and its arguments.
 pub(crate) type Reduced<'py> = (Bound<'py, PyAny>, (&'static str, Bound<'py, PyDict>));

@@ -14,29 +14,20 @@ use crate::arrays::{Floats, fixed, list, times, within};
 use crate::ensemble::Instants;
 use crate::equations::Equations;
 use crate::motion::work;
-use crate::pickled::kept;
+use crate::pickled::answer;
 use crate::{arguments, background, errors};
 
-/// One run of the time loop, without a second one: only its tolerance tells anything of its error.
-#[pyclass(frozen, get_all, module = "deltaq")]
-pub(crate) struct Trajectory {
-    /// The times asked for, shape (k,).
-    times: Py<PyArrayDyn<f64>>,
-    /// States y at `times`, shape (k, m); `Equations.outputs` reads coordinates and all else off them.
-    states: Py<PyArrayDyn<f64>>,
-    /// How many of the times it reached: from there on the states are NaN.
-    reached: usize,
-    /// "completed" or "stopped".
-    status: String,
-    /// Why the run stopped, None where it is complete.
-    cause: Option<String>,
-    /// What the run cost, as in `Motion.work`.
-    work: Py<PyDict>,
-    /// Wall-clock seconds of the run and of reading the states off.
-    seconds: f64,
+answer! {
+    Trajectory {
+        times: Py<PyArrayDyn<f64>>,
+        states: Py<PyArrayDyn<f64>>,
+        reached: usize,
+        status: String,
+        cause: Option<String>,
+        work: Py<PyDict>,
+        seconds: f64,
+    }
 }
-
-kept!(Trajectory: times states reached status cause work seconds);
 
 #[pymethods]
 impl Trajectory {

@@ -76,7 +76,7 @@ def test_classes(name):
     shared = {node.targets[0].id: ast.unparse(node.value) for node in CLASSES[name].body if isinstance(node, ast.Assign)}
     for member, function in shared.items():
         assert getattr(cls, member) is attrgetter(function)(deltaq), f"{name}.{member}"
-    assert public(body) | values | public(shared) == public(vars(cls))
+    assert public(body) | public(values) | public(shared) == public(vars(cls))
     for member in public(body) | values:
         assert inspect.getdoc(getattr(cls, member)), f"{name}.{member} is not described"
         assert inspect.isdatadescriptor(getattr(cls, member)) == (member in values)

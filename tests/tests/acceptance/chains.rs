@@ -5,7 +5,7 @@ use mechanics::ConstantsRule;
 use motion::{
     CHETAEV, REDUCED_CHETAEV, REDUCED_VAKONOMIC, Settings, choices, derive_at, error_estimate, setting, solve_choice,
 };
-use reference::{Question, Wide, reference};
+use reference::{Entry, Question, reference};
 use scene::Scene;
 use scene::catalogue::trailer::{self, Coordinates};
 use symbolic::Scalar;

@@ -8,7 +8,7 @@
 //! was found; otherwise a part of them is taken.
 
 use motion::{Choice, Sensitivities, Settings, choices, derive, prepare, sensitivities, setting};
-use reference::{DoubleDouble, Question, Wide, reference};
+use reference::{DoubleDouble, Entry, Question, reference};
 use scene::Scene;
 
 use super::support::scene;

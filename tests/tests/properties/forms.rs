@@ -1,10 +1,10 @@
 //! The chosen form of the equations has the rates of the plain one.
 
-use equations::{Compiled, Plan};
+use equations::{Compiled, Dynamics, Plan};
 use motion::{Motion, REMOVED_CONSTRAINT, VAKONOMIC};
 use proptest::test_runner::TestCaseError;
 use random::{Case, Kind, Recipe, Which, recipes_of};
-use reference::{DoubleDouble, Instant, Wide};
+use reference::{DoubleDouble, Entry};
 use symbolic::Scalar;
 
 use super::support::for_all;
@@ -44,14 +44,17 @@ fn compare(motion: &mut Motion) -> Option<Found> {
     let mut chosen = Compiled::with_plan(&equations, &form).expect("compiles");
     plain.set_constants(&constants);
     chosen.set_constants(&constants);
-    let mut exact = Instant::new(&equations, &constants).expect("compiles");
+    let (free, parameters) = equations.free_parameters();
+    let mut exact = Dynamics::new(&free).expect("compiles");
+    let wide = |x: &f64| DoubleDouble::from_f64(*x);
+    exact.set_constants(&constants.iter().chain(&parameters).map(wide).collect::<Vec<_>>());
+    let (first, count) = (2 * free.coordinates.len(), free.multipliers.len());
     let mut worst = 0.0_f64;
     for t in motion.grid(INSTANTS) {
         let y = motion.states_at(t).expect("readable");
-        let wide: Vec<DoubleDouble> = y.iter().map(|&y| DoubleDouble::from_f64(y)).collect();
-        let mut rates = wide.clone();
-        exact.rates(DoubleDouble::from_f64(t), &wide, &mut rates).expect("regular");
-        rates.extend(exact.point(DoubleDouble::from_f64(t), &wide).expect("regular").multipliers);
+        exact.solve(wide(&t), &y.iter().map(wide).collect::<Vec<_>>()).expect("regular");
+        let mut rates = exact.rates().to_vec();
+        rates.extend(&exact.outputs()[first..first + count]);
         let outputs = [&mut chosen, &mut plain].map(|form| {
             let terms = form.terms_of_evaluation(t, &y).expect("regular");
             let largest = terms.iter().fold(0.0_f64, |a, x| a.max(*x));

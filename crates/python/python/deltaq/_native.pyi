@@ -1346,6 +1346,8 @@ class Motion:
     counts the times that it did, `status` and `cause` say why. `at(t)` gives any other time; a motion that
     was pickled or copied is integrated anew for it, once.
     """
+    _asked: Final[dict[str, Any]]
+    """Arguments of `System.solve` by which it is asked for again."""
     system: Final[System]
     """The system that moves."""
     formulation: Final[str]

@@ -1,5 +1,6 @@
 //! Errors of a reference.
 
+use equations::{EvaluationFailure, Real};
 use mechanics::StartError;
 use symbolic::CompileError;
 
@@ -19,10 +20,13 @@ pub enum ReferenceError {
     /// Times are not finite, not in order, or before the start.
     #[error("time {time} is not finite, or comes after a later one, or before the start at {start}")]
     Times { time: f64, start: f64 },
-    /// Equations that are to be solved at one point are singular there.
+    /// The equations of an instant cannot be solved.
+    #[error("at t = {time}: {failure}")]
+    Instant { time: f64, failure: EvaluationFailure },
+    /// Equations that are to be solved at the start are singular there.
     #[error("{what} cannot be solved at t = {time}: scaled pivot {pivot:.1e}")]
     Singular { what: &'static str, time: f64, pivot: f64 },
-    /// Newton's method did not converge at the start or at an instant.
+    /// Newton's method did not converge at the start.
     #[error("{what} not solved at t = {time}: last relative step {step:.1e}, limit {limit:.0e}")]
     NotConverged { what: &'static str, time: f64, step: f64, limit: f64 },
     /// The method's steps became too short, as they do before a singularity.
@@ -36,4 +40,11 @@ pub enum ReferenceError {
         accuracy: f64,
         epsilon: f64,
     },
+}
+
+impl ReferenceError {
+    /// Of an instant at this time.
+    pub(crate) fn at<T: Real>(time: T) -> impl FnOnce(EvaluationFailure) -> Self {
+        move |failure| ReferenceError::Instant { time: time.to_f64(), failure }
+    }
 }

@@ -5,8 +5,6 @@ use std::ops::{Add, Div, Mul, Neg, Sub};
 use mechanics::linear::Entry;
 use symbolic::{Scalar, SeriesScalar};
 
-use crate::Wide;
-
 mod functions;
 
 /// About 107 bits (32 decimal digits): the unevaluated sum `high + low` of two `f64`, `|low| ≤ ½ ulp(high)`.
@@ -21,7 +19,7 @@ mod functions;
 /// use symbolic::Scalar;
 /// let third = DoubleDouble::from_ratio(1, 3);
 /// let rest = third * DoubleDouble::from_f64(3.0) - DoubleDouble::from_f64(1.0);
-/// assert!(reference::Wide::to_f64(rest).abs() < 1e-31);
+/// assert!(reference::Entry::to_f64(rest).abs() < 1e-31);
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, PartialOrd)]
 pub struct DoubleDouble {
@@ -159,17 +157,11 @@ impl Entry for DoubleDouble {
     fn size(self) -> f64 {
         self.high.abs()
     }
-}
 
-impl Wide for DoubleDouble {
     const EPSILON: f64 = 1.0 / (1_u128 << 106) as f64;
 
     fn to_f64(self) -> f64 {
         self.high
-    }
-
-    fn is_finite(self) -> bool {
-        self.high.is_finite() && self.low.is_finite()
     }
 }
 

@@ -5,14 +5,13 @@
 //! `f64` projects except for rounding. How a run in `f64` rounds its start is part of its error. Everything
 //! else (`y₀`, a removal's parameters) follows from that velocity in the wide type.
 
-use equations::Equations;
+use equations::{Equations, Real};
 use mechanics::linear::{Factors, Singular};
 use mechanics::{Removal, State, System, complete_removal_start};
 use symbolic::limits::ITERATIONS;
 use symbolic::{Evaluator, Expr, Symbol};
 
-use crate::instant::{parameters, subtract};
-use crate::{ReferenceError, Wide};
+use crate::ReferenceError;
 
 /// The relative step after which one more step leaves round-off only.
 pub(crate) const SMALL: f64 = 1e-18;
@@ -33,24 +32,23 @@ struct Values<T> {
     values: Vec<T>,
 }
 
-impl<T: Wide> Values<T> {
+impl<T: Real> Values<T> {
     fn push(&mut self, symbol: Symbol, value: T) {
         self.symbols.push(symbol);
         self.values.push(value);
     }
 }
 
-pub(crate) fn start<T: Wide>(
+/// `constants`: as many free ones as said, then parameters.
+pub(crate) fn start<T: Real>(
     system: &System,
     state: &State,
     equations: &Equations,
-    constants: &[f64],
+    constants: &[T],
+    free: usize,
 ) -> Result<Start<T>, ReferenceError> {
-    let mut known = Values { symbols: Vec::new(), values: Vec::new() };
-    let (names, numbers) = parameters(equations);
-    for (symbol, x) in names.into_iter().zip(numbers) {
-        known.push(symbol, T::from_f64(x));
-    }
+    let names = equations.constant_symbols();
+    let mut known = Values { symbols: names[free..].to_vec(), values: constants[free..].to_vec() };
     known.push(system.time, T::from_f64(state.t));
     for (symbol, &x) in system.positions().into_iter().zip(&state.q) {
         known.push(symbol, T::from_f64(x));
@@ -62,8 +60,8 @@ pub(crate) fn start<T: Wide>(
     if let Some(removal) = &equations.removal {
         complete(system, removal, state, &mut known)?;
     }
-    for (symbol, &x) in equations.constant_symbols().into_iter().zip(constants) {
-        known.push(symbol, T::from_f64(x));
+    for (symbol, &x) in names.into_iter().zip(&constants[..free]) {
+        known.push(symbol, x);
     }
     let mut outputs: Vec<Expr> = equations.states.iter().map(|y| y.start).collect();
     outputs.extend(equations.blocks.iter().flat_map(|b| b.guess.iter().copied()));
@@ -77,7 +75,7 @@ pub(crate) fn start<T: Wide>(
 /// The velocity nearest to `v₀` with `f = 0`: `M δv + Aᵀ κ = 0`, `f(q₀, v₀ + δv, t₀) = 0`.
 ///
 /// Matrices are those at the current velocity: Newton's matrix lacks only terms of size `κ`, round-off.
-fn velocity<T: Wide>(system: &System, state: &State, known: &Values<T>) -> Result<Vec<T>, ReferenceError> {
+fn velocity<T: Real>(system: &System, state: &State, known: &Values<T>) -> Result<Vec<T>, ReferenceError> {
     let (n, h) = (system.dimension(), system.constraints.len());
     let start: Vec<T> = state.v.iter().map(|&x| T::from_f64(x)).collect();
     let (mass, jacobian) = (system.velocity_hessian(), system.constraint_jacobian());
@@ -87,14 +85,14 @@ fn velocity<T: Wide>(system: &System, state: &State, known: &Values<T>) -> Resul
     let size = n + h;
     let mut v = start.clone();
     // κ of the last step stands in the residual, so that the sum of the steps is the shortest one
-    let mut kappa = vec![T::zero(); h];
+    let mut kappa = vec![T::from_f64(0.0); h];
     newton(VELOCITY, state.t, || {
         let inputs = [&known.values[..], &v].concat();
         let values = program.evaluate(&inputs);
         let (m, rest) = values.split_at(n * n);
         let (a, f) = rest.split_at(h * n);
-        let mut matrix = vec![T::zero(); size * size];
-        let mut residual = vec![T::zero(); size];
+        let mut matrix = vec![T::from_f64(0.0); size * size];
+        let mut residual = vec![T::from_f64(0.0); size];
         for i in 0..n {
             for j in 0..n {
                 matrix[i * size + j] = m[i * n + j];
@@ -120,7 +118,7 @@ fn velocity<T: Wide>(system: &System, state: &State, known: &Values<T>) -> Resul
 /// Adds the parametrization's variables: `q = q₀`, `q̇ = v₀` solved in the wide type from `f64` values.
 ///
 /// What the scene names keeps the expression there, what nothing fixes its value in `f64`.
-fn complete<T: Wide>(
+fn complete<T: Real>(
     system: &System,
     removal: &Removal,
     state: &State,
@@ -158,8 +156,8 @@ fn complete<T: Wide>(
             let values = program.evaluate(&inputs);
             let (r, j) = values.split_at(m);
             // the equations are consistent: normal equations find their root
-            let mut normal = vec![T::zero(); n * n];
-            let mut right = vec![T::zero(); n];
+            let mut normal = vec![T::from_f64(0.0); n * n];
+            let mut right = vec![T::from_f64(0.0); n];
             for row in 0..m {
                 for a in 0..n {
                     right[a] = right[a] + j[row * n + a] * r[row];
@@ -177,8 +175,19 @@ fn complete<T: Wide>(
     Ok(())
 }
 
+/// Takes a step off `x`; its length relative to what is left.
+fn subtract<T: Real>(x: &mut [T], step: &[T]) -> f64 {
+    let (mut length, mut size) = (0.0_f64, f64::MIN_POSITIVE);
+    for (x, &dx) in x.iter_mut().zip(step) {
+        *x = *x - dx;
+        length = length.max(dx.size());
+        size = size.max(x.size());
+    }
+    length / size
+}
+
 /// The solution of `matrix x = right`.
-fn solution<T: Wide>(matrix: &[T], mut right: Vec<T>) -> Result<Vec<T>, Singular> {
+fn solution<T: Real>(matrix: &[T], mut right: Vec<T>) -> Result<Vec<T>, Singular> {
     let mut factors = Factors::new(right.len());
     factors.factorize(matrix)?;
     factors.solve(&mut right);

@@ -4,7 +4,6 @@
 use symbolic::Scalar;
 
 use super::DoubleDouble;
-use crate::Wide;
 
 const ONE: DoubleDouble = DoubleDouble::ONE;
 const ZERO: DoubleDouble = DoubleDouble::ZERO;
@@ -167,7 +166,7 @@ pub(super) fn powf(x: DoubleDouble, exponent: DoubleDouble) -> DoubleDouble {
         return number(0.0_f64.powf(n));
     }
     let value = exp(exponent * log(x));
-    if value.is_finite() { value } else { number(x.hi().powf(n)) }
+    if value.high.is_finite() && value.low.is_finite() { value } else { number(x.hi().powf(n)) }
 }
 
 fn power(x: DoubleDouble, n: u32) -> DoubleDouble {

@@ -1,10 +1,10 @@
 //! Distances in the kinetic metric, taken in the wide type.
 
+use equations::Real;
 use mechanics::System;
 use symbolic::{CompileError, Evaluator, Symbol};
 
-use crate::Wide;
-use crate::instant::Point;
+use crate::reference::Point;
 
 /// `M = ∂²L/∂v²` and `f` at one point of a motion.
 pub(crate) struct Metric<T> {
@@ -13,7 +13,7 @@ pub(crate) struct Metric<T> {
     parameters: Vec<f64>,
 }
 
-impl<T: Wide> Metric<T> {
+impl<T: Real> Metric<T> {
     pub(crate) fn new(system: &System) -> Result<Self, CompileError> {
         let outputs = [system.velocity_hessian().entries(), &system.constraints].concat();
         let (names, parameters): (Vec<Symbol>, Vec<f64>) =

@@ -3,9 +3,10 @@
 //! Uses values of `F` only: no derivative, no series. Order and step follow the work per unit of time, as in
 //! Hairer, Nørsett & Wanner, *Solving Ordinary Differential Equations I*, II.9.
 
-use crate::instant::Instant;
+use equations::{Dynamics, Real};
+
+use crate::ReferenceError;
 use crate::taylor::SHORTEST;
-use crate::{ReferenceError, Wide};
 
 /// Rows of the table; order 2 · ROWS. More rows magnify round-off: by 1e3 with these, by 1e5 with 18.
 const ROWS: usize = 12;
@@ -13,12 +14,12 @@ const ROWS: usize = 12;
 pub(crate) const NAME: &str = "extrapolation";
 
 /// Integrates to each of `times`, in order; calls `reached` there with the state.
-pub(crate) fn integrate<T: Wide>(
-    instant: &mut Instant<T>,
+pub(crate) fn integrate<T: Real>(
+    instant: &mut Dynamics<T>,
     start: (f64, &[T]),
     times: &[f64],
     tolerance: f64,
-    mut reached: impl FnMut(&mut Instant<T>, f64, &[T]) -> Result<(), ReferenceError>,
+    mut reached: impl FnMut(&mut Dynamics<T>, f64, &[T]) -> Result<(), ReferenceError>,
 ) -> Result<(), ReferenceError> {
     let (t0, y0) = start;
     let mut extrapolation = Extrapolation { y: y0.to_vec(), table: Vec::new(), tolerance };
@@ -33,11 +34,11 @@ pub(crate) fn integrate<T: Wide>(
             }
             let whole = proposed >= left.abs();
             let step = if whole { goal - t } else { T::from_f64(proposed.copysign(left)) };
-            let unknowns = instant.unknowns().to_vec();
+            let unknowns = instant.guess().to_vec();
             let (next, outcome) = match extrapolation.step(instant, t, step) {
                 Ok(outcome) => outcome,
                 // a point on the way at which nothing can be solved: the step was too long
-                Err(ReferenceError::Singular { .. } | ReferenceError::NotConverged { .. }) => (0.25, None),
+                Err(ReferenceError::Instant { .. }) => (0.25, None),
                 Err(error) => return Err(error),
             };
             let size = step.size();
@@ -76,11 +77,11 @@ struct Best {
     row: usize,
 }
 
-impl<T: Wide> Extrapolation<T> {
+impl<T: Real> Extrapolation<T> {
     /// Tries a step; returns the factor for the next one and the state, if it is accepted.
-    fn step(&mut self, instant: &mut Instant<T>, t: T, step: T) -> Result<(f64, Option<Vec<T>>), ReferenceError> {
-        let mut rates = vec![T::zero(); self.y.len()];
-        instant.rates(t, &self.y, &mut rates)?;
+    fn step(&mut self, instant: &mut Dynamics<T>, t: T, step: T) -> Result<(f64, Option<Vec<T>>), ReferenceError> {
+        let mut rates = vec![T::from_f64(0.0); self.y.len()];
+        evaluate(instant, t, &self.y, &mut rates)?;
         self.table.clear();
         let (mut work, mut best) = (1.0, Best { work_per_time: f64::INFINITY, factor: 0.1, row: ROWS });
         for row in 0..ROWS {
@@ -136,8 +137,8 @@ impl<T: Wide> Extrapolation<T> {
 /// What Gragg's midpoint rule, evenly many substeps, adds to `y`; its error has even powers of their length.
 ///
 /// The change, not the state: extrapolation magnifies round-off, and that of the change is smaller.
-fn midpoint<T: Wide>(
-    instant: &mut Instant<T>,
+fn midpoint<T: Real>(
+    instant: &mut Dynamics<T>,
     t: T,
     step: T,
     y: &[T],
@@ -146,18 +147,25 @@ fn midpoint<T: Wide>(
 ) -> Result<Vec<T>, ReferenceError> {
     let h = step / T::from_f64(count as f64);
     let twice = h + h;
-    let mut before = vec![T::zero(); y.len()];
+    let mut before = vec![T::from_f64(0.0); y.len()];
     let mut here: Vec<T> = rates_at_start.iter().map(|&f| h * f).collect();
     let mut state = y.to_vec();
-    let mut rates = vec![T::zero(); y.len()];
+    let mut rates = vec![T::from_f64(0.0); y.len()];
     for k in 1..count {
         for (s, (&y, &change)) in state.iter_mut().zip(y.iter().zip(&here)) {
             *s = y + change;
         }
-        instant.rates(t + h * T::from_f64(k as f64), &state, &mut rates)?;
+        evaluate(instant, t + h * T::from_f64(k as f64), &state, &mut rates)?;
         for ((b, x), &f) in before.iter_mut().zip(&mut here).zip(&rates) {
             (*b, *x) = (*x, *b + twice * f);
         }
     }
     Ok(here)
+}
+
+/// `F(t, y)`, the unknowns from where they were last.
+fn evaluate<T: Real>(instant: &mut Dynamics<T>, t: T, y: &[T], rates: &mut [T]) -> Result<(), ReferenceError> {
+    instant.settle(t, y).map_err(ReferenceError::at(t))?;
+    rates.copy_from_slice(instant.rates());
+    Ok(())
 }

@@ -1,13 +1,12 @@
 //! A motion computed by two methods, the one that is kept at two tolerances.
 
-use equations::Equations;
+use equations::{Dynamics, Equations, Real};
 use mechanics::{State, System};
 
-use crate::instant::{Instant, Point};
 use crate::metric::Metric;
 use crate::start::{Start, start};
 use crate::taylor::Taylor;
-use crate::{DoubleDouble, ReferenceError, Wide, extrapolation};
+use crate::{DoubleDouble, ReferenceError, extrapolation};
 
 /// The motion that is asked for.
 #[derive(Clone, Copy)]
@@ -20,6 +19,19 @@ pub struct Question<'a> {
     pub equations: &'a Equations,
     /// Values of the free constants, taken as exact.
     pub constants: &'a [f64],
+}
+
+/// Outputs of a motion at one time, in extended precision.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Point<T> {
+    /// `q`.
+    pub coordinates: Vec<T>,
+    /// `q̇`.
+    pub velocities: Vec<T>,
+    /// Multipliers or costates.
+    pub multipliers: Vec<T>,
+    /// The states `y` of the equations.
+    pub states: Vec<T>,
 }
 
 /// Largest distances between the runs behind a reference, `√|Δqᵀ M Δq|`: the kinetic metric.
@@ -48,7 +60,7 @@ pub struct Reference<T = DoubleDouble> {
     pub(crate) metric: Vec<Vec<f64>>,
 }
 
-impl<T: Wide> Reference<T> {
+impl<T: Real> Reference<T> {
     /// Largest of [`Reference::errors`].
     pub fn error(&self) -> f64 {
         self.errors.iter().copied().fold(0.0, f64::max)
@@ -141,7 +153,7 @@ pub fn reference(question: &Question, times: &[f64], accuracy: f64) -> Result<Re
 ///
 /// # Errors
 /// As [`reference()`].
-pub fn reference_in<T: Wide>(
+pub fn reference_in<T: Real>(
     question: &Question,
     times: &[f64],
     accuracy: f64,
@@ -170,16 +182,19 @@ pub fn reference_in<T: Wide>(
 }
 
 /// Called at each of the times, with the state there.
-type Reached<'a, T> = &'a mut dyn FnMut(&mut Instant<T>, f64, &[T]) -> Result<(), ReferenceError>;
+type Reached<'a, T> = &'a mut dyn FnMut(&mut Dynamics<T>, f64, &[T]) -> Result<(), ReferenceError>;
 
 /// What all runs share.
 struct Runs<'a, T> {
     question: &'a Question<'a>,
     times: &'a [f64],
     start: Start<T>,
+    /// The equations with parameters as constants behind the free ones, and the values of all.
+    equations: Equations,
+    constants: Vec<T>,
 }
 
-impl<'a, T: Wide> Runs<'a, T> {
+impl<'a, T: Real> Runs<'a, T> {
     fn new(question: &'a Question, times: &'a [f64]) -> Result<Self, ReferenceError> {
         let Question { system, start: state, equations, constants } = *question;
         let (found, expected) = (constants.len(), equations.free_constants.len());
@@ -193,19 +208,24 @@ impl<'a, T: Wide> Runs<'a, T> {
             }
             before = time;
         }
-        Ok(Runs { start: start(system, state, equations, constants)?, question, times })
+        let (free, parameters) = equations.free_parameters();
+        let constants: Vec<T> = constants.iter().chain(&parameters).map(|&x| T::from_f64(x)).collect();
+        Ok(Runs { start: start(system, state, &free, &constants, found)?, question, times, equations: free, constants })
     }
 
     /// The equations, ready at the start.
-    fn instant(&self) -> Result<Instant<T>, ReferenceError> {
-        let mut instant = Instant::new(self.question.equations, self.question.constants)?;
-        instant.set_guess(&self.start.guess);
+    fn instant(&self) -> Result<Dynamics<T>, ReferenceError> {
+        let mut instant = Dynamics::new(&self.equations)?;
+        instant.set_constants(&self.constants);
+        if !self.start.guess.is_empty() {
+            instant.set_guess(&self.start.guess);
+        }
         Ok(instant)
     }
 
     fn taylor(&self, tolerance: f64) -> Result<Vec<Point<T>>, ReferenceError> {
         let mut instant = self.instant()?;
-        let mut taylor = Taylor::new(self.question.equations, &instant, tolerance)?;
+        let mut taylor = Taylor::new(&self.equations, tolerance)?;
         self.points(|start, reached| taylor.integrate(&mut instant, start, self.times, reached))
     }
 
@@ -219,9 +239,18 @@ impl<'a, T: Wide> Runs<'a, T> {
         &self,
         method: impl FnOnce((f64, &[T]), Reached<T>) -> Result<(), ReferenceError>,
     ) -> Result<Vec<Point<T>>, ReferenceError> {
+        let (n, multipliers) = (self.equations.coordinates.len(), self.equations.multipliers.len());
         let mut points = Vec::new();
         method((self.question.start.t, &self.start.states), &mut |instant, t, y| {
-            points.push(instant.point(T::from_f64(t), y)?);
+            let time = T::from_f64(t);
+            instant.settle(time, y).map_err(ReferenceError::at(time))?;
+            let values = instant.outputs();
+            points.push(Point {
+                coordinates: values[..n].to_vec(),
+                velocities: values[n..2 * n].to_vec(),
+                multipliers: values[2 * n..][..multipliers].to_vec(),
+                states: y.to_vec(),
+            });
             Ok(())
         })?;
         Ok(points)

@@ -13,17 +13,13 @@ mod cache;
 mod double_double;
 mod error;
 mod extrapolation;
-mod instant;
 mod metric;
 mod reference;
 mod start;
 mod taylor;
-mod wide;
 
 pub use cache::{CachedReference, digest};
 pub use double_double::DoubleDouble;
 pub use error::ReferenceError;
-pub use instant::{Instant, Point};
 pub use mechanics::linear::Entry;
-pub use reference::{Agreement, Question, Reference, reference, reference_in};
-pub use wide::Wide;
+pub use reference::{Agreement, Point, Question, Reference, reference, reference_in};

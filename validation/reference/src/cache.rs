@@ -5,8 +5,7 @@ use std::fmt::Write;
 use equations::Equations;
 use symbolic::{Expr, Graph, Scalar};
 
-use crate::instant::parameters;
-use crate::{DoubleDouble, Question, Reference, Wide};
+use crate::{DoubleDouble, Entry, Question, Reference};
 
 /// Where a motion is at some times, without how that was found: what errors are taken against.
 #[derive(Clone, Debug, PartialEq)]
@@ -167,8 +166,7 @@ impl Digest {
     fn equations(&mut self, equations: &Equations) {
         let g = &equations.graph;
         self.words(equations.formulation);
-        let (symbols, values) = parameters(equations);
-        let mut known: Vec<(String, f64)> = symbols.into_iter().map(|s| g.name(s)).zip(values).collect();
+        let mut known: Vec<(String, f64)> = equations.parameters.iter().map(|(&s, &x)| (g.name(s), x)).collect();
         known.sort_by(|a, b| a.0.cmp(&b.0));
         for (name, value) in known {
             self.words(&name);
