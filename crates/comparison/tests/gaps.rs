@@ -2,6 +2,7 @@
 
 use comparison::{Comparison, Run, Verdict, compare_motions, compare_unfitted, words};
 use equations::Formulation;
+use motion::numbers::precise;
 use motion::{
     CHETAEV, Choice, Ending, Ensemble, EnsembleOptions, FORMS, FORMULATIONS, Metric, Settings, VAKONOMIC, choices,
     formulation, solve_choice,
@@ -144,7 +145,7 @@ fn the_earlier_stop_counts() {
         [compare_motions(&mut later, &mut earlier, &mut metric), compare_motions(&mut earlier, &mut later, &mut metric)]
     {
         let Verdict::Undecided { because } = gap.expect("a gap").verdict else { panic!("not undecided") };
-        assert!(because.contains(&format!("no difference up to t = {t:.6}")), "{because}");
+        assert!(because.contains(&format!("no difference up to t = {}", precise(t))), "{because}");
     }
 }
 

@@ -43,7 +43,8 @@ impl Evaluation {
     /// # Errors
     /// [`NewtonError::NotFinite`].
     pub(crate) fn sizes(&self, x: &DVector<f64>) -> Result<Vec<f64>, NewtonError> {
-        let Decomposition { weights, factors, leading } = Decomposition::new(self, NewtonOptions::default().rank_limit)?;
+        let Decomposition { weights, factors, leading } =
+            Decomposition::new(self, NewtonOptions::default().rank_limit)?;
         let inverse = |i: usize, j: usize| {
             leading.iter().map(|&k| factors.right[(k, i)] * factors.left[(j, k)] / factors.values[k]).sum::<f64>()
         };

@@ -10,6 +10,7 @@ use equations::Compiled;
 
 use super::estimate_failure::Doubt;
 use super::limits::{CERTAINTY, ROUND_OFF, ROUNDED, TOLD, UNITS};
+use crate::numbers::precise;
 
 /// Time, states, and what is added up to their rates.
 pub type Looked = (f64, Vec<f64>, Vec<f64>);
@@ -138,10 +139,10 @@ pub fn accumulated(
             over[i] = true;
             let (sum, difference) = (sums.sums[i], sums.differences[i]);
             if sum > TOLD * sizes[i] && sum > CERTAINTY * difference {
-                let (state, t) = (&names()[i], second.0);
+                let (state, from, t) = (&names()[i], precise(*before), precise(second.0));
                 let because = format!(
-                    "the error estimate is not to be trusted from t = {before:.6} on: the rate of {state} is a \
-                     difference of larger terms, whose round-off may have come to {sum:.1e} at t = {t:.6}, \
+                    "the error estimate is not to be trusted from t = {from} on: the rate of {state} is a \
+                     difference of larger terms, whose round-off may have come to {sum:.1e} at t = {t}, \
                      where the runs differ by {difference:.1e}"
                 );
                 return RoundOff::Doubted(Doubt { from: *before, because });

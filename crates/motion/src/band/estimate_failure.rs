@@ -4,6 +4,7 @@ use integrate::Method;
 
 use super::limits::{BEFORE_THE_END, FEW_STEPS, MORE_STEPS, TOGETHER, TOO_MANY};
 use crate::TIGHTER;
+use crate::numbers::precise;
 
 /// That the difference of the two runs is not an error estimate from some time on.
 #[derive(Clone, Debug, PartialEq)]
@@ -47,7 +48,8 @@ impl Doubt {
         });
         let from = stretch.map_or(start, |ends| looser[ends[0]]);
         let because = format!(
-            "the error estimate is not to be trusted from t = {from:.6} on: {loose} steps at one tolerance, {tight} at a hundredth of it, so that {what}"
+            "the error estimate is not to be trusted from t = {} on: {loose} steps at one tolerance, {tight} at a hundredth of it, so that {what}",
+            precise(from)
         );
         Some(Doubt { from, because })
     }

@@ -12,6 +12,7 @@ use super::limits::{ROUND_OFF, UNITS};
 use super::ulp_perturbation::terms_of_invariants;
 use super::{Answer, Errors, TwoRuns, ask, ask_alone};
 use crate::metric::subtract;
+use crate::numbers::precise;
 
 /// A motion changes what the user expects to be constant: a finding about the formulation.
 #[derive(Clone, Debug, PartialEq)]
@@ -40,7 +41,8 @@ impl Display for Breach {
         let Breach { name, t, change, estimate, .. } = self;
         write!(
             f,
-            "{name} is not constant: it has changed by {change:.1e} at t = {t:.6}, with an error estimate of {estimate:.1e}"
+            "{name} is not constant: it has changed by {change:.1e} at t = {}, with an error estimate of {estimate:.1e}",
+            precise(*t)
         )
     }
 }
@@ -177,7 +179,7 @@ impl InvariantMonitor {
             let estimate = estimates[i] + self.start.0[i] + f.round_off();
             let (size, constraint) = (f.value.abs(), i + 1);
             (ask(size, Some(estimate)) == Answer::Apart).then(|| {
-                format!("constraint {constraint} does not hold: it is {size:.1e} at t = {t:.6}, with an error estimate of {estimate:.1e}")
+                format!("constraint {constraint} does not hold: it is {size:.1e} at t = {}, with an error estimate of {estimate:.1e}", precise(t))
             })
         };
         residuals.iter().enumerate().find_map(over)
