@@ -12,13 +12,14 @@ use crate::problem::Start;
 use crate::status::StopCause;
 use crate::stepper::{Attempt, SAFETY, Stepper, next_step};
 use crate::system::{Failure, System};
-use crate::taylor_step::LEAST_RELATIVE;
 
 /// How much steps may shrink and grow.
 const FACTORS: [f64; 2] = [0.333, 6.0];
 const ORDER: f64 = 8.0;
 /// From here on the longest first step goes with the root of the tolerance.
 const COARSE: f64 = 1e-6;
+/// Below this the error estimate measures round-off.
+const TIGHTEST: f64 = 2e-15;
 
 pub(crate) struct Dop853<'s, 'p> {
     system: &'s System<'p>,
@@ -52,7 +53,7 @@ impl<'s, 'p> Dop853<'s, 'p> {
         Ok(Self {
             system,
             end,
-            relative_tolerance: options.relative_tolerance.max(LEAST_RELATIVE),
+            relative_tolerance: options.relative_tolerance.max(TIGHTEST),
             absolute_tolerances: options.absolute_tolerances(n),
             t: start.t,
             y: start.y.clone(),
