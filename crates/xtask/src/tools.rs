@@ -1,8 +1,8 @@
 //! What chores run: cargo, other programs, and where they build.
 
-use std::ffi::OsStr;
+use std::ffi::{OsStr, OsString};
 use std::path::{Path, PathBuf};
-use std::process::Command;
+use std::process::{Command, ExitCode};
 
 use anyhow::{Context, Result, bail};
 
@@ -47,9 +47,36 @@ pub(crate) fn succeed(command: &mut Command) -> Result<Outcome> {
 /// ([`crate::checks::engine`]).
 pub(crate) const ALL: [&str; 4] = ["--release", "--workspace", "--exclude", "engine"];
 
-/// Everything, with one set of features; programs are in the folder `release` of [`target`] then.
+/// Set for calls of rustc that come through this program.
+const TESTS: &str = "XTASK_COMPILES_TESTS";
+
+/// Everything, with one set of features; programs are in the folder `release` of [`target`] then. Programs of tests
+/// are compiled without optimization: what works in them is the libraries, which have theirs. A wrapper of somebody's
+/// own, a cache, is left alone.
 pub(crate) fn build() -> Result<Outcome> {
-    succeed(cargo().arg("build").args(ALL).arg("--all-targets"))
+    let mut build = cargo();
+    build.arg("build").args(ALL).arg("--all-targets");
+    if std::env::var_os("RUSTC_WRAPPER").is_none() {
+        build.env("RUSTC_WRAPPER", std::env::current_exe().context("this program")?).env(TESTS, "");
+    }
+    succeed(&mut build)
+}
+
+/// The call of rustc, if this is one for [`build`].
+pub(crate) fn in_place_of_rustc() -> Option<ExitCode> {
+    std::env::var_os(TESTS)?;
+    let mut call: Vec<OsString> = std::env::args_os().skip(1).collect();
+    if call.iter().any(|word| word == "--test") {
+        for word in &mut call {
+            if word.to_string_lossy().starts_with("opt-level=") {
+                *word = "opt-level=0".into();
+            }
+        }
+        // which rustc turns on with that
+        call.extend(["-C", "debug-assertions=off", "-C", "overflow-checks=off"].map(OsString::from));
+    }
+    let status = Command::new(call.first()?).args(&call[1..]).status();
+    Some(if status.is_ok_and(|status| status.success()) { ExitCode::SUCCESS } else { ExitCode::FAILURE })
 }
 
 /// The folder of build results.
