@@ -1,6 +1,6 @@
 //! What chores run: cargo, other programs, and where they build.
 
-use std::ffi::{OsStr, OsString};
+use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode};
 
@@ -50,9 +50,9 @@ pub(crate) const ALL: [&str; 4] = ["--release", "--workspace", "--exclude", "eng
 /// Set for calls of rustc that come through this program.
 const TESTS: &str = "XTASK_COMPILES_TESTS";
 
-/// Everything, with one set of features; programs are in the folder `release` of [`target`] then. Programs of tests
-/// are compiled without optimization: what works in them is the libraries, which have theirs. A wrapper of somebody's
-/// own, a cache, is left alone.
+/// Everything, with one set of features; programs are in the folder `release` of [`target`] then. Programs of
+/// tests are compiled without optimization: what works in them is the libraries, which have theirs, and they take
+/// a quarter of the time. A wrapper of somebody's own, a cache, is left alone.
 pub(crate) fn build() -> Result<Outcome> {
     let mut build = cargo();
     build.arg("build").args(ALL).arg("--all-targets");
@@ -62,21 +62,15 @@ pub(crate) fn build() -> Result<Outcome> {
     succeed(&mut build)
 }
 
-/// The call of rustc, if this is one for [`build`].
+/// The call of rustc, if this is one for [`build`]. The last of its options is the one that counts.
 pub(crate) fn in_place_of_rustc() -> Option<ExitCode> {
     std::env::var_os(TESTS)?;
-    let mut call: Vec<OsString> = std::env::args_os().skip(1).collect();
-    if call.iter().any(|word| word == "--test") {
-        for word in &mut call {
-            if word.to_string_lossy().starts_with("opt-level=") {
-                *word = "opt-level=0".into();
-            }
-        }
-        // which rustc turns on with that
-        call.extend(["-C", "debug-assertions=off", "-C", "overflow-checks=off"].map(OsString::from));
+    let mut rustc = Command::new(std::env::args_os().nth(1)?);
+    rustc.args(std::env::args_os().skip(2));
+    if std::env::args_os().any(|word| word == "--test") {
+        rustc.args(["-Copt-level=0", "-Cdebug-assertions=off", "-Coverflow-checks=off"]);
     }
-    let status = Command::new(call.first()?).args(&call[1..]).status();
-    Some(if status.is_ok_and(|status| status.success()) { ExitCode::SUCCESS } else { ExitCode::FAILURE })
+    Some(if rustc.status().is_ok_and(|status| status.success()) { ExitCode::SUCCESS } else { ExitCode::FAILURE })
 }
 
 /// The folder of build results.
