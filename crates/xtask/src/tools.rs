@@ -51,8 +51,8 @@ pub(crate) const ALL: [&str; 4] = ["--release", "--workspace", "--exclude", "eng
 const TESTS: &str = "XTASK_COMPILES_TESTS";
 
 /// Everything, with one set of features; programs are in the folder `release` of [`target`] then. Programs of
-/// tests are compiled without optimization: what works in them is the libraries, which have theirs, and they take
-/// a quarter of the time. A wrapper of somebody's own, a cache, is left alone.
+/// tests are compiled without optimization, in a quarter of the time: what works in them is the libraries,
+/// which have theirs. A wrapper of somebody's own, a cache, is left alone.
 pub(crate) fn build() -> Result<Outcome> {
     let mut build = cargo();
     build.arg("build").args(ALL).arg("--all-targets");
