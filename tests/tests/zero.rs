@@ -13,7 +13,7 @@ use scene::Scene;
 use scene::catalogue::built_in;
 use symbolic::{Expr, SplitMix};
 
-/// Number of switched scenes that are drawn; `SWITCHED` asks for more, 0 for all of them (`docs/long-checks.md`).
+/// Number of switched scenes that are drawn; `SWITCHED` asks for more, 0 for all (`docs/long-checks.md`).
 const SWITCHED: usize = 20;
 /// Coordinates, velocities and constraints, one each.
 const PLACES: [&str; 3] = ["(1 + tanh(24*U))/2", "exp(-36*U^2)", "step(t, T0 + 0.2*T, T0 + 0.9*T, 0.005*T)"];

@@ -62,7 +62,7 @@ const CHORES: [Chore; 9] = [
 ];
 
 fn main() -> ExitCode {
-    if let Some(code) = lint::in_place_of_rustc() {
+    if let Some(code) = lint::in_place_of_rustc().or_else(tools::in_place_of_rustc) {
         return code;
     }
     let arguments: Vec<String> = std::env::args().skip(1).collect();

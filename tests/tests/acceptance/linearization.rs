@@ -13,8 +13,8 @@ fn eigenvalues(scene: &Scene, free: &[&str]) -> Vec<Eigenvalue> {
     found.part(free).unwrap_or_else(|error| panic!("{}: {error}", scene.name)).eigenvalues
 }
 
-/// 44 eigenvalues and two speeds within 1e-12 of those in 50 digits. The committed verdicts are those of a fresh
-/// run: `cargo xtask reports` compares them.
+/// 44 eigenvalues and two speeds within 1e-12 of those in 50 digits. The committed verdicts are those of a
+/// fresh run: `cargo xtask reports` compares them.
 #[test]
 fn the_bicycle_is_that_of_the_paper() {
     let text = std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/../reports/verdicts.json"));
