@@ -63,8 +63,8 @@ pub type Excluding = (String, f64);
 /// `moves` says so are moved, by parts of their scales that no period fits; further ones are known before:
 /// each goes by way of beginnings and, unless it is far off, at once. Beginnings are left out where the first
 /// start is `known` to come close. Starts for the whole film at once are left out where beginnings of several
-/// lead to residuals of noise. Once a beginning excludes the formulation, or one of the first films alone, one
-/// start is followed.
+/// lead to residuals of noise. Once a beginning excludes the formulation, or a film alone, one start is
+/// followed.
 ///
 /// # Errors
 /// [`FitError::NoMotion`].
@@ -242,14 +242,14 @@ fn followed(
 
 /// Starts that have to lead to the least χ² of a formulation before it is excluded.
 pub(crate) const SEVERAL: usize = 2;
-/// How much more χ² has to be above for one of several parts: what keeps the level for eight beginnings of all
-/// films and of each of [`ALONE`].
+/// How much more χ² has to be above for one of several parts: what keeps the level for eight beginnings of
+/// all films and of each of [`ALONE`].
 const LOOKS: f64 = 7.0;
 /// Films that are looked at alone.
 const ALONE: usize = 3;
 
-/// Film `number`, if that excludes the formulation alone: unknowns of its own are few, and several starts lead
-/// to one minimum.
+/// Film `number`, if that excludes the formulation alone: unknowns of its own are few, and several starts
+/// lead to one minimum.
 fn excluded_alone(
     problem: &Problem,
     (best, own): &(Problem, [Vec<f64>; 2]),
