@@ -10,6 +10,7 @@ use motion::shooting::{Minimum, spread};
 use crate::distribution::{EXCLUDED, sigmas};
 use crate::least::{Stage, least};
 use crate::minimum::{distinct, spread_out};
+use crate::problem::Beside;
 use crate::residual_tests::residual_tests;
 use crate::{FitError, Problem, Residual};
 
@@ -210,7 +211,7 @@ fn followed(
     short: Problem,
     scale: &[f64],
     starts: Vec<Minimum>,
-    (beside, excluded_by): (Option<&(Problem, [Vec<f64>; 2])>, Option<Excluding>),
+    (beside, excluded_by): (Option<&Beside>, Option<Excluding>),
     reason: &mut Option<String>,
 ) -> Result<(Vec<Minimum>, Option<Excluding>), FitError> {
     let (mut part, mut starts, mut excluded_by) = (short, starts, excluded_by);
@@ -252,7 +253,7 @@ const ALONE: usize = 3;
 /// lead to one minimum.
 fn excluded_alone(
     problem: &Problem,
-    (best, own): &(Problem, [Vec<f64>; 2]),
+    (best, own): &Beside,
     (moves, starts): (&dyn Fn(&str) -> bool, usize),
     number: usize,
 ) -> Option<Excluding> {
@@ -269,12 +270,7 @@ fn excluded_alone(
 
 /// The significance at which this beginning excludes its formulation, if it does: by a least χ² that several
 /// starts reach. Where it may, `starts` become the minima.
-fn excluded(
-    part: &Problem,
-    starts: &mut Vec<Minimum>,
-    scale: &[f64],
-    (best, own): &(Problem, [Vec<f64>; 2]),
-) -> Option<f64> {
+fn excluded(part: &Problem, starts: &mut Vec<Minimum>, scale: &[f64], (best, own): &Beside) -> Option<f64> {
     let best = least(&best.beginning(part.samples()).ok()?, &own[0], &own[1], Stage::Profile).ok()?.value;
     let enough = |found: &[Minimum]| Some(found.first()?.value - best).filter(|above| *above >= EXCLUDED + LOOKS);
     enough(starts)?;
