@@ -115,7 +115,7 @@ impl Found<'_> {
                     true => format!("excluded at {}", significance(sigmas)),
                     false => format!("cannot tell, {sigmas:.0} σ"),
                 };
-                let [truth, rival] = [0, 1].map(|i| &self.design.labels()[i]);
+                let [truth, rival] = [0, 1].map(|i| self.design.labels()[i]);
                 let minima = if point.minima == 1 {
                     "one minimum".into()
                 } else {

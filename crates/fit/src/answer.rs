@@ -102,18 +102,19 @@ fn fit_given(
     let labels: Vec<String> = choices.iter().map(|choice| choice.label.clone()).collect();
     let (laws, plain): (Vec<Choice>, Vec<Choice>) = choices.into_iter().partition(|c| is_law(c.formulation));
     let (families, single): (Vec<Choice>, Vec<Choice>) = plain.into_iter().partition(has_constants);
-    let mut fits = fit_choices(&scene, single, films, question, 0, None);
+    let mut fits = fit_choices(&scene, single, films, question, 0, (None, None));
     let near = fits.iter().find(|(known, _)| *known.formulation == *CHETAEV);
     let near = near.and_then(|(choice, fit)| Some((choice.clone(), fit.as_ref().ok()?.clone())));
     let near = near.as_ref().map(|(choice, (problem, fit))| (problem, choice, fit));
-    fits.extend(fit_choices(&scene, families, films, question, 0, near));
     let fit_of = near.map(|(.., fit)| fit);
     let law = |choice: &Choice, near: Option<&Fit>| fit_law(&scene, choice, films, question, near);
     fits.extend(laws.into_iter().map(|choice| (choice.clone(), law(&choice, fit_of))));
+    let fits_well = |(_, fit): &(Choice, Fitted)| fit.as_ref().is_ok_and(|(_, fit)| fit.faults().next().is_none());
+    let fitting = fits.iter().find(|fit| fits_well(fit)).and_then(|(_, fit)| fit.clone().ok());
+    fits.extend(fit_choices(&scene, families, films, question, 0, (near, fitting.as_ref())));
     fits.retain(|(choice, _)| is_wanted(choice.formulation));
     fits.sort_by_key(|(choice, _)| labels.iter().position(|label| *label == choice.label));
     // before nothing fits, laws not from Chetaev's numbers
-    let fits_well = |(_, fit): &(Choice, Fitted)| fit.as_ref().is_ok_and(|(_, fit)| fit.faults().next().is_none());
     if !fits.iter().any(fits_well) {
         for (choice, fit) in fits.iter_mut().filter(|(choice, _)| is_law(choice.formulation)) {
             keep_less(fit, law(choice, None));
@@ -134,7 +135,7 @@ fn fit_given(
         };
         let places: Vec<usize> = (0..fits.len()).filter(|&i| is_doubtful(&fits[i])).collect();
         let again = places.iter().map(|&i| fits[i].0.clone()).collect();
-        let again = fit_choices(&scene, again, films, question, group * question.starts, near);
+        let again = fit_choices(&scene, again, films, question, group * question.starts, (near, None));
         for (place, (_, again)) in places.into_iter().zip(again) {
             let (fit, by_groups) = (&mut fits[place].1, &mut by_groups[place]);
             add(fit, again);
@@ -251,14 +252,14 @@ fn keep_less(known: &mut Fitted, again: Fitted) {
 
 /// Each of these fitted, from starts of the search that are counted from `first` on; over threads: what they
 /// find does not depend on how many there are. Families begin beside Chetaev's motion as well, where that is
-/// known.
+/// known, and their beginnings are held beside one that fits.
 fn fit_choices(
     scene: &Scene,
     choices: Vec<Choice>,
     films: &[Film],
     question: &Question,
     first: usize,
-    near: Option<(&Problem, &Choice, &Fit)>,
+    (near, beside): (Option<(&Problem, &Choice, &Fit)>, Option<&(Problem, Fit)>),
 ) -> Vec<(Choice, Fitted)> {
     let problem = |choice: &Choice| {
         let mut problem = problem_of(scene, choice, films, question)?;
@@ -267,9 +268,11 @@ fn fit_choices(
         if let Some((own, chetaev, fit)) = near {
             problem.known = known::beside_chetaev(scene, choice, &problem, (own, chetaev, &known::numbers(fit)));
         }
-        if let Some((own, _, fit)) = near.filter(|(.., fit)| fit.faults().next().is_none()) {
-            problem.beside = Some(Box::new((own.clone(), [fit.numbers(), fit.scales()])));
-        }
+        problem.beside = beside.filter(|_| has_constants(choice)).map(|(own, fit)| {
+            // a slip at its bound is no unknown of the problem
+            let of = |all: Vec<f64>| all[..own.unknowns().len()].to_vec();
+            Box::new((own.clone(), [of(fit.numbers()), of(fit.scales())]))
+        });
         Ok::<_, FitError>(problem)
     };
     let problems: Vec<_> = choices.iter().map(|choice| Mutex::new(Some(problem(choice)))).collect();

@@ -80,12 +80,6 @@ fn at_its_bound(problem: &Problem, i: usize, kept: &Fit) -> Estimate {
             _ => profile.end(1.0, RISE, 0.0),
         }
     });
-    Estimate {
-        name: problem.unknowns()[i].label(),
-        value: 0.0,
-        error: high / RISE.sqrt(),
-        interval: [0.0, high],
-        profiled: true,
-        at_bound: Some(1.0),
-    }
+    let (error, interval) = (high / RISE.sqrt(), [0.0, high]);
+    Estimate { error, interval, profiled: true, at_bound: Some(1.0), ..Estimate::hidden(&problem.unknowns()[i], 0.0) }
 }

@@ -73,8 +73,6 @@ pub struct Design {
     scene: Scene,
     /// The formulations.
     choices: Vec<Choice>,
-    /// Their labels.
-    labels: Vec<String>,
     truth: Side,
     /// The wrong formulation, which the films have to exclude.
     rival: Option<Side>,
@@ -246,20 +244,8 @@ impl Design {
         });
         let ends = films.iter().filter_map(|film| film.t.last());
         let length = ends.fold(0.0, |length: f64, end| length.max(end - scene.start.t));
-        let labels = choices.iter().map(|choice| choice.label.clone()).collect();
         let scene = scene.clone();
-        Ok(Design {
-            aim: aim.clone(),
-            scene,
-            choices,
-            labels,
-            truth,
-            rival,
-            unknown,
-            chosen,
-            starts: question.starts,
-            length,
-        })
+        Ok(Design { aim: aim.clone(), scene, choices, truth, rival, unknown, chosen, starts: question.starts, length })
     }
 
     /// What films are to show.
@@ -268,8 +254,8 @@ impl Design {
     }
 
     /// Labels of the formulations: the right one, then the one to be excluded.
-    pub fn labels(&self) -> &[String] {
-        &self.labels
+    pub fn labels(&self) -> Vec<&str> {
+        self.choices.iter().map(|choice| choice.label.as_str()).collect()
     }
 
     /// The numbers that are chosen, in the order of [`Point::at`].

@@ -78,10 +78,9 @@ pub(crate) fn explanations(
         let unknowns: Vec<Unknown> = question.unknowns.iter().cloned().chain(added).collect();
         let question = Question { unknowns: &unknowns, ..question.clone() };
         let mut wider = problem_of(scene, &choice, films, &question).ok()?;
-        let known = |label: &String| fit.estimates.iter().find(|e| e.name == *label).map(|e| e.value);
-        let labels: Vec<String> = wider.unknowns().iter().map(Unknown::label).collect();
-        let own: Vec<f64> = wider.start().to_vec();
-        let start: Vec<f64> = labels.iter().zip(own).map(|(label, own)| known(label).unwrap_or(own)).collect();
+        let known = |label: &str| fit.estimates.iter().find(|e| e.name == *label).map(|e| e.value);
+        let each = wider.unknowns().iter().zip(wider.start());
+        let start: Vec<f64> = each.map(|(unknown, own)| known(&unknown.label()).unwrap_or(*own)).collect();
         wider.begin_at(&start);
         Some((wider, start))
     };

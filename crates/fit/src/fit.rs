@@ -40,7 +40,7 @@ pub struct Estimate {
 
 impl Estimate {
     /// Of an unknown that no film shows.
-    fn hidden(unknown: &Unknown, value: f64) -> Self {
+    pub(crate) fn hidden(unknown: &Unknown, value: f64) -> Self {
         let interval = [unknown.bound.unwrap_or(f64::NEG_INFINITY), f64::INFINITY];
         let error = f64::INFINITY;
         Estimate { name: unknown.label(), value, error, interval, profiled: false, at_bound: None }
@@ -197,16 +197,9 @@ fn stationary(problem: &Problem, best: &Minimum, i: usize, step: f64) -> Estimat
     errors[i] = step;
     let near = problem.limited(&best.unknowns, PROFILE_STEPS);
     let mut profile = Profile::new(&near, &jacobian, best, &errors, i);
-    let [low, high] = [-1.0, 1.0].map(|side| profile.end(side, RISE, bound));
-    let error = 0.5 * (high - low) / RISE.sqrt();
-    Estimate {
-        name: unknown.label(),
-        value: best.unknowns[i],
-        error,
-        interval: [low, high],
-        profiled: true,
-        at_bound: None,
-    }
+    let interval = [-1.0, 1.0].map(|side| profile.end(side, RISE, bound));
+    let error = 0.5 * (interval[1] - interval[0]) / RISE.sqrt();
+    Estimate { error, interval, profiled: true, ..Estimate::hidden(unknown, best.unknowns[i]) }
 }
 
 /// How χ² rises above its least where the unknown of this name has these values and the others are fitted

@@ -182,7 +182,7 @@ pub struct Designed<'a> {
     samples: usize,
     columns: &'a [Column],
     /// The formulation that is right, and the one to be told from it; null beside estimate.
-    tell: Option<&'a [String]>,
+    tell: Option<Vec<&'a str>>,
     /// The number whose standard error is to be small; null beside tell.
     estimate: Option<&'a str>,
     /// What is chosen, in the order of at.

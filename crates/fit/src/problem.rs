@@ -10,6 +10,9 @@ use crate::part::{Part, Place};
 use crate::unknown::CLOCK;
 use crate::{Film, FitError, Unknown};
 
+/// Another formulation that fits, its numbers and their scales.
+pub(crate) type Beside = (Problem, [Vec<f64>; 2]);
+
 /// Films of motions of one scene in one formulation, and what is not known of it: residuals
 ///
 /// ```text
@@ -28,8 +31,8 @@ pub struct Problem {
     pub(crate) first: usize,
     /// Starts that are known before, beside the first one.
     pub(crate) known: Vec<Vec<f64>>,
-    /// One that fits, its numbers and their scales: beside it beginnings of the films may exclude this one.
-    pub(crate) beside: Option<Box<(Problem, [Vec<f64>; 2])>>,
+    /// Beside it parts of the films may exclude this one.
+    pub(crate) beside: Option<Box<Beside>>,
     robust: Option<f64>,
     /// `(θ − mean)/deviation` of unknowns that are held.
     held: Vec<f64>,

@@ -11,6 +11,7 @@ use symbolic::limits::NOTHING;
 use crate::distribution::{EXCLUDED, sigmas};
 use crate::least::{Stage, least};
 use crate::minimum::{distinct, spread_out};
+use crate::problem::Beside;
 use crate::residual_tests::residual_tests;
 use crate::{FitError, Problem, Residual};
 
@@ -61,8 +62,8 @@ pub type Excluding = (String, f64);
 /// `moves` says so are moved, by parts of their scales that no period fits; further ones are known before:
 /// each goes by way of beginnings and, unless it is far off, at once. Beginnings are left out where the first
 /// start is `known` to come close. Starts for the whole film at once are left out where beginnings of several
-/// lead to residuals of noise. Once a beginning excludes the formulation, or one of the first films alone, one
-/// start is followed.
+/// lead to residuals of noise. Once a beginning excludes the formulation, or a film alone, one start is
+/// followed.
 ///
 /// # Errors
 /// [`FitError::NoMotion`].
@@ -208,7 +209,7 @@ fn followed(
     short: Problem,
     scale: &[f64],
     starts: Vec<Minimum>,
-    (beside, excluded_by): (Option<&(Problem, [Vec<f64>; 2])>, Option<Excluding>),
+    (beside, excluded_by): (Option<&Beside>, Option<Excluding>),
     reason: &mut Option<String>,
 ) -> Result<(Vec<Minimum>, Option<Excluding>), FitError> {
     let (mut part, mut starts, mut excluded_by) = (short, starts, excluded_by);
@@ -240,17 +241,17 @@ fn followed(
 
 /// Starts that have to lead to the least χ² of a formulation before it is excluded.
 pub(crate) const SEVERAL: usize = 2;
-/// How much more χ² has to be above for one of several parts: what keeps the level for eight beginnings of all
-/// films and of each of [`ALONE`].
+/// How much more χ² has to be above for one of several parts: what keeps the level for eight beginnings of
+/// all films and of each of [`ALONE`].
 const LOOKS: f64 = 7.0;
 /// Films that are looked at alone.
 const ALONE: usize = 3;
 
-/// Film `number`, if that excludes the formulation alone: unknowns of its own are few, and several starts lead
-/// to one minimum.
+/// Film `number`, if that excludes the formulation alone: unknowns of its own are few, and several starts
+/// lead to one minimum.
 fn excluded_alone(
     problem: &Problem,
-    (best, own): &(Problem, [Vec<f64>; 2]),
+    (best, own): &Beside,
     (moves, starts): (&dyn Fn(&str) -> bool, usize),
     number: usize,
 ) -> Option<Excluding> {
@@ -267,12 +268,7 @@ fn excluded_alone(
 
 /// The significance at which this beginning excludes its formulation, if it does: by a least χ² that several
 /// starts reach. Where it may, `starts` become the minima.
-fn excluded(
-    part: &Problem,
-    starts: &mut Vec<Minimum>,
-    scale: &[f64],
-    (best, own): &(Problem, [Vec<f64>; 2]),
-) -> Option<f64> {
+fn excluded(part: &Problem, starts: &mut Vec<Minimum>, scale: &[f64], (best, own): &Beside) -> Option<f64> {
     let best = least(&best.beginning(part.samples()).ok()?, &own[0], &own[1], Stage::Profile).ok()?.value;
     let enough = |found: &[Minimum]| Some(found.first()?.value - best).filter(|above| *above >= EXCLUDED + LOOKS);
     enough(starts)?;

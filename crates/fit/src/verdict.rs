@@ -40,7 +40,7 @@ pub enum Verdict {
         /// [`fit_formulations`](crate::fit_formulations).
         needs: Vec<Option<f64>>,
     },
-    /// It fits with what is not modelled, or what it would exclude does, or the search of that is not settled.
+    /// It fits with what is not modelled, or what it would exclude does or has not settled.
     Explained {
         /// What it is with.
         with: Option<String>,

@@ -45,9 +45,9 @@ fn a_family_that_contains_the_motion_is_not_excluded() {
     }
 }
 
-/// A ball on a turning table runs on a circle. The vakonomic ball does on a table at rest, for μ₀ = −m(x', y')
-/// and the spin 2/5 Ω: no start near the true Ω leads there. Where a search misses that, it is not settled, and
-/// Chetaev's formulation is not supported.
+/// A ball on a turning table runs on a circle. The vakonomic ball does on a table at rest, for
+/// `μ₀ = −m(x', y')` and the spin 2/5 Ω: no start near the true Ω leads there. Where a search misses that, it
+/// is not settled, and Chetaev's formulation is not supported.
 #[test]
 fn what_holds_without_a_parameter_is_found() {
     let (rate, v) = (2.0 / 7.0 * 0.6837, [-0.0052, 0.1210]);
@@ -93,8 +93,8 @@ fn sixteen_straight_lines_exclude_nobody() {
     assert!(rows.iter().all(|row| matches!(row.verdict, Verdict::CannotTell { .. })), "{:?}", rows[0].verdict);
 }
 
-/// Short films of a sledge, each with a start of its own: among 25 unknowns no two starts lead to one minimum,
-/// and one film alone excludes what is wrong.
+/// Short films of a sledge, each with a start of its own: among 25 unknowns no two starts lead to one
+/// minimum, and one film alone excludes what is wrong.
 #[test]
 fn one_of_many_films_excludes() {
     let scene = built_in("sledge");
