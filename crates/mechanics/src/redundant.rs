@@ -39,7 +39,7 @@ impl System {
         if SingularValues::least_at_least(&start) > AT_START * start.norm() {
             return None;
         }
-        let rank_of = |matrix: &DMatrix<f64>| rank(&SingularValues::of(matrix), AT_START);
+        let rank_of = |matrix: &DMatrix<f64>| SingularValues::of(matrix).rank(AT_START);
         let rank = rank_of(&start);
         if rank == rows.count || rank_of(&start.columns(0, q.len()).into_owned()) < rank {
             return None;
@@ -82,11 +82,6 @@ impl System {
             ..self.clone()
         }
     }
-}
-
-fn rank(svd: &SingularValues, limit: f64) -> usize {
-    let largest = svd.values.iter().copied().next().unwrap_or(0.0);
-    svd.values.iter().filter(|s| **s > limit * largest).count()
 }
 
 /// Indices of `rank` rows that are well apart, the first ones in this order where several would do.
@@ -175,6 +170,6 @@ impl Rows {
             }
             step *= 2.0;
         }
-        Some(self::rank(&SingularValues::of(&self.at(place.as_slice())?), BEHIND) <= rank)
+        Some(SingularValues::of(&self.at(place.as_slice())?).rank(BEHIND) <= rank)
     }
 }

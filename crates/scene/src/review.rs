@@ -173,7 +173,8 @@ impl<'c> Reviewer<'c> {
         let n = system.dimension();
         let size = entries.iter().fold(0.0_f64, |size, x| size.max(x.abs()));
         // by the circles of Gershgorin
-        let is_positive = |i: usize| 2.0 * entries[i * n + i] >= entries[i * n..(i + 1) * n].iter().map(|x| x.abs()).sum::<f64>();
+        let is_positive =
+            |i: usize| 2.0 * entries[i * n + i] >= entries[i * n..(i + 1) * n].iter().map(|x| x.abs()).sum::<f64>();
         if (0..n).all(is_positive) {
             return None;
         }
