@@ -207,7 +207,7 @@ only if its right-hand side at the start agrees with ours to 1e-12. All tools ru
 | tool | what it was given | how it runs |
 |---|---|---|
 | deltaq | the scene; for trailers also a text with a place for every body | one run with projection and dense output; `solve` makes a second run at a hundredth of the tolerance as error estimate |
-| heyoka | the scene; closed forms simplified by SymPy, whose time counts as set-up; *reduced by hand*: quasi-velocities, known costates, cyclic momenta (`validation/peers/by_hand.py`) | Taylor, `fast_math`, compiled anew for every tolerance |
+| heyoka | the scene; closed forms simplified by SymPy, whose time counts as set-up; *reduced by hand*: quasi-velocities, known costates, cyclic momenta (`validation/peers/by_hand.py`) | Taylor, `fast_math`, compiled for every tolerance, or read from its cache of code on disk |
 | SciPy | SymPy's derivation, straight-line code | `solve_ivp` (DOP853, LSODA, Radau) in Python or numba; *compiled whole*: DOP853 as one numba function |
 | CasADi | SX expressions | CVODES with the unknowns eliminated, IDAS with the equations as they stand |
 

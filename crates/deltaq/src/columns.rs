@@ -139,7 +139,7 @@ pub fn row(t: f64, now: &Outputs) -> String {
 
 /// Numbers with all their digits, between commas.
 pub fn print(numbers: &[f64]) -> String {
-    format!("{numbers:?}").trim_matches(['[', ']']).replace(", ", ",")
+    numbers.iter().map(|x| format!("{x:?}")).collect::<Vec<_>>().join(",")
 }
 
 /// The first line of a table.

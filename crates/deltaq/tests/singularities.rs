@@ -62,7 +62,8 @@ fn of_bicycles_those_that_fall_stop_and_the_others_go_on() {
     let [falls, rolls] = [&value["members"][0], &value["members"][1]];
     assert_eq!((&falls["status"], &rolls["status"]), (&"stopped".into(), &"completed".into()));
     has_names(falls["cause"].as_str().expect("a cause"));
-    assert!(falls["steps"].as_u64().is_some_and(|steps| steps < SOON));
+    // series of the motion itself, not of round-off
+    assert!(falls["steps"].as_u64().is_some_and(|steps| steps < 500));
 }
 
 /// What is ever faster asks for ever shorter steps, and nothing by which the equations divide vanishes.

@@ -29,14 +29,14 @@ const REFUSALS: usize = 50;
 const REFUSED: f64 = 0.7;
 
 /// A point of a run: the time, and the number of steps or of attempts so far.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct Mark {
     t: f64,
     count: usize,
 }
 
 /// How fast a run moves the time.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct StallDetector {
     start: f64,
     end: f64,
@@ -59,7 +59,6 @@ pub struct StallDetector {
 impl StallDetector {
     pub fn new(start: f64, end: f64) -> Self {
         let mark = Mark { t: start, count: 0 };
-        let (stretches, first, last) = (0, 0.0, 0.0);
         StallDetector {
             start,
             end,
@@ -67,12 +66,8 @@ impl StallDetector {
             stretch: mark,
             long: mark,
             refusals: mark,
-            steps: 0,
             slow: mark,
-            stretches,
-            first,
-            last,
-            ahead: 0.0,
+            ..StallDetector::default()
         }
     }
 

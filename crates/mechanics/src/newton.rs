@@ -43,10 +43,9 @@ impl Evaluation {
     /// # Errors
     /// [`NewtonError::NotFinite`].
     pub(crate) fn sizes(&self, x: &DVector<f64>) -> Result<Vec<f64>, NewtonError> {
-        let Decomposition { weights, factors, leading } =
-            Decomposition::new(self, NewtonOptions::default().rank_limit)?;
+        let Decomposition { weights, factors, rank } = Decomposition::new(self, NewtonOptions::default().rank_limit)?;
         let inverse = |i: usize, j: usize| {
-            leading.iter().map(|&k| factors.right[(k, i)] * factors.left[(j, k)] / factors.values[k]).sum::<f64>()
+            (0..rank).map(|k| factors.right[(k, i)] * factors.left[(j, k)] / factors.values[k]).sum::<f64>()
         };
         let term = |i: usize, j: usize| inverse(i, j).abs() * weights[j] * self.term_size(j, x);
         Ok((0..x.len()).map(|i| (0..self.residual.len()).map(|j| term(i, j)).sum()).collect())
@@ -175,7 +174,7 @@ pub fn solve(
     let root = Root {
         residual: here.relative_residual(&x),
         iterations,
-        rank: decomposition.leading.len(),
+        rank: decomposition.rank,
         null_space: decomposition.null_space(),
         x,
     };
@@ -226,8 +225,8 @@ fn damped(
 struct Decomposition {
     weights: DVector<f64>,
     factors: SingularValues,
-    /// Places of the singular values that are not zero.
-    leading: Vec<usize>,
+    /// How many are not zero.
+    rank: usize,
 }
 
 impl Decomposition {
@@ -239,16 +238,14 @@ impl Decomposition {
             Some(factors) => factors,
             None => decompose(&padded)?,
         };
-        let limit = rank_limit * factors.values.iter().copied().fold(0.0, f64::max);
-        let leading = (0..n).filter(|&k| factors.values[k] > limit).collect();
-        Ok(Decomposition { weights, factors, leading })
+        Ok(Decomposition { weights, rank: factors.rank(rank_limit), factors })
     }
 
     /// The shortest least-squares solution of `W J s = −W r`.
     fn step(&self, e: &Evaluation) -> DVector<f64> {
         let mut step = DVector::zeros(e.jacobian.ncols());
         let weighted = e.residual.component_mul(&self.weights);
-        for &k in &self.leading {
+        for k in 0..self.rank {
             let along: f64 = weighted.iter().zip(self.factors.left.column(k).iter()).map(|(r, u)| r * u).sum();
             step -= self.factors.right.row(k).transpose() * (along / self.factors.values[k]);
         }
@@ -256,8 +253,7 @@ impl Decomposition {
     }
 
     fn null_space(&self) -> DMatrix<f64> {
-        let rest: Vec<usize> = (0..self.factors.values.len()).filter(|k| !self.leading.contains(k)).collect();
-        self.factors.right.select_rows(&rest).transpose()
+        self.factors.right.rows_range(self.rank..).transpose()
     }
 }
 

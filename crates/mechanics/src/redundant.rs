@@ -38,7 +38,7 @@ impl System {
         if SingularValues::least_at_least(&start) > NOTHING * start.norm() {
             return None;
         }
-        let rank_of = |matrix: &DMatrix<f64>| rank(&SingularValues::of(matrix), NOTHING);
+        let rank_of = |matrix: &DMatrix<f64>| SingularValues::of(matrix).rank(NOTHING);
         let rank = rank_of(&start);
         if rank == rows.count || rank_of(&start.columns(0, q.len()).into_owned()) < rank {
             return None;
@@ -81,11 +81,6 @@ impl System {
             ..self.clone()
         }
     }
-}
-
-fn rank(svd: &SingularValues, limit: f64) -> usize {
-    let largest = svd.values.iter().copied().next().unwrap_or(0.0);
-    svd.values.iter().filter(|s| **s > limit * largest).count()
 }
 
 /// Indices of `rank` rows that are well apart, the first ones in this order where several would do.
@@ -174,6 +169,6 @@ impl Rows {
             }
             step *= 2.0;
         }
-        Some(self::rank(&SingularValues::of(&self.at(place.as_slice())?), BEHIND) <= rank)
+        Some(SingularValues::of(&self.at(place.as_slice())?).rank(BEHIND) <= rank)
     }
 }

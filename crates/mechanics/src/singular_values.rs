@@ -81,6 +81,11 @@ impl SingularValues {
         inverse.map_or(0.0, |inverse| (inverse.norm_squared().recip() - round_off).max(0.0).sqrt())
     }
 
+    /// How many are over this part of the largest.
+    pub(crate) fn rank(&self, limit: f64) -> usize {
+        self.values.iter().filter(|value| **value > limit * self.values[0]).count()
+    }
+
     /// The shortest x that minimizes `‖A x − b‖`, where singular values up to `limit` count as zero.
     pub fn solve(&self, b: &DVector<f64>, limit: f64) -> DVector<f64> {
         let along = self.left.tr_mul(b);

@@ -23,7 +23,7 @@ pub fn wanted(ends: [f64; 2], times: &[f64]) -> Arc<[f64]> {
     all.extend(STRETCHES.iter().flat_map(|&stretches| equidistant(start, end, stretches + 1)));
     let halves = (0..HALVES).map(|k| start + (end - start) * 0.5_f64.powi(k));
     all.extend(halves.flat_map(|end| equidistant(start + 0.5 * (end - start), end, INSTANTS + 1)));
-    all.sort_by(f64::total_cmp);
+    all.sort_unstable_by(f64::total_cmp);
     all.dedup();
     all.into()
 }

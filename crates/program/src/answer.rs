@@ -39,7 +39,9 @@ impl Answer {
 /// the others are written as in Rust.
 pub fn plain(text: &str) -> Cow<'_, str> {
     let is_obeyed = |c: char| c.is_control() && !matches!(c, '\n' | '\t');
-    if !text.contains(is_obeyed) {
+    // U+0080 to U+009F begin with the byte C2
+    let may_be_obeyed = |b: &u8| b.is_ascii_control() && !matches!(b, b'\n' | b'\t') || *b == 0xC2;
+    if !text.as_bytes().iter().any(may_be_obeyed) || !text.contains(is_obeyed) {
         return Cow::Borrowed(text);
     }
     let mut plain = String::with_capacity(text.len());

@@ -131,11 +131,7 @@ impl Problem {
             let size = row.amax();
             row /= if size > 0.0 { size } else { 1.0 };
         });
-        let rank = |rows: &DMatrix<f64>| {
-            let values = SingularValues::of(rows).values;
-            let limit = NewtonOptions::default().rank_limit * values.iter().fold(0.0, |a: f64, x| a.max(*x));
-            values.iter().filter(|x| **x > limit).count()
-        };
+        let rank = |rows: &DMatrix<f64>| SingularValues::of(rows).rank(NewtonOptions::default().rank_limit);
         Ok((first..m).filter(|&i| rank(&rows.clone().remove_row(i)) == rank(&rows)).collect())
     }
 

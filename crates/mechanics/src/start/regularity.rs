@@ -187,10 +187,7 @@ impl ScaledMatrices {
     fn kernel(&self) -> Result<DMatrix<f64>, StartError> {
         let (h, n) = self.constraint_jacobian.shape();
         let padded = self.constraint_jacobian.clone().resize(n, n, 0.0);
-        let svd = decompose(&padded)?;
-        let mut order: Vec<usize> = (0..n).collect();
-        order.sort_by(|&a, &b| svd.values[b].total_cmp(&svd.values[a]));
-        Ok(svd.right.select_rows(&order[h..]).transpose())
+        Ok(decompose(&padded)?.right.rows_range(h..).transpose())
     }
 
     fn check_mass(&self) -> Result<(), StartError> {
@@ -210,10 +207,8 @@ impl ScaledMatrices {
 ///
 /// The largest counts as at least 1, the size of scaled entries: one singular value has no ratio of its own.
 fn ratio(values: &DVector<f64>) -> (f64, Vec<f64>) {
-    let mut sorted: Vec<f64> = values.iter().copied().collect();
-    sorted.sort_by(|a, b| b.total_cmp(a));
-    let largest = values.amax().max(1.0);
-    (sorted.last().map_or(0.0, |s| s / largest), sorted)
+    let least = values.iter().last().map_or(0.0, |s| s / values.amax().max(1.0));
+    (least, values.as_slice().to_vec())
 }
 
 fn inverse_or_one(x: f64) -> f64 {

@@ -156,21 +156,10 @@ impl Scalar for Dual {
 
 impl SeriesScalar for Dual {
     fn dispatch<F: Task<Dual>>(rows: &mut [Dual], _: usize, task: F) {
-        pulp::Arch::new().dispatch(Vectorized { rows, task });
-    }
-}
-
-struct Vectorized<'a, F> {
-    rows: &'a mut [Dual],
-    task: F,
-}
-
-impl<F: Task<Dual>> pulp::NullaryFnOnce for Vectorized<'_, F> {
-    type Output = ();
-
-    #[inline(always)]
-    fn call(self) {
-        self.task.run(&mut Rows(self.rows));
+        pulp::Arch::new().dispatch(
+            #[inline(always)]
+            move || task.run(&mut Rows(rows)),
+        );
     }
 }
 

@@ -105,21 +105,10 @@ impl Scalar for Lanes {
 
 impl SeriesScalar for Lanes {
     fn dispatch<F: Task<Lanes>>(rows: &mut [Lanes], _: usize, task: F) {
-        pulp::Arch::new().dispatch(Vectorized { rows, task });
-    }
-}
-
-struct Vectorized<'a, F> {
-    rows: &'a mut [Lanes],
-    task: F,
-}
-
-impl<F: Task<Lanes>> pulp::NullaryFnOnce for Vectorized<'_, F> {
-    type Output = ();
-
-    #[inline(always)]
-    fn call(self) {
-        self.task.run(&mut Rows(self.rows));
+        pulp::Arch::new().dispatch(
+            #[inline(always)]
+            move || task.run(&mut Rows(rows)),
+        );
     }
 }
 

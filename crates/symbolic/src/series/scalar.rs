@@ -152,26 +152,13 @@ impl SeriesScalar for f64 {
     }
 
     fn dispatch<F: Task<f64>>(rows: &mut [f64], places: usize, task: F) {
-        pulp::Arch::new().dispatch(Vectorized { rows, places, task });
-    }
-}
-
-struct Vectorized<'a, F> {
-    rows: &'a mut [f64],
-    places: usize,
-    task: F,
-}
-
-impl<F: Task<f64>> pulp::NullaryFnOnce for Vectorized<'_, F> {
-    type Output = ();
-
-    #[inline(always)]
-    fn call(self) {
-        if self.places <= PLACES {
-            self.task.run(&mut Grouped::<[f64; WINDOW]>(self.rows, PhantomData));
-        } else {
-            self.task.run(&mut Grouped::<[f64]>(self.rows, PhantomData));
-        }
+        pulp::Arch::new().dispatch(
+            #[inline(always)]
+            move || match places <= PLACES {
+                true => task.run(&mut Grouped::<[f64; WINDOW]>(rows, PhantomData)),
+                false => task.run(&mut Grouped::<[f64]>(rows, PhantomData)),
+            },
+        );
     }
 }
 

@@ -65,7 +65,7 @@ pub fn nearest<'n>(name: &str, names: impl IntoIterator<Item = &'n str>) -> Opti
     let limit = (name.len() / 3).clamp(1, 3);
     names
         .into_iter()
-        .filter(|other| *other != name)
+        .filter(|other| *other != name && other.chars().count().abs_diff(name.chars().count()) <= limit)
         .map(|other| (strsim::osa_distance(&name.to_ascii_lowercase(), &other.to_ascii_lowercase()), other))
         .filter(|(distance, other)| *distance <= limit && *distance < other.len().max(2))
         .min_by_key(|(distance, other)| (*distance, primes(other).abs_diff(primes(name))))
