@@ -2,15 +2,13 @@
 
 use std::sync::Arc;
 
-use equations::{Equations, Role};
+use equations::{Equations, Named, Role};
 use integrate::{EvaluationError, Gauge};
 use mechanics::{State, System};
-use symbolic::{Bounded, Evaluator, Expr, Scalar, Tape};
+use symbolic::{Evaluator, Expr, Symbol, Tape};
 
 use crate::DecisionError;
-use crate::exact::solve;
 use crate::flow::{flow, timeless};
-use crate::scales;
 
 /// A point of a curve: positions, velocities and accelerations, each of length n.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -85,31 +83,30 @@ impl<F: FnMut(f64) -> Result<Point, EvaluationError>> Curve for Known<F> {
 #[derive(Clone)]
 pub struct Flow {
     programs: Dynamics,
-    instant: Evaluator<f64>,
-    rates: Evaluator<f64>,
     steep: Evaluator<f64>,
+    /// Free constants and parameters.
+    constants: Vec<f64>,
+    /// `t`, states and these, for `steep`.
     inputs: Vec<f64>,
     start: Vec<f64>,
     span: (f64, f64),
-    /// Factors of the equations and sizes of the unknowns of an instant.
-    units: [Vec<f64>; 2],
 }
 
-/// Equations whose instants are linear in their unknowns `z`, as programs for numbers of any kind.
+/// Equations whose instants are linear in their unknowns `z`, for numbers of any kind.
 #[derive(Clone)]
 pub struct Dynamics {
-    pub(crate) coordinates: usize,
-    pub(crate) states: usize,
-    pub(crate) unknowns: usize,
+    coordinates: usize,
+    /// The number of unknowns of each block.
+    pub(crate) blocks: Vec<usize>,
     /// Which coordinate each state is, or is the rate of.
     kinds: Vec<Option<(usize, bool)>>,
     /// Whether time stands in nothing of this.
     pub(crate) timeless: bool,
-    /// `J` (N×N), then `R` at `z = 0`; from parameters, `t, y`.
-    pub(crate) instant: Arc<Tape>,
-    /// Rates of `y`, then `q`, `v`, `a`; from parameters, `t, y, z`.
-    pub(crate) rates: Arc<Tape>,
-    /// Arguments of steep functions from parameters, `t, y`, and their gauges.
+    /// Rates of `y`; outputs are `q`, `v`, `a`. Its constants are the free ones, then parameters.
+    pub(crate) instant: equations::Dynamics,
+    /// Places of these parameters among those of the system.
+    pub(crate) parameters: Vec<usize>,
+    /// Arguments of steep functions from `t, y` and the constants, and their gauges.
     steep: Arc<Tape>,
     gauges: Vec<Gauge>,
     /// `y(t₀)` from parameters, `t, q, v` and the free constants.
@@ -136,32 +133,29 @@ impl Dynamics {
                 "its start needs values for parameters of a removal; hand its motion over as a known curve",
             ));
         }
-        let unknowns = equations.unknowns();
-        let residuals: Vec<Expr> = equations.blocks.iter().flat_map(|b| b.residuals.clone()).collect();
-        let matrix = g.jacobian(&residuals, &unknowns);
-        let free = |e: Expr| unknowns.iter().all(|&z| !g.depends_on(e, z));
-        if !matrix.entries().iter().all(|&e| free(e)) {
+        if equations.blocks.iter().any(|block| equations.linear_system(block).1.is_none()) {
             return Err(unsuited("the equations of one instant are not linear"));
         }
-        if !equations.velocities.iter().all(|&e| free(e)) {
+        let unknowns = equations.unknowns();
+        if equations.velocities.iter().any(|&e| unknowns.iter().any(|&z| g.depends_on(e, z))) {
             return Err(unsuited("velocities are solved for at every instant; take the form in which they are states"));
         }
-        let mut inputs: Vec<_> = system.parameters.iter().map(|p| p.symbol).collect();
-        inputs.push(system.time);
-        let mut at_start = inputs.clone();
-        inputs.extend(equations.state_symbols());
-        at_start.extend(system.positions().into_iter().chain(system.velocities()).chain(equations.constant_symbols()));
-        let at_zero = unknowns.iter().map(|&z| (z, g.zero())).collect();
-        let mut instant = matrix.entries().to_vec();
-        instant.extend(g.substitute_all(&residuals, &at_zero));
-        let instant = g.tape(&inputs, &instant)?;
+        let (mut free, _) = equations.free_parameters();
+        let named = |expression| Named { name: String::new(), expression };
+        let accelerations = g.total_derivatives(&equations.velocities, &flow(system, equations));
+        free.multipliers = accelerations.into_iter().map(named).collect();
+        // handed over last, with what is new in it
+        free.graph = g.clone();
+        free.invariants.clear();
+        let own = |symbol: &Symbol| system.parameters.iter().position(|p| p.symbol == *symbol);
+        let behind = free.constant_symbols().split_off(equations.free_constants.len());
+        let parameters: Option<Vec<usize>> = behind.iter().map(own).collect();
+        let parameters =
+            parameters.ok_or_else(|| unsuited("parameters stand in them that the system does not have"))?;
         let arguments: Vec<Expr> = steep.iter().map(|steep| steep.argument).collect();
-        let arguments = g.tape(&inputs, &arguments)?;
-        inputs.extend(&unknowns);
-        let mut rates: Vec<Expr> = equations.states.iter().map(|y| y.rate).collect();
-        rates.extend(&equations.coordinates);
-        rates.extend(&equations.velocities);
-        rates.extend(g.total_derivatives(&equations.velocities, &flow(system, equations)));
+        let mut at_start: Vec<_> = system.parameters.iter().map(|p| p.symbol).collect();
+        at_start.push(system.time);
+        at_start.extend(system.positions().into_iter().chain(system.velocities()).chain(equations.constant_symbols()));
         let starts: Vec<Expr> = equations.states.iter().map(|y| y.start).collect();
         let (positions, velocities) = (system.positions(), system.velocities());
         let place = |all: &[symbolic::Symbol], symbol| all.iter().position(|s| *s == symbol);
@@ -172,22 +166,19 @@ impl Dynamics {
         Ok(Dynamics {
             kinds: equations.states.iter().map(|y| kind(y.symbol)).collect(),
             coordinates: system.dimension(),
-            states: equations.states.len(),
-            unknowns: unknowns.len(),
+            blocks: equations.blocks.iter().map(|block| block.unknowns.len()).collect(),
             timeless: timeless(system.time, equations),
-            instant,
-            steep: arguments,
+            steep: g.tape(&free.known_symbols(), &arguments)?,
             gauges: steep.iter().map(|steep| steep.gauge).collect(),
-            rates: g.tape(&inputs, &rates)?,
+            instant: equations::Dynamics::new(&free)?,
+            parameters,
             start: g.tape(&at_start, &starts)?,
         })
     }
-}
 
-impl Dynamics {
     /// Steps of one evaluation.
     pub(crate) fn steps(&self) -> usize {
-        self.instant.len() + self.rates.len()
+        self.instant.steps()
     }
 }
 
@@ -210,16 +201,15 @@ impl Flow {
         let parameters: Vec<f64> = system.parameters.iter().map(|p| p.value).collect();
         let at_start = [&parameters[..], &[start.t], &start.q, &start.v, constants].concat();
         let start_states = Evaluator::new(programs.start.clone()).evaluate(&at_start).to_vec();
-        let inputs: Vec<Bounded> =
-            parameters.iter().chain([&start.t]).chain(&start_states).map(|&x| Bounded::from_f64(x)).collect();
-        let matrix = Evaluator::<Bounded>::new(programs.instant.clone()).evaluate(&inputs).to_vec();
+        let own = programs.parameters.iter().map(|&i| parameters[i]);
+        let constants: Vec<f64> = constants.iter().copied().chain(own).collect();
+        let mut programs = programs;
+        programs.instant.set_constants(&constants);
         Flow {
-            units: scales::balanced(programs.unknowns, &matrix),
-            instant: Evaluator::new(programs.instant.clone()),
-            rates: Evaluator::new(programs.rates.clone()),
             steep: Evaluator::new(programs.steep.clone()),
             programs,
-            inputs: parameters,
+            constants,
+            inputs: Vec::new(),
             start: start_states,
             span: (start.t, end),
         }
@@ -245,34 +235,20 @@ impl Curve for Flow {
     }
 
     fn gauged(&mut self, t: f64, states: &[f64], arguments: &mut [f64]) {
-        let parameters = self.inputs.len();
+        self.inputs.clear();
         self.inputs.push(t);
-        self.inputs.extend(states);
+        self.inputs.extend(states.iter().chain(&self.constants));
         arguments.copy_from_slice(self.steep.evaluate(&self.inputs));
-        self.inputs.truncate(parameters);
     }
 
     fn point(&mut self, t: f64, states: &[f64], rates: &mut [f64]) -> Result<Point, EvaluationError> {
-        let parameters = self.inputs.len();
-        self.inputs.push(t);
-        self.inputs.extend(states);
-        let size = self.programs.unknowns;
-        self.instant.evaluate(&self.inputs);
-        let (matrix, rest) = self.instant.values_mut().split_at_mut(size * size);
-        let [factors, sizes] = &self.units;
-        for (i, factor) in factors.iter().enumerate() {
-            matrix[i * size..(i + 1) * size].iter_mut().zip(sizes).for_each(|(x, size)| *x *= factor * size);
-            rest[i] *= factor;
-        }
-        let solved = solve(matrix, rest, size, 1, 1.0);
-        let point = solved.map(|_| {
-            self.inputs.extend(rest.iter().zip(sizes).map(|(z, size)| -z * size));
-            let (of_states, point) = self.rates.evaluate(&self.inputs).split_at(states.len());
-            rates.copy_from_slice(of_states);
-            let part = |i: usize| point[i * self.programs.coordinates..(i + 1) * self.programs.coordinates].to_vec();
-            Point { q: part(0), v: part(1), a: part(2) }
-        });
-        self.inputs.truncate(parameters);
-        point.ok_or_else(|| EvaluationError { reason: format!("the equations of the curve are singular at t = {t}") })
+        let instant = &mut self.programs.instant;
+        instant.solve(t, states).map_err(|failure| EvaluationError {
+            reason: format!("the equations of the curve cannot be solved at t = {t}: {failure}"),
+        })?;
+        rates.copy_from_slice(instant.rates());
+        let point = instant.outputs();
+        let part = |i: usize| point[i * self.programs.coordinates..][..self.programs.coordinates].to_vec();
+        Ok(Point { q: part(0), v: part(1), a: part(2) })
     }
 }

@@ -1,8 +1,7 @@
 //! Scaling: sizes of equations, unknowns and constants from the start, the time and `M`.
 
 use nalgebra::DMatrix;
-use symbolic::Bounded;
-use symbolic::limits::{ITERATIONS, LAST_DIGITS, NOTHING};
+use symbolic::limits::{LAST_DIGITS, NOTHING};
 
 use crate::family::{CostateRate, Instant, Shape};
 
@@ -37,24 +36,6 @@ pub(crate) struct Start<'a> {
 pub(crate) fn power(x: f64) -> f64 {
     let power = x.log2().round().exp2();
     if power > 0.0 && power.is_finite() { power } else { 1.0 }
-}
-
-/// Factors of rows and columns, powers of two, with which the logarithms of a matrix's entries are closest to
-/// zero: in no unit is a pivot that is round-off larger than one that is not.
-pub(crate) fn balanced(size: usize, matrix: &[Bounded]) -> [Vec<f64>; 2] {
-    let mut logarithms = [vec![0.0; size], vec![0.0; size]];
-    let entry =
-        |i: usize, j: usize| Some(matrix[i * size + j]).filter(|x| !x.may_be_zero()).map(|x| x.value.abs().log2());
-    for round in 0..2 * ITERATIONS {
-        let (own, other) = (round % 2, 1 - round % 2);
-        for k in 0..size {
-            let place = |l: usize| if own == 0 { entry(k, l) } else { entry(l, k) };
-            let sums = (0..size).filter_map(|l| Some(place(l)? + logarithms[other][l]));
-            let (count, sum) = sums.fold((0.0, 0.0), |(count, sum), x| (count + 1.0, sum + x));
-            logarithms[own][k] = if count > 0.0 { -sum / count } else { 0.0 };
-        }
-    }
-    logarithms.map(|logarithms| logarithms.into_iter().map(|x| power(x.exp2())).collect())
 }
 
 /// The least of what says a size.

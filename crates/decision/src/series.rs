@@ -1,5 +1,6 @@
 //! Curves and mismatches as power series in the time since the start.
 
+use equations::Programs;
 use symbolic::{Evaluator, Scalar};
 
 use crate::curve::Dynamics;
@@ -69,30 +70,29 @@ impl Dynamics {
             return Err(flaw.into());
         }
         let mut states: Vec<Vec<C>> = first.iter().map(|y| vec![y.coefficient(0)]).collect();
-        let (mut instant, mut rates) =
-            (Evaluator::<Jet<C>>::new(self.instant.clone()), Evaluator::<Jet<C>>::new(self.rates.clone()));
-        let mut solve: Option<SeriesSolve<C>> = None;
-        let size = self.unknowns;
+        let parameters: Vec<Jet<C>> = self.parameters.iter().map(|&i| start.parameters[i]).collect();
+        let mut programs = Programs::<Jet<C>>::plain(&self.instant);
+        let mut solves: Vec<SeriesSolve<C>> = Vec::new();
         loop {
             let k = states.first().map_or(orders, Vec::len);
-            let mut inputs = start.parameters.clone();
-            inputs.push(time(&start.time, k)?);
+            let mut inputs = vec![time(&start.time, k)?];
             inputs.extend(states.iter().zip(&exact).map(|(y, exact)| Jet::series(y, *exact)));
-            let values = instant.evaluate(&inputs);
-            sound(values)?;
-            let (matrix, rest) = values.split_at(size * size);
-            if solve.is_none() {
-                solve = Some(SeriesSolve::new(matrix, size, 1, "curve")?);
+            inputs.extend(constants.iter().chain(&parameters));
+            let known = inputs.len();
+            for (i, (program, &size)) in programs.blocks.iter_mut().zip(&self.blocks).enumerate() {
+                let values = program.evaluate(&inputs[..known]);
+                sound(values)?;
+                let (matrix, rest) = values.split_at(size * size);
+                if i == solves.len() {
+                    solves.push(SeriesSolve::new(matrix, size, 1, "curve")?);
+                }
+                let solve = &mut solves[i];
+                solve.next(matrix, &order(rest, k - 1));
+                let unknown = |i| Jet::series(&solve.solved.iter().map(|z| z[i]).collect::<Vec<C>>(), None);
+                inputs.extend((0..size).map(unknown));
             }
-            let Some(solve) = &mut solve else { continue };
-            solve.next(matrix, &order(rest, k - 1));
-            inputs.extend((0..size).map(|i| {
-                let z: Vec<C> = solve.solved.iter().map(|z| z[i]).collect();
-                Jet::series(&z, None)
-            }));
-            let values = rates.evaluate(&inputs);
-            let (rates, point) = values.split_at(self.states);
             if k < orders {
+                let rates = programs.rates.evaluate(&inputs);
                 sound(rates)?;
                 let over = C::of(Exact::over(k)?)?;
                 for (y, rate) in states.iter_mut().zip(rates) {
@@ -100,17 +100,19 @@ impl Dynamics {
                 }
                 continue;
             }
+            let point = programs.outputs.evaluate(&inputs);
             if let Some(flaw) = point.iter().find_map(Jet::own_flaw) {
                 return Err(flaw.into());
             }
             let mut inputs = start.parameters.clone();
             inputs.push(time(&start.time, orders)?);
             inputs.extend(point);
+            let unknowns = |k: usize| solves.iter().flat_map(|solve| solve.solved[k].iter().copied()).collect();
             return Ok(CurveSeries {
                 inputs,
                 states: states.iter().zip(&exact).map(|(y, exact)| Jet::series(y, *exact)).collect(),
-                determinant: solve.determinant,
-                unknowns: solve.solved.clone(),
+                determinant: solves.iter().fold(one()?, |product, solve| product * solve.determinant),
+                unknowns: (0..orders).map(unknowns).collect(),
                 at_rest: states.iter().all(|y| y[1..].iter().take(1).all(|rate| rate.weight() == 0.0)),
             });
         }

@@ -11,9 +11,9 @@ use crate::outputs::{Cost, Outputs};
 use crate::plan::Plan;
 use crate::planned::Planned;
 use crate::projection::Projector;
+use crate::round_off::Terms;
 use crate::rows::Rows;
 use crate::series::Series;
-use crate::terms::Terms;
 
 /// Compiled equations of motion `ẏ = F(t, y)`.
 ///
@@ -183,7 +183,7 @@ impl Compiled {
         if self.planned.is_some() {
             self.load(t, y);
             self.solve_left()?;
-            if let Some(values) = self.planned.as_mut().and_then(|s| s.rates(&self.instant.inputs)) {
+            if let Some(values) = self.planned.as_mut().and_then(|s| s.trusted_rates(&self.instant.inputs)) {
                 rates.copy_from_slice(values);
                 return Ok(());
             }
@@ -229,7 +229,7 @@ impl Compiled {
         if self.planned.is_some() {
             self.load(t, y);
             self.solve_left()?;
-            if let Some(values) = self.planned.as_mut().and_then(|s| s.outputs(&self.instant.inputs)) {
+            if let Some(values) = self.planned.as_mut().and_then(|s| s.trusted_outputs(&self.instant.inputs)) {
                 return Ok(self.instant.sizes.outputs(values));
             }
         }

@@ -121,6 +121,12 @@ impl<T: Real> Dynamics<T> {
         series.expand(&self.inputs, 1.0, order, (&mut self.blocks, 1), |block, residual| block.factors.solve(residual));
     }
 
+    /// Instructions of one evaluation of all programs.
+    pub fn steps(&self) -> usize {
+        let blocks: usize = self.blocks.iter().map(|block| block.program.tape().len()).sum();
+        blocks + self.rates.tape().len() + self.outputs.tape().len()
+    }
+
     pub(crate) fn load(&mut self, t: T, y: &[T]) {
         self.inputs[0] = t;
         self.inputs[1..1 + y.len()].copy_from_slice(y);

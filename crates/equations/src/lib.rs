@@ -81,7 +81,6 @@ mod rows;
 mod series;
 mod steep;
 mod tangents;
-mod terms;
 
 pub use blocks::EvaluationFailure;
 pub use compiled::Compiled;
@@ -95,6 +94,7 @@ pub use formulation::{Derivation, DerivationError, Formulation, Needs, parameter
 pub use lanes::LaneEquations;
 pub use outputs::{Cost, Outputs};
 pub use plan::{Collected, Plan};
+pub use planned::Programs;
 pub use series::Series;
 pub use tangents::Tangents;
 

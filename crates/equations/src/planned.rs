@@ -1,19 +1,52 @@
 //! Rates and outputs of a plan, as straight-line programs.
 
-use symbolic::{CompileError, Evaluator, Expr, Symbol};
+use symbolic::{CompileError, Evaluator, Expr, Scalar, Symbol};
 
+use crate::compiled::Compiled;
+use crate::dynamics::Dynamics;
 use crate::equations::Equations;
 use crate::plan::Plan;
 
 /// Compiled definitions: one tape for rates and one for outputs, each without what only the other needs.
 #[derive(Clone)]
-pub(crate) struct Planned {
-    pub(crate) rates: Evaluator<f64>,
-    pub(crate) outputs: Evaluator<f64>,
-    pub(crate) watched: bool,
+pub(crate) struct Planned<T = f64> {
+    pub(crate) rates: Evaluator<T>,
+    outputs: Evaluator<T>,
+    watched: bool,
     /// Places in `(t, y, constants, z)` of what the tapes take.
     pub(crate) places: Vec<usize>,
-    inputs: Vec<f64>,
+    inputs: Vec<T>,
+}
+
+/// Programs of compiled equations in another number type: of the plain plan, and of the chosen one.
+#[derive(Clone)]
+pub struct Programs<T> {
+    /// Rates, from `t, y, constants, z`.
+    pub rates: Evaluator<T>,
+    /// Coordinates, velocities, multipliers and invariants.
+    pub outputs: Evaluator<T>,
+    /// Of each block the matrix `∂R/∂z`, row-major, then `R`: for a block that is linear at `z = 0`.
+    pub blocks: Vec<Evaluator<T>>,
+    pub(crate) planned: Option<Planned<T>>,
+}
+
+impl<T: Scalar> Programs<T> {
+    /// Without a chosen plan.
+    pub fn plain(instant: &Dynamics) -> Self {
+        let Dynamics { rates, outputs, blocks, .. } = instant;
+        let blocks = blocks.iter().map(|block| again(&block.program)).collect();
+        Programs { rates: again(rates), outputs: again(outputs), blocks, planned: None }
+    }
+
+    pub(crate) fn of(compiled: &Compiled) -> Self {
+        let planned = compiled.planned.as_ref().map(Planned::again);
+        Programs { planned, ..Programs::plain(&compiled.instant) }
+    }
+}
+
+/// A program in another number type.
+pub(crate) fn again<T: Scalar>(program: &Evaluator<f64>) -> Evaluator<T> {
+    Evaluator::new(program.tape().clone())
 }
 
 impl Planned {
@@ -42,7 +75,7 @@ impl Planned {
 
     /// Whether the definitions can be trusted at these values; where they always can, that costs nothing.
     pub(crate) fn is_trusted(&mut self, values: &[f64]) -> bool {
-        !self.watched || self.rates(values).is_some()
+        !self.watched || self.trusted_rates(values).is_some()
     }
 
     /// Number of instructions of one evaluation of the rates.
@@ -51,20 +84,43 @@ impl Planned {
     }
 
     /// The rates; `None` where they cannot be trusted.
-    pub(crate) fn rates(&mut self, values: &[f64]) -> Option<&[f64]> {
-        let inputs = gather(&mut self.inputs, &self.places, values);
-        trusted(self.rates.evaluate(inputs), self.watched)
+    pub(crate) fn trusted_rates(&mut self, values: &[f64]) -> Option<&[f64]> {
+        trusted(self.rates(values))
     }
 
-    /// As [`Planned::rates`].
-    pub(crate) fn outputs(&mut self, values: &[f64]) -> Option<&[f64]> {
+    /// As [`Planned::trusted_rates`].
+    pub(crate) fn trusted_outputs(&mut self, values: &[f64]) -> Option<&[f64]> {
+        trusted(self.outputs(values))
+    }
+
+    /// The same in another number type.
+    fn again<T: Scalar>(&self) -> Planned<T> {
+        Planned {
+            rates: again(&self.rates),
+            outputs: again(&self.outputs),
+            watched: self.watched,
+            places: self.places.clone(),
+            inputs: vec![T::from_f64(0.0); self.places.len()],
+        }
+    }
+}
+
+impl<T: Scalar> Planned<T> {
+    /// The rates, and the condition if that is watched.
+    pub(crate) fn rates(&mut self, values: &[T]) -> (&[T], &[T]) {
         let inputs = gather(&mut self.inputs, &self.places, values);
-        trusted(self.outputs.evaluate(inputs), self.watched)
+        apart(self.rates.evaluate(inputs), self.watched)
+    }
+
+    /// The outputs, in the same way.
+    pub(crate) fn outputs(&mut self, values: &[T]) -> (&[T], &[T]) {
+        let inputs = gather(&mut self.inputs, &self.places, values);
+        apart(self.outputs.evaluate(inputs), self.watched)
     }
 }
 
 /// What the tapes take; nothing is copied where it stands together.
-pub(crate) fn gather<'a, T: Copy>(room: &'a mut [T], places: &[usize], values: &'a [T]) -> &'a [T] {
+fn gather<'a, T: Copy>(room: &'a mut [T], places: &[usize], values: &'a [T]) -> &'a [T] {
     let count = places.len();
     if places.last().is_none_or(|&last| last < count) {
         return &values[..count];
@@ -75,8 +131,11 @@ pub(crate) fn gather<'a, T: Copy>(room: &'a mut [T], places: &[usize], values: &
     room
 }
 
-fn trusted(values: &[f64], watched: bool) -> Option<&[f64]> {
-    let (wanted, condition) = values.split_at(values.len() - usize::from(watched));
+fn apart<T>(values: &[T], watched: bool) -> (&[T], &[T]) {
+    values.split_at(values.len() - usize::from(watched))
+}
+
+fn trusted<'a>((wanted, condition): (&'a [f64], &[f64])) -> Option<&'a [f64]> {
     let safe = condition.iter().all(|&x| x <= Plan::LIMIT) && wanted.iter().all(|x| x.is_finite());
     safe.then_some(wanted)
 }

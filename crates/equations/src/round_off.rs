@@ -4,15 +4,23 @@ use symbolic::{Bounded, Evaluator, Scalar};
 
 use crate::blocks::{CompiledBlock, EvaluationFailure};
 use crate::compiled::Compiled;
-use crate::terms::Terms;
+use crate::plan::Plan;
+use crate::planned::{Programs, again};
+
+/// Programs in numbers that carry the sum of magnitudes behind them: [`Bounded`].
+#[derive(Clone)]
+pub(crate) struct Terms {
+    programs: Programs<Bounded>,
+    steep: Evaluator<Bounded>,
+}
 
 impl Compiled {
     /// With its programs in terms, which are made once.
     fn with_terms<T>(&mut self, evaluate: impl FnOnce(&mut Self, &mut Terms) -> T) -> T {
-        let mut terms = self.terms.take().unwrap_or_else(|| {
-            let programs = [&self.instant.rates, &self.instant.outputs, &self.steep.program];
-            Box::new(Terms::new(programs, &self.instant.blocks, self.planned.as_ref()))
-        });
+        let mut terms = self
+            .terms
+            .take()
+            .unwrap_or_else(|| Box::new(Terms { programs: Programs::of(self), steep: again(&self.steep.program) }));
         let found = evaluate(self, &mut terms);
         self.terms = Some(terms);
         found
@@ -27,7 +35,7 @@ impl Compiled {
         self.solve_instant(t, y)?;
         let (inputs, count) = (bounded(&self.instant.inputs), self.instant.sizes.invariants);
         let of_last = |values: &[Bounded]| magnitudes(&values[values.len() - count..]);
-        Ok(self.with_terms(|_, terms| of_last(terms.outputs.evaluate(&inputs))))
+        Ok(self.with_terms(|_, terms| of_last(terms.programs.outputs.evaluate(&inputs))))
     }
 
     /// The sum of magnitudes behind each rate at `(t, y)`, including that of the unknowns `z` of the instant:
@@ -41,7 +49,7 @@ impl Compiled {
     pub fn terms_of_rates(&mut self, t: f64, y: &[f64]) -> Result<Vec<f64>, EvaluationFailure> {
         self.with_terms(|compiled, terms| {
             let inputs = compiled.in_terms(t, y, y, terms)?;
-            Ok(magnitudes(terms.rates.evaluate(&inputs)))
+            Ok(magnitudes(terms.programs.rates.evaluate(&inputs)))
         })
     }
 
@@ -54,11 +62,12 @@ impl Compiled {
     pub fn terms_of_evaluation(&mut self, t: f64, y: &[f64]) -> Result<Vec<f64>, EvaluationFailure> {
         self.with_terms(|compiled, terms| {
             let inputs = compiled.inputs_in_terms(t, y, y, terms, Elimination::Counted)?;
-            let mut rates = magnitudes(terms.rates.evaluate(&inputs));
-            let mut outputs = magnitudes(terms.outputs.evaluate(&inputs));
-            if let Some(planned) = &mut terms.planned {
-                planned.rates(&inputs, &mut rates);
-                planned.outputs(&inputs, &mut outputs);
+            let mut rates = magnitudes(terms.programs.rates.evaluate(&inputs));
+            let mut outputs = magnitudes(terms.programs.outputs.evaluate(&inputs));
+            // an elimination in a fixed order may add up more than a factorization
+            if let Some(planned) = &mut terms.programs.planned {
+                raise(&mut rates, planned.rates(&inputs));
+                raise(&mut outputs, planned.outputs(&inputs));
             }
             rates.extend(&outputs[2 * compiled.instant.sizes.coordinates..][..compiled.instant.sizes.multipliers]);
             Ok(rates)
@@ -81,7 +90,7 @@ impl Compiled {
                     program.evaluate(if block.linear { &inputs[..compiled.instant.sizes.known()] } else { &inputs });
                 magnitudes(&values[..block.size * block.size])
             };
-            let matrices: Vec<_> = compiled.instant.blocks.iter().zip(&mut terms.blocks).map(matrix).collect();
+            let matrices: Vec<_> = compiled.instant.blocks.iter().zip(&mut terms.programs.blocks).map(matrix).collect();
             let derivatives = compiled.jacobian.as_ref().expect("compiled with_jacobian");
             Ok(derivatives.terms(&inputs, &mut compiled.instant.blocks, &matrices))
         })
@@ -102,7 +111,7 @@ impl Compiled {
     fn terms_of_outputs(&mut self, t: f64, y: &[f64], states: &[f64]) -> Result<Vec<f64>, EvaluationFailure> {
         self.with_terms(|compiled, terms| {
             let inputs = compiled.in_terms(t, y, states, terms)?;
-            Ok(magnitudes(terms.outputs.evaluate(&inputs)))
+            Ok(magnitudes(terms.programs.outputs.evaluate(&inputs)))
         })
     }
 
@@ -147,12 +156,19 @@ impl Compiled {
         let known = self.instant.sizes.known();
         let mut inputs = bounded(&self.instant.inputs);
         inputs[1..].iter_mut().zip(states).for_each(|(y, size)| y.magnitude = size.abs());
-        for (block, program) in self.instant.blocks.iter_mut().zip(&mut terms.blocks) {
+        for (block, program) in self.instant.blocks.iter_mut().zip(&mut terms.programs.blocks) {
             let terms = terms_of_unknowns(block, program, &inputs, known, elimination);
             let first = known + block.first;
             inputs[first..].iter_mut().zip(terms).for_each(|(z, terms)| z.magnitude = z.magnitude.max(terms));
         }
         Ok(inputs)
+    }
+}
+
+/// To what was added up by a plan, where that is trusted, if it is more.
+fn raise(magnitudes: &mut [f64], (wanted, condition): (&[Bounded], &[Bounded])) {
+    if condition.iter().all(|x| x.value <= Plan::LIMIT) && wanted.iter().all(|x| x.value.is_finite()) {
+        magnitudes.iter_mut().zip(wanted).for_each(|(m, x)| *m = m.max(x.magnitude));
     }
 }
 

@@ -16,28 +16,20 @@ use symbolic::{Dual, Evaluator, LANES, Scalar};
 use crate::blocks::{CompiledBlock, EvaluationFailure};
 use crate::compiled::Compiled;
 use crate::outputs::Outputs;
+use crate::planned::{Programs, again};
 use crate::series::Series;
 
 /// Tapes of [`Compiled`] in numbers with tangents. Clone it for another thread.
 #[derive(Clone)]
 pub struct Tangents {
     directions: usize,
-    /// Rates and outputs in the chosen plan, and in the plain one.
-    planned: Option<[Evaluator<Dual>; 2]>,
-    plain: [Evaluator<Dual>; 2],
-    blocks: Vec<Evaluator<Dual>>,
+    programs: Programs<Dual>,
     projector: Option<Evaluator<Dual>>,
     factors: Factors,
     series: Option<Series<Dual>>,
     plain_series: Option<Series<Dual>>,
     /// `t, y, constants, z` in this order.
     inputs: Vec<Dual>,
-    /// What the chosen plan takes of these.
-    taken: Vec<Dual>,
-}
-
-fn again(program: &Evaluator<f64>) -> Evaluator<Dual> {
-    Evaluator::new(program.tape().clone())
 }
 
 impl Tangents {
@@ -50,15 +42,12 @@ impl Tangents {
         let room = compiled.projector.as_ref().map_or(0, |p| p.places.len() + p.constraints);
         Tangents {
             directions,
-            planned: compiled.planned.as_ref().map(|planned| [again(&planned.rates), again(&planned.outputs)]),
-            plain: [again(&compiled.instant.rates), again(&compiled.instant.outputs)],
-            blocks: compiled.instant.blocks.iter().map(|block| again(&block.program)).collect(),
+            programs: Programs::of(compiled),
             projector: compiled.projector.as_ref().map(|projector| again(&projector.program)),
             factors: Factors::new(room),
             series: compiled.series.as_ref().map(Series::again),
             plain_series: compiled.plain_series.as_ref().map(Series::again),
             inputs: vec![Dual::from_f64(0.0); compiled.instant.inputs.len()],
-            taken: vec![Dual::from_f64(0.0); compiled.planned.as_ref().map_or(0, |planned| planned.places.len())],
         }
     }
 
@@ -185,14 +174,12 @@ impl Tangents {
         which: usize,
     ) -> Result<&[Dual], EvaluationFailure> {
         let trusted = self.solve(compiled, t, y)?;
-        let (Some(planned), Some(places)) = (&mut self.planned, compiled.planned.as_ref().filter(|_| trusted)) else {
-            return Ok(self.plain[which].evaluate(&self.inputs));
-        };
-        for (x, &place) in self.taken.iter_mut().zip(&places.places) {
-            *x = self.inputs[place];
-        }
-        let values = planned[which].evaluate(&self.taken);
-        Ok(&values[..values.len() - usize::from(places.watched)])
+        let Programs { rates, outputs, planned, .. } = &mut self.programs;
+        Ok(match planned.as_mut().filter(|_| trusted) {
+            Some(planned) if which == 0 => planned.rates(&self.inputs).0,
+            Some(planned) => planned.outputs(&self.inputs).0,
+            None => [rates, outputs][which].evaluate(&self.inputs),
+        })
     }
 
     /// The unknowns of the instant with their derivatives: those of blocks left, or where the plan is not to
@@ -210,7 +197,7 @@ impl Tangents {
             }
             // the factors of a Newton iteration are those of the point before the last
             for _ in 0..if block.linear { 1 } else { 2 } {
-                let mut residual = residual(block, &mut self.blocks[k], &self.inputs, known);
+                let mut residual = residual(block, &mut self.programs.blocks[k], &self.inputs, known);
                 each_part(&mut residual, |part| block.factors.solve(part));
                 for (z, change) in self.inputs[known + block.first..].iter_mut().zip(residual) {
                     z.tangents = z.tangents - change.tangents;
