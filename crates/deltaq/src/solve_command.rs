@@ -99,7 +99,13 @@ pub(crate) fn run(arguments: &SolveArguments, quiet: bool) -> Result<Answer> {
             };
             let derivatives = derived.as_ref().map_or(Vec::new(), |derived| columns.derivative_names(derived));
             let names = [columns.names(), columns.error_names(), program.names().to_vec(), derivatives].concat();
-            header(&names)? + &rows.map(line).collect::<String>()
+            let mut text = header(&names)?;
+            for line in rows.map(line) {
+                let more = text.try_reserve(line.len());
+                more.with_context(|| format!("no memory for a table of {} rows: ask for fewer times", reached.len()))?;
+                text += &line;
+            }
+            text
         }
         Format::Json => {
             let invariants = motion.invariant_drift(&grid)?.into_iter().map(|(name, start, drift)| {

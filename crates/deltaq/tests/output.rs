@@ -223,7 +223,7 @@ fn a_run_without_memory_stops_with_a_cause() {
     let velocities = each(|i| format!("\"x{i}'\" = 1"), "\n");
     let scene = format!(
         "title = \"many\"\n[coordinates]\n{coordinates}\n[system]\nlagrangian = \"{lagrangian}\"\n\
-         [start.velocities]\n{velocities}\n[run]\nduration = 1e4\n"
+         [start.velocities]\n{velocities}\n[run]\nduration = 1e5\n"
     );
     fs::write(&file, scene).expect("written");
     let call = format!(
@@ -237,9 +237,9 @@ fn a_run_without_memory_stops_with_a_cause() {
         (output.status.code(), text(&output.stderr))
     };
     // what few times need is little
-    let (code, stderr) = solve("0,1e4");
+    let (code, stderr) = solve("0,1e5");
     assert_eq!(code, Some(0), "{stderr}");
-    let (code, stderr) = solve("0:1e4:60001");
+    let (code, stderr) = solve("0:1e5:60001");
     assert_eq!(code, Some(3), "{stderr}");
     assert!(stderr.contains("no memory for more"), "{stderr}");
 }

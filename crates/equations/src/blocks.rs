@@ -3,9 +3,13 @@
 use symbolic::limits::{CONTRACTION, HALF_THE_DIGITS, ITERATIONS, LAST_DIGITS};
 use symbolic::{Bounded, CompileError, Evaluator, Scalar, Symbol};
 
-use crate::dynamics::Real;
 use crate::equations::{Block, Equations};
 use mechanics::linear::{Factors, PIVOT_LIMIT, Singular};
+
+/// A number type of some precision, in which instants are solved and expanded.
+pub trait Real: SeriesScalar + Entry {}
+
+impl<T: SeriesScalar + Entry> Real for T {}
 
 /// Equations that cannot be evaluated at a point.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]

@@ -3,15 +3,10 @@
 use mechanics::linear::Entry;
 use symbolic::{CompileError, Evaluator, Expr, SeriesScalar};
 
-use crate::blocks::{CompiledBlock, EvaluationFailure};
+use crate::blocks::{CompiledBlock, EvaluationFailure, Real};
 use crate::equations::{Equations, FreeConstant, Named};
 use crate::outputs::Sizes;
 use crate::series::Series;
-
-/// A number type of some precision, in which instants are solved and expanded.
-pub trait Real: SeriesScalar + Entry {}
-
-impl<T: SeriesScalar + Entry> Real for T {}
 
 /// Equations whose blocks are all solved in numbers, by LU factorization.
 ///

@@ -85,7 +85,7 @@ mod tangents;
 pub use blocks::EvaluationFailure;
 pub use compiled::Compiled;
 pub use definitions::Definitions;
-pub use dynamics::{Dynamics, Real};
+pub use dynamics::Dynamics;
 pub use equations::{
     Block, Chart, ConstraintProjection, ConstraintRows, Equations, FreeConstant, LeftOut, Named, Role, StateVariable,
     Statement,

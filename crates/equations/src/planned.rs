@@ -1,8 +1,7 @@
 //! Rates and outputs of a plan, as straight-line programs.
 
-use symbolic::{CompileError, Evaluator, Expr, Scalar, Symbol};
+use symbolic::{Bounded, CompileError, Evaluator, Expr, Scalar, Symbol};
 
-use crate::compiled::Compiled;
 use crate::dynamics::Dynamics;
 use crate::equations::Equations;
 use crate::plan::Plan;
@@ -38,10 +37,16 @@ impl<T: Scalar> Programs<T> {
         Programs { rates: again(rates), outputs: again(outputs), blocks, planned: None }
     }
 
-    pub(crate) fn of(compiled: &Compiled) -> Self {
-        let planned = compiled.planned.as_ref().map(Planned::again);
-        Programs { planned, ..Programs::plain(&compiled.instant) }
+    pub(crate) fn of(instant: &Dynamics, planned: Option<&Planned>) -> Self {
+        Programs { planned: planned.map(Planned::again), ..Programs::plain(instant) }
     }
+}
+
+/// Programs in numbers that carry the sum of magnitudes behind them: [`Bounded`].
+#[derive(Clone)]
+pub(crate) struct Terms {
+    pub(crate) programs: Programs<Bounded>,
+    pub(crate) steep: Evaluator<Bounded>,
 }
 
 /// A program in another number type.

@@ -42,7 +42,7 @@ impl Tangents {
         let room = compiled.projector.as_ref().map_or(0, |p| p.places.len() + p.constraints);
         Tangents {
             directions,
-            programs: Programs::of(compiled),
+            programs: Programs::of(&compiled.instant, compiled.planned.as_ref()),
             projector: compiled.projector.as_ref().map(|projector| again(&projector.program)),
             factors: Factors::new(room),
             series: compiled.series.as_ref().map(Series::again),

@@ -24,8 +24,7 @@ use symbolic::{Evaluator, SplitMix, Symbol, Tape};
 use crate::Film;
 use crate::film::expression;
 use crate::part::{Part, Place};
-use crate::question::constant_names;
-use crate::unknown::Unknown;
+use crate::unknown::{Unknown, constant_names};
 
 /// Random unknowns are integers of either sign up to 2 to one of these powers: functions are taken of them.
 const BITS: [u32; 3] = [20, 8, 3];

@@ -5,8 +5,8 @@ use comparison::{Answer, Pairing, costates_of, membership, multipliers_of};
 use motion::{Choice, VAKONOMIC};
 use scene::Scene;
 
-use crate::question::{constant_names, is_constant};
-use crate::unknown::CLOCK;
+use crate::question::is_constant;
+use crate::unknown::{CLOCK, constant_names};
 use crate::{Film, Fit, Problem};
 
 /// Parts of a film over which constants of least mismatch are taken.

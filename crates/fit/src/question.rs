@@ -3,7 +3,7 @@
 use equations::{Formulation, Needs};
 use mechanics::{ConstantsRule, Parameter};
 use motion::{
-    Choice, FIRST_ORDER, FORMULATIONS, Settings, UnknownFormulation, VAKONOMIC_COSTATE, constants_of, costate_names,
+    Choice, FIRST_ORDER, FORMULATIONS, Settings, UnknownFormulation, VAKONOMIC_COSTATE, constants_of,
     formulation, is_costate,
 };
 use scene::Scene;
@@ -119,11 +119,6 @@ pub(crate) fn problem_of(
     };
     let choice = Choice { constants, ..choice.clone() };
     Ok(Problem::new(scene, &choice, films, &unknowns, &question.settings)?.robust(question.robust))
-}
-
-/// Names of the constants that motions of `choice` start from.
-pub(crate) fn constant_names(scene: &Scene, choice: &Choice) -> Vec<String> {
-    choice.removal.as_ref().map_or_else(|| scene.multiplier_names(), |removal| costate_names(scene, removal))
 }
 
 /// Whether a number is a multiplier or a costate at the start.

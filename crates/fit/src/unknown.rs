@@ -2,6 +2,7 @@
 
 use std::str::FromStr;
 
+use motion::{Choice, costate_names};
 use scene::Scene;
 
 use crate::film::positive;
@@ -122,4 +123,9 @@ impl FromStr for Unknown {
         };
         Ok(Unknown { name: name.into(), film, start, prior, bound })
     }
+}
+
+/// Names of the constants that motions of `choice` start from.
+pub(crate) fn constant_names(scene: &Scene, choice: &Choice) -> Vec<String> {
+    choice.removal.as_ref().map_or_else(|| scene.multiplier_names(), |removal| costate_names(scene, removal))
 }
