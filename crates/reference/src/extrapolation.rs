@@ -4,7 +4,7 @@
 //! Hairer, Nørsett & Wanner, *Solving Ordinary Differential Equations I*, II.9.
 
 use crate::instant::Instant;
-use crate::taylor::SHORTEST;
+use crate::limits::SHORTEST;
 use crate::{ReferenceError, Wide};
 
 /// Rows of the table; order 2 · ROWS. More rows magnify round-off: by 1e3 with these, by 1e5 with 18.

@@ -5,7 +5,7 @@ use mechanics::linear::Factors;
 use symbolic::limits::ITERATIONS;
 use symbolic::{CompileError, Evaluator, Expr, SeriesTape, SeriesWorkspace, Symbol, Tape};
 
-use crate::start::SMALL;
+use crate::limits::SMALL;
 use crate::{ReferenceError, Wide};
 
 const INSTANT: &str = "equations of the instant";

@@ -14,6 +14,7 @@ mod double_double;
 mod error;
 mod extrapolation;
 mod instant;
+mod limits;
 mod metric;
 mod reference;
 mod start;

@@ -12,10 +12,8 @@ use symbolic::limits::ITERATIONS;
 use symbolic::{Evaluator, Expr, Symbol};
 
 use crate::instant::{parameters, subtract};
+use crate::limits::SMALL;
 use crate::{ReferenceError, Wide};
-
-/// The relative step after which one more step leaves round-off only.
-pub(crate) const SMALL: f64 = 1e-18;
 
 const VELOCITY: &str = "constraint at the start";
 const REMOVAL: &str = "parametrization at the start";

@@ -7,10 +7,8 @@ use equations::Equations;
 use symbolic::{CompileError, Expr, SeriesInput, SeriesTape, SeriesWorkspace};
 
 use crate::instant::Instant;
+use crate::limits::SHORTEST;
 use crate::{ReferenceError, Wide};
-
-/// Shortest step, relative to the time.
-pub(crate) const SHORTEST: f64 = 1e-12;
 
 pub(crate) const NAME: &str = "Taylor series";
 
