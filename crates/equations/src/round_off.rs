@@ -10,10 +10,12 @@ use crate::planned::{Programs, Terms, again};
 impl Compiled {
     /// With its programs in terms, which are made once.
     fn with_terms<T>(&mut self, evaluate: impl FnOnce(&mut Self, &mut Terms) -> T) -> T {
-        let mut terms = self
-            .terms
-            .take()
-            .unwrap_or_else(|| Box::new(Terms { programs: Programs::of(&self.instant, self.planned.as_ref()), steep: again(&self.steep.program) }));
+        let mut terms = self.terms.take().unwrap_or_else(|| {
+            Box::new(Terms {
+                programs: Programs::of(&self.instant, self.planned.as_ref()),
+                steep: again(&self.steep.program),
+            })
+        });
         let found = evaluate(self, &mut terms);
         self.terms = Some(terms);
         found

@@ -6,8 +6,8 @@
 
 use motion::shooting::Minimum;
 
-use crate::distribution::normal_tails;
-use crate::fit::{RISE, RISE_AT_BOUND};
+use crate::distribution::{RISE, normal_tails};
+use crate::fit::RISE_AT_BOUND;
 use crate::profile::Profile;
 use crate::{Estimate, Fit, FitError, Problem, Unknown};
 

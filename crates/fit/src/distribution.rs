@@ -56,6 +56,9 @@ fn ln_gamma(a: f64) -> f64 {
     (a - 0.5) * a.ln() - a + 0.5 * (2.0 * std::f64::consts::PI).ln() + series - shift
 }
 
+/// χ² by which a number of 95 % rises.
+pub const RISE: f64 = 3.841_458_820_694_124;
+
 /// A formulation with one unknown less than that of the least χ², or with as many, is excluded where its χ²
 /// is this much above: by noise, where it is right, in one of 9,300 films.
 pub const EXCLUDED: f64 = 15.0;

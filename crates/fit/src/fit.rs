@@ -4,15 +4,14 @@ use motion::shooting::{Minimum, least_from};
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use crate::distribution::normal_tails;
+use crate::distribution::{RISE, normal_tails};
 use crate::profile::{CLOSE, Profile};
 use crate::residual_tests::{ResidualTest, residual_tests};
 use crate::search::{Excluding, Found, search};
 use crate::shown::{Near, Shown, moving, off_stationary, shown};
 use crate::{Film, FitError, Problem, Residual, Unknown};
 
-/// χ² by which a number of 95 % rises, and where it is at its bound: `½χ²₀ + ½χ²₁`.
-pub const RISE: f64 = 3.841_458_820_694_124;
+/// χ² by which a number of 95 % rises where it is at its bound: `½χ²₀ + ½χ²₁`.
 pub(crate) const RISE_AT_BOUND: f64 = 2.705_543_454_095_404;
 /// Times the steps of the best motion that one of a profile may take.
 const PROFILE_STEPS: usize = 5;

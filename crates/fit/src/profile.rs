@@ -12,7 +12,7 @@ use motion::shooting::Minimum;
 use nalgebra::{DMatrix, DVector, Dyn, SVD};
 
 use crate::Problem;
-use crate::fit::RISE;
+use crate::distribution::RISE;
 use crate::least::{Stage, least, scaled};
 
 /// Smallest singular value over the largest, of a Jacobian with columns of length one, below which unknowns

@@ -3,8 +3,8 @@
 use equations::{Formulation, Needs};
 use mechanics::{ConstantsRule, Parameter};
 use motion::{
-    Choice, FIRST_ORDER, FORMULATIONS, Settings, UnknownFormulation, VAKONOMIC_COSTATE, constants_of,
-    formulation, is_costate,
+    Choice, FIRST_ORDER, FORMULATIONS, Settings, UnknownFormulation, VAKONOMIC_COSTATE, constants_of, formulation,
+    is_costate,
 };
 use scene::Scene;
 

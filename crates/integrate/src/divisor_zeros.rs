@@ -8,14 +8,12 @@
 
 use crate::dense::segment_with_slope;
 use crate::events::Segment;
+use crate::limits::{HUGE, ROUNDINGS};
 use crate::options::{Method, Options};
 use crate::root::{GOLDEN, SECTIONS};
-use crate::step_resolution::HUGE;
 use crate::system::{Failure, System};
 use crate::taylor_step::{DEFECT, LEAST_RELATIVE};
 
-/// Round-off of rates, at most, over what one rounding makes of their terms.
-pub(crate) const ROUNDINGS: f64 = 16.0;
 /// The parabola comes near zero where it comes under this part of the smaller end.
 const NEAR: f64 = 0.02;
 /// Approaches on the straight line between two states, to their last digits.

@@ -73,6 +73,7 @@ mod error;
 mod events;
 mod interrupt;
 mod lanes;
+mod limits;
 mod options;
 mod problem;
 mod radau5;

@@ -4,9 +4,9 @@ use std::fmt;
 use std::sync::Arc;
 
 use crate::interrupt::Interrupt;
+use crate::limits::HUGE;
 use crate::problem::Start;
 use crate::status::{Before, Solution};
-use crate::step_resolution::HUGE;
 use crate::stepper::shortest_step;
 use crate::system::System;
 

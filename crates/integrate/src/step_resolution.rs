@@ -7,8 +7,8 @@
 //! than [`GAUGE_LIMIT`]: the method has to look closer. So is one along which it would if arguments were off
 //! by their round-off.
 
-use crate::divisor_zeros::ROUNDINGS;
 use crate::events::Segment;
+use crate::limits::{HUGE, ROUNDINGS};
 use crate::problem::Gauge;
 use crate::system::{Failure, System};
 
@@ -20,8 +20,6 @@ pub const GAUGE_NODES: usize = 9;
 const PARTS: usize = 16;
 /// Round-off of differences of arguments, in parts of the largest argument.
 const ARGUMENT_DIGITS: f64 = 64.0 * f64::EPSILON;
-/// Numbers are clamped to ± this, so that differences and squares stay finite.
-pub(crate) const HUGE: f64 = 1e100;
 
 /// Arguments of gauges, at the time reached and along the step.
 pub(crate) struct StepResolution {

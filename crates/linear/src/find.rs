@@ -6,11 +6,10 @@ use nalgebra::{DMatrix, DVector};
 use symbolic::limits::{ITERATIONS, NOTHING};
 
 use crate::LinearError;
+use crate::limits::ROUNDINGS;
 use crate::linearization::{Moving, moving};
 use crate::point::{COORDINATES, Point, VELOCITIES};
 
-/// Round-off of a sum or of what was halved as often, over its last digit.
-pub(crate) const ROUNDINGS: f64 = 64.0;
 /// Steps of Runge and Kutta along one displacement.
 const PARTS: usize = 100;
 

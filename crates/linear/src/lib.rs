@@ -54,6 +54,7 @@ pub mod core;
 mod discs;
 mod error;
 mod find;
+mod limits;
 mod linearization;
 mod point;
 mod scales;

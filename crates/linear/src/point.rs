@@ -6,7 +6,7 @@ use motion::{Choice, Prepared, Setting, Settings, derive_at, formulation_in, pre
 use nalgebra::DMatrix;
 
 use crate::LinearError;
-use crate::find::ROUNDINGS;
+use crate::limits::ROUNDINGS;
 use crate::weyl::Weyl;
 
 /// Compiled equations and a point `(t, y)`.

@@ -1,6 +1,6 @@
 //! Other writings of a scene file: the motions are the same, or are those on one leaf or branch.
 
-use crate::case::INSTANTS;
+use motion::band::INSTANTS;
 use motion::{CHETAEV, Choice, Settings, choices_among, solve_choice};
 use scene::Scene;
 use toml::{Table, Value};

@@ -6,7 +6,7 @@
 use equations::{Dynamics, Real};
 
 use crate::ReferenceError;
-use crate::taylor::SHORTEST;
+use crate::limits::SHORTEST;
 
 /// Rows of the table; order 2 · ROWS. More rows magnify round-off: by 1e3 with these, by 1e5 with 18.
 const ROWS: usize = 12;

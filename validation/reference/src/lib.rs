@@ -13,6 +13,7 @@ mod cache;
 mod double_double;
 mod error;
 mod extrapolation;
+mod limits;
 mod metric;
 mod reference;
 mod start;

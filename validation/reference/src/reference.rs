@@ -267,10 +267,10 @@ impl<'a, T: Real> Runs<'a, T> {
         let mut agreement = Agreement::default();
         let (mut errors, mut masses, mut constraint_residual) = (Vec::new(), Vec::new(), 0.0_f64);
         for (i, point) in tighter.iter().enumerate() {
-            metric.load(T::from_f64(self.times[i]), point);
+            metric.load(T::from_f64(self.times[i]), [&point.coordinates, &point.velocities]);
             constraint_residual = constraint_residual.max(metric.constraint_residual());
-            let methods = metric.distance(point, &extrapolation[i]);
-            let taylor = metric.distance(point, &looser[i]);
+            let methods = metric.distance(&point.coordinates, &extrapolation[i].coordinates);
+            let taylor = metric.distance(&point.coordinates, &looser[i].coordinates);
             agreement.methods = agreement.methods.max(methods);
             agreement.taylor = agreement.taylor.max(taylor);
             errors.push(methods.max(taylor));

@@ -12,9 +12,7 @@ use symbolic::limits::ITERATIONS;
 use symbolic::{Evaluator, Expr, Symbol};
 
 use crate::ReferenceError;
-
-/// The relative step after which one more step leaves round-off only.
-pub(crate) const SMALL: f64 = 1e-18;
+use crate::limits::SMALL;
 
 const VELOCITY: &str = "constraint at the start";
 const REMOVAL: &str = "parametrization at the start";

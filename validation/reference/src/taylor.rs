@@ -7,9 +7,7 @@ use equations::{Dynamics, Equations, Real, Series};
 use symbolic::CompileError;
 
 use crate::ReferenceError;
-
-/// Shortest step, relative to the time.
-pub(crate) const SHORTEST: f64 = 1e-12;
+use crate::limits::SHORTEST;
 
 pub(crate) const NAME: &str = "Taylor series";
 

@@ -7,7 +7,7 @@ use nalgebra::storage::Owned;
 use nalgebra::{DMatrix, DVector, Dyn};
 
 use super::{BoundaryError, Residuals, SINGULAR, ShootOptions, Shot};
-use crate::step_resolution::HUGE;
+use crate::limits::HUGE;
 
 /// A guess this much better than the tolerance is not improved; for others Jacobians are taken.
 pub const AT_ONCE: f64 = 1e-3;
