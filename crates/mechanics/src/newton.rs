@@ -1,7 +1,7 @@
 //! Newton's method for `r(x) = 0` with any number of equations and unknowns: the one Newton of the crate.
 //!
 //! Each step is the shortest `s` that minimizes `‖W (r + J s)‖`: Gauss–Newton by singular values, or by `Q R`
-//! where a large `J` is far from singular. It is damped by halving until `‖W r‖` falls. `W` scales the rows of
+//! where a large `J` is far from singular. Steps are halved until `‖W r‖` falls. `W` scales the rows of
 //! `J` to 1, so that the units of the equations do not matter. Convergence is quadratic at a regular root; a
 //! linear system is solved by one step, and every root gets one step more for the sake of its last digits.
 
