@@ -1,9 +1,9 @@
 //! Newton's method for `r(x) = 0` with any number of equations and unknowns: the one Newton of the crate.
 //!
-//! Each step is the shortest `s` that minimizes `‖W (r + J s)‖` (Gauss–Newton through a singular value
-//! decomposition; large systems that are far from singular through `Q R`), damped by halving until `‖W r‖` falls. `W` scales the rows of `J` to 1, so that the units
-//! of the equations do not matter. Convergence is quadratic at a regular root; a linear system is solved by
-//! one step, and every root gets one step more for the sake of its last digits.
+//! Each step is the shortest `s` that minimizes `‖W (r + J s)‖`: Gauss–Newton by singular values, or by `Q R`
+//! where a large `J` is far from singular. Steps are halved until `‖W r‖` falls. `W` scales the rows of
+//! `J` to 1, so that the units of the equations do not matter. Convergence is quadratic at a regular root; a
+//! linear system is solved by one step, and every root gets one step more for the sake of its last digits.
 
 use nalgebra::{DMatrix, DVector};
 use symbolic::limits::ITERATIONS;
@@ -220,8 +220,8 @@ fn damped(
     None
 }
 
-/// Singular values of the row-scaled `J`, padded with zero rows to all n right singular vectors; or the factors
-/// of [`triangular`] in their place.
+/// Singular values of the row-scaled `J`, padded with zero rows to all n right singular vectors; or what
+/// [`triangular`] finds instead.
 struct Decomposition {
     weights: DVector<f64>,
     factors: SingularValues,
