@@ -9,8 +9,8 @@ use crate::jacobian::Jacobian;
 use crate::outputs::{Cost, Outputs};
 use crate::plan::Plan;
 use crate::planned::Planned;
+use crate::programs::Terms;
 use crate::projection::Projector;
-use crate::round_off::Terms;
 use crate::rows::Rows;
 use crate::series::Series;
 

@@ -1,17 +1,11 @@
 //! Equations of motion at one instant, in numbers of any kind: `ẏ = F(t, y, z)` with `R(z; t, y) = 0`.
 
-use mechanics::linear::Entry;
-use symbolic::{CompileError, Evaluator, Expr, SeriesScalar};
+use symbolic::{CompileError, Evaluator, Expr};
 
-use crate::blocks::{CompiledBlock, EvaluationFailure};
+use crate::blocks::{CompiledBlock, EvaluationFailure, Real};
 use crate::equations::{Equations, FreeConstant, Named};
 use crate::outputs::Sizes;
 use crate::series::Series;
-
-/// A number type of some precision, in which instants are solved and expanded.
-pub trait Real: SeriesScalar + Entry {}
-
-impl<T: SeriesScalar + Entry> Real for T {}
 
 /// Equations whose blocks are all solved in numbers, by LU factorization.
 ///

@@ -2,8 +2,6 @@
 
 use symbolic::{CompileError, Evaluator, Expr, Scalar, Symbol};
 
-use crate::compiled::Compiled;
-use crate::dynamics::Dynamics;
 use crate::equations::Equations;
 use crate::plan::Plan;
 
@@ -16,32 +14,6 @@ pub(crate) struct Planned<T = f64> {
     /// Places in `(t, y, constants, z)` of what the tapes take.
     pub(crate) places: Vec<usize>,
     inputs: Vec<T>,
-}
-
-/// Programs of compiled equations in another number type: of the plain plan, and of the chosen one.
-#[derive(Clone)]
-pub struct Programs<T> {
-    /// Rates, from `t, y, constants, z`.
-    pub rates: Evaluator<T>,
-    /// Coordinates, velocities, multipliers and invariants.
-    pub outputs: Evaluator<T>,
-    /// Of each block the matrix `∂R/∂z`, row-major, then `R`: for a block that is linear at `z = 0`.
-    pub blocks: Vec<Evaluator<T>>,
-    pub(crate) planned: Option<Planned<T>>,
-}
-
-impl<T: Scalar> Programs<T> {
-    /// Without a chosen plan.
-    pub fn plain(instant: &Dynamics) -> Self {
-        let Dynamics { rates, outputs, blocks, .. } = instant;
-        let blocks = blocks.iter().map(|block| again(&block.program)).collect();
-        Programs { rates: again(rates), outputs: again(outputs), blocks, planned: None }
-    }
-
-    pub(crate) fn of(compiled: &Compiled) -> Self {
-        let planned = compiled.planned.as_ref().map(Planned::again);
-        Programs { planned, ..Programs::plain(&compiled.instant) }
-    }
 }
 
 /// A program in another number type.
@@ -94,7 +66,7 @@ impl Planned {
     }
 
     /// The same in another number type.
-    fn again<T: Scalar>(&self) -> Planned<T> {
+    pub(crate) fn again<T: Scalar>(&self) -> Planned<T> {
         Planned {
             rates: again(&self.rates),
             outputs: again(&self.outputs),

@@ -16,7 +16,8 @@ use symbolic::{Dual, Evaluator, LANES, Scalar};
 use crate::blocks::{CompiledBlock, EvaluationFailure};
 use crate::compiled::Compiled;
 use crate::outputs::Outputs;
-use crate::planned::{Programs, again};
+use crate::planned::again;
+use crate::programs::Programs;
 use crate::series::Series;
 
 /// Tapes of [`Compiled`] in numbers with tangents. Clone it for another thread.
@@ -45,7 +46,7 @@ impl Tangents {
         let room = compiled.projector.as_ref().map_or(0, |p| p.places.len() + p.constraints);
         Tangents {
             directions,
-            programs: Programs::of(compiled),
+            programs: Programs::of(&compiled.instant, compiled.planned.as_ref()),
             projector: compiled.projector.as_ref().map(|projector| again(&projector.program)),
             factors: Factors::new(room),
             series: compiled.series.as_ref().map(Series::again),

@@ -4,7 +4,18 @@ use equations::Real;
 use mechanics::System;
 use symbolic::{CompileError, Evaluator, Symbol};
 
-use crate::reference::Point;
+/// Outputs of a motion at one time, in extended precision.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Point<T> {
+    /// `q`.
+    pub coordinates: Vec<T>,
+    /// `q̇`.
+    pub velocities: Vec<T>,
+    /// Multipliers or costates.
+    pub multipliers: Vec<T>,
+    /// The states `y` of the equations.
+    pub states: Vec<T>,
+}
 
 /// `M = ∂²L/∂v²` and `f` at one point of a motion.
 pub(crate) struct Metric<T> {

@@ -3,7 +3,7 @@
 use equations::{Dynamics, Equations, Real};
 use mechanics::{State, System};
 
-use crate::metric::Metric;
+use crate::metric::{Metric, Point};
 use crate::start::{Start, start};
 use crate::taylor::Taylor;
 use crate::{DoubleDouble, ReferenceError, extrapolation};
@@ -19,19 +19,6 @@ pub struct Question<'a> {
     pub equations: &'a Equations,
     /// Values of the free constants, taken as exact.
     pub constants: &'a [f64],
-}
-
-/// Outputs of a motion at one time, in extended precision.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Point<T> {
-    /// `q`.
-    pub coordinates: Vec<T>,
-    /// `q̇`.
-    pub velocities: Vec<T>,
-    /// Multipliers or costates.
-    pub multipliers: Vec<T>,
-    /// The states `y` of the equations.
-    pub states: Vec<T>,
 }
 
 /// Largest distances between the runs behind a reference, `√|Δqᵀ M Δq|`: the kinetic metric.
