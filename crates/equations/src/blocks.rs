@@ -1,10 +1,10 @@
 //! The blocks of one instant: `R(z; t, y) = 0`, solved for `z`.
 
 use symbolic::limits::{CONTRACTION, HALF_THE_DIGITS, ITERATIONS, LAST_DIGITS};
-use symbolic::{Bounded, CompileError, Evaluator, Scalar, Symbol};
+use symbolic::{Bounded, CompileError, Evaluator, Scalar, SeriesScalar, Symbol};
 
 use crate::equations::{Block, Equations};
-use mechanics::linear::{Factors, PIVOT_LIMIT, Singular};
+use mechanics::linear::{Entry, Factors, PIVOT_LIMIT, Singular};
 
 /// A number type of some precision, in which instants are solved and expanded.
 pub trait Real: SeriesScalar + Entry {}

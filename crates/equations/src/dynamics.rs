@@ -1,7 +1,6 @@
 //! Equations of motion at one instant, in numbers of any kind: `ẏ = F(t, y, z)` with `R(z; t, y) = 0`.
 
-use mechanics::linear::Entry;
-use symbolic::{CompileError, Evaluator, Expr, SeriesScalar};
+use symbolic::{CompileError, Evaluator, Expr};
 
 use crate::blocks::{CompiledBlock, EvaluationFailure, Real};
 use crate::equations::{Equations, FreeConstant, Named};

@@ -74,6 +74,7 @@ mod outputs;
 mod parts;
 mod plan;
 mod planned;
+mod programs;
 mod projection;
 mod recombination;
 mod round_off;
@@ -82,7 +83,7 @@ mod series;
 mod steep;
 mod tangents;
 
-pub use blocks::EvaluationFailure;
+pub use blocks::{EvaluationFailure, Real};
 pub use compiled::Compiled;
 pub use definitions::Definitions;
 pub use dynamics::Dynamics;
@@ -94,7 +95,7 @@ pub use formulation::{Derivation, DerivationError, Formulation, Needs, parameter
 pub use lanes::LaneEquations;
 pub use outputs::{Cost, Outputs};
 pub use plan::{Collected, Plan};
-pub use planned::Programs;
+pub use programs::Programs;
 pub use series::Series;
 pub use tangents::Tangents;
 

@@ -1,8 +1,7 @@
 //! Rates and outputs of a plan, as straight-line programs.
 
-use symbolic::{Bounded, CompileError, Evaluator, Expr, Scalar, Symbol};
+use symbolic::{CompileError, Evaluator, Expr, Scalar, Symbol};
 
-use crate::dynamics::Dynamics;
 use crate::equations::Equations;
 use crate::plan::Plan;
 
@@ -15,38 +14,6 @@ pub(crate) struct Planned<T = f64> {
     /// Places in `(t, y, constants, z)` of what the tapes take.
     pub(crate) places: Vec<usize>,
     inputs: Vec<T>,
-}
-
-/// Programs of compiled equations in another number type: of the plain plan, and of the chosen one.
-#[derive(Clone)]
-pub struct Programs<T> {
-    /// Rates, from `t, y, constants, z`.
-    pub rates: Evaluator<T>,
-    /// Coordinates, velocities, multipliers and invariants.
-    pub outputs: Evaluator<T>,
-    /// Of each block the matrix `∂R/∂z`, row-major, then `R`: for a block that is linear at `z = 0`.
-    pub blocks: Vec<Evaluator<T>>,
-    pub(crate) planned: Option<Planned<T>>,
-}
-
-impl<T: Scalar> Programs<T> {
-    /// Without a chosen plan.
-    pub fn plain(instant: &Dynamics) -> Self {
-        let Dynamics { rates, outputs, blocks, .. } = instant;
-        let blocks = blocks.iter().map(|block| again(&block.program)).collect();
-        Programs { rates: again(rates), outputs: again(outputs), blocks, planned: None }
-    }
-
-    pub(crate) fn of(instant: &Dynamics, planned: Option<&Planned>) -> Self {
-        Programs { planned: planned.map(Planned::again), ..Programs::plain(instant) }
-    }
-}
-
-/// Programs in numbers that carry the sum of magnitudes behind them: [`Bounded`].
-#[derive(Clone)]
-pub(crate) struct Terms {
-    pub(crate) programs: Programs<Bounded>,
-    pub(crate) steep: Evaluator<Bounded>,
 }
 
 /// A program in another number type.
@@ -99,7 +66,7 @@ impl Planned {
     }
 
     /// The same in another number type.
-    fn again<T: Scalar>(&self) -> Planned<T> {
+    pub(crate) fn again<T: Scalar>(&self) -> Planned<T> {
         Planned {
             rates: again(&self.rates),
             outputs: again(&self.outputs),

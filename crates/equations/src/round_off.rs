@@ -5,16 +5,15 @@ use symbolic::{Bounded, Evaluator, Scalar};
 use crate::blocks::{CompiledBlock, EvaluationFailure};
 use crate::compiled::Compiled;
 use crate::plan::Plan;
-use crate::planned::{Programs, Terms, again};
+use crate::planned::again;
+use crate::programs::{Programs, Terms};
 
 impl Compiled {
     /// With its programs in terms, which are made once.
     fn with_terms<T>(&mut self, evaluate: impl FnOnce(&mut Self, &mut Terms) -> T) -> T {
         let mut terms = self.terms.take().unwrap_or_else(|| {
-            Box::new(Terms {
-                programs: Programs::of(&self.instant, self.planned.as_ref()),
-                steep: again(&self.steep.program),
-            })
+            let programs = Programs::of(&self.instant, self.planned.as_ref());
+            Box::new(Terms { programs, steep: again(&self.steep.program) })
         });
         let found = evaluate(self, &mut terms);
         self.terms = Some(terms);

@@ -16,7 +16,8 @@ use symbolic::{Dual, Evaluator, LANES, Scalar};
 use crate::blocks::{CompiledBlock, EvaluationFailure};
 use crate::compiled::Compiled;
 use crate::outputs::Outputs;
-use crate::planned::{Programs, again};
+use crate::planned::again;
+use crate::programs::Programs;
 use crate::series::Series;
 
 /// Tapes of [`Compiled`] in numbers with tangents. Clone it for another thread.

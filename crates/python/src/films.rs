@@ -8,8 +8,8 @@ use integrate::Interrupt;
 use motion::Settings;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
-use serde_json::json;
 
+use crate::answer::typed;
 use crate::arrays::{Array, Floats, array};
 use crate::background::whole;
 use crate::shared::Shared;
@@ -157,11 +157,11 @@ impl System {
         let work = move || {
             let mut own = films;
             let question = Question { unknowns: &unknowns, law: &law, starts, robust, settings, threads: 0 };
-            let rows = fit_formulations(&scene, &mut own, &question, &wanted)?;
-            let answer = json!(Fitted::of(&scene, &own, &rows)).to_string();
-            Ok::<_, FitError>((rows, answer, own))
+            let rows = fit_formulations(&scene, &mut own, &question, &wanted).map_err(refused)?;
+            let answer = typed(&Fitted::of(&scene, &own, &rows))?;
+            Ok::<_, PyErr>((rows, answer, own))
         };
-        let (rows, answer, films) = background::run(py, &interrupt, work)?.map_err(refused)?;
+        let (rows, answer, films) = background::run(py, &interrupt, work)??;
         let seen = |film: &Film| -> Seen {
             let column = |c: usize| film.rows.iter().map(|row| row[c].unwrap_or(f64::NAN)).collect();
             let columns = film.columns.iter().enumerate().map(|(c, own)| (own.name.clone(), own.sigma, column(c)));
@@ -205,11 +205,11 @@ impl System {
         };
         let work = move || {
             let question = Question { unknowns: &unknowns, law: &law, starts, robust: None, settings, threads: 0 };
-            let design = Design::new(&scene, &films, &question, &over, &aim)?;
-            let best = design.best(points, threads)?;
-            Ok(json!(Designed::of(&scene, &films, &design, &best)).to_string())
+            let design = Design::new(&scene, &films, &question, &over, &aim).map_err(refused)?;
+            let best = design.best(points, threads).map_err(refused)?;
+            typed(&Designed::of(&scene, &films, &design, &best))
         };
-        background::run(py, &Interrupt::default(), work)?.map_err(refused)
+        background::run(py, &Interrupt::default(), work)?
     }
 }
 

@@ -13,6 +13,7 @@ macro_rules! doc {
 }
 
 mod again;
+mod answer;
 mod arguments;
 mod arrays;
 mod at_run_time;

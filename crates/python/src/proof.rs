@@ -6,6 +6,7 @@ use integrate::Interrupt;
 use pyo3::prelude::*;
 use scene::Number;
 
+use crate::answer::typed;
 use crate::system::System;
 use crate::{arguments, background, errors};
 
@@ -24,8 +25,7 @@ impl System {
         sound.map_err(|contradicted| errors::DeltaqError::new_err(contradicted.to_string()))?;
         Ok(match found {
             Err(reason) => (None, Some(reason)),
-            // as the program writes it, field by field
-            Ok(found) => (Some(serde_json::to_string(&NoMultipliers::of(&found, &self.set())).map_err(written)?), None),
+            Ok(found) => (Some(typed(&NoMultipliers::of(&found, &self.set()))?), None),
         })
     }
 
@@ -40,12 +40,8 @@ impl System {
             NoAnswer::Equations(fault) => errors::solve(fault),
             other => errors::DeltaqError::new_err(other.to_string()),
         })?;
-        serde_json::to_string(&found.answer()).map_err(written)
+        typed(&found.answer())
     }
-}
-
-fn written(fault: serde_json::Error) -> PyErr {
-    errors::DeltaqError::new_err(fault.to_string())
 }
 
 impl System {

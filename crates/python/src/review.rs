@@ -2,9 +2,9 @@
 
 use integrate::Interrupt;
 use pyo3::prelude::*;
-use review::{Asked, ReviewError, Reviewed, review, states};
-use serde_json::json;
+use review::{Asked, Reviewed, review, states};
 
+use crate::answer::typed;
 use crate::system::System;
 use crate::{arguments, background, errors};
 
@@ -27,10 +27,11 @@ impl System {
         let asked = Asked { formulation: arguments::formulation(formulation)?, wheres, tolerance };
         let (scene, interrupt) = (self.scene()?, Interrupt::default());
         let work = move || {
-            let found = review(&scene, &file, &text, &asked)?;
-            Ok::<_, ReviewError>(json!(Reviewed { scene: &scene.name, file: &file, found: &found }).to_string())
+            let found = review(&scene, &file, &text, &asked);
+            let found = found.map_err(|fault| errors::DeltaqError::new_err(fault.to_string()))?;
+            typed(&Reviewed { scene: &scene.name, file: &file, found: &found })
         };
-        background::run(py, &interrupt, work)?.map_err(|fault| errors::DeltaqError::new_err(fault.to_string()))
+        background::run(py, &interrupt, work)?
     }
 
     /// States at which a program can be asked for its accelerations.

@@ -23,4 +23,5 @@ pub use cache::{CachedReference, digest};
 pub use double_double::DoubleDouble;
 pub use error::ReferenceError;
 pub use mechanics::linear::Entry;
-pub use reference::{Agreement, Point, Question, Reference, reference, reference_in};
+pub use metric::Point;
+pub use reference::{Agreement, Question, Reference, reference, reference_in};

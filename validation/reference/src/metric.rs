@@ -4,6 +4,19 @@ use equations::Real;
 use mechanics::System;
 use symbolic::{CompileError, Evaluator, Symbol};
 
+/// Outputs of a motion at one time, in extended precision.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Point<T> {
+    /// `q`.
+    pub coordinates: Vec<T>,
+    /// `q̇`.
+    pub velocities: Vec<T>,
+    /// Multipliers or costates.
+    pub multipliers: Vec<T>,
+    /// The states `y` of the equations.
+    pub states: Vec<T>,
+}
+
 /// `M = ∂²L/∂v²` and `f` at one point of a motion.
 pub(crate) struct Metric<T> {
     program: Evaluator<T>,
@@ -21,9 +34,9 @@ impl<T: Real> Metric<T> {
         Ok(Metric { program: Evaluator::new(tape), dimension: system.dimension(), parameters })
     }
 
-    pub(crate) fn load(&mut self, t: T, [q, v]: [&[T]; 2]) {
+    pub(crate) fn load(&mut self, t: T, point: &Point<T>) {
         let parameters: Vec<T> = self.parameters.iter().map(|&x| T::from_f64(x)).collect();
-        self.program.evaluate(&[&[t], q, v, &parameters].concat());
+        self.program.evaluate(&[&[t], &point.coordinates[..], &point.velocities, &parameters].concat());
     }
 
     /// `M`, row-major, as `f64`.
@@ -35,9 +48,10 @@ impl<T: Real> Metric<T> {
         self.program.values()[self.dimension * self.dimension..].iter().fold(0.0, |worst: f64, f| worst.max(f.size()))
     }
 
-    /// `√|Δqᵀ M Δq|` between two places.
-    pub(crate) fn distance(&self, a: &[T], b: &[T]) -> f64 {
-        let difference: Vec<f64> = a.iter().zip(b).map(|(&a, &b)| (a - b).to_f64()).collect();
+    /// `√|Δqᵀ M Δq|` between two points.
+    pub(crate) fn distance(&self, a: &Point<T>, b: &Point<T>) -> f64 {
+        let pairs = a.coordinates.iter().zip(&b.coordinates);
+        let difference: Vec<f64> = pairs.map(|(&a, &b)| (a - b).to_f64()).collect();
         length(&self.mass(), &difference)
     }
 }

@@ -3,7 +3,7 @@
 use equations::{Dynamics, Equations, Real};
 use mechanics::{State, System};
 
-use crate::metric::Metric;
+use crate::metric::{Metric, Point};
 use crate::start::{Start, start};
 use crate::taylor::Taylor;
 use crate::{DoubleDouble, ReferenceError, extrapolation};
@@ -19,19 +19,6 @@ pub struct Question<'a> {
     pub equations: &'a Equations,
     /// Values of the free constants, taken as exact.
     pub constants: &'a [f64],
-}
-
-/// Outputs of a motion at one time, in extended precision.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Point<T> {
-    /// `q`.
-    pub coordinates: Vec<T>,
-    /// `q̇`.
-    pub velocities: Vec<T>,
-    /// Multipliers or costates.
-    pub multipliers: Vec<T>,
-    /// The states `y` of the equations.
-    pub states: Vec<T>,
 }
 
 /// Largest distances between the runs behind a reference, `√|Δqᵀ M Δq|`: the kinetic metric.
@@ -267,10 +254,10 @@ impl<'a, T: Real> Runs<'a, T> {
         let mut agreement = Agreement::default();
         let (mut errors, mut masses, mut constraint_residual) = (Vec::new(), Vec::new(), 0.0_f64);
         for (i, point) in tighter.iter().enumerate() {
-            metric.load(T::from_f64(self.times[i]), [&point.coordinates, &point.velocities]);
+            metric.load(T::from_f64(self.times[i]), point);
             constraint_residual = constraint_residual.max(metric.constraint_residual());
-            let methods = metric.distance(&point.coordinates, &extrapolation[i].coordinates);
-            let taylor = metric.distance(&point.coordinates, &looser[i].coordinates);
+            let methods = metric.distance(point, &extrapolation[i]);
+            let taylor = metric.distance(point, &looser[i]);
             agreement.methods = agreement.methods.max(methods);
             agreement.taylor = agreement.taylor.max(taylor);
             errors.push(methods.max(taylor));

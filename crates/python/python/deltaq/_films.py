@@ -199,7 +199,7 @@ class FilmFit:
     def __init__(self, system: System, call: dict[str, Any]):
         self.system, self._call = system, call
         self._fitted = system._fit(**call)
-        self.answer: dict[str, Any] = {"schema": "deltaq/fit/2"} | json.loads(self._fitted.answer)
+        self.answer: dict[str, Any] = json.loads(self._fitted.answer)
         self.rows = [FormulationFit(self._fitted, place, row) for place, row in enumerate(self.answer["formulations"])]
 
     @property
@@ -484,7 +484,7 @@ def design(
     found: dict[str, Any] = json.loads(
         self._design(aim, ranges, film, films, list(columns), _sigmas(sigma), list(free), list(law), starts, points, tolerance, max_steps, threads)
     )
-    return Design.of({"schema": "deltaq/design/2"} | found)
+    return Design.of(found)
 
 
 class _DesignPart(_Grid):

@@ -10,8 +10,6 @@ from typing import Any
 from ._native import System
 from ._results import Integrals
 
-_SCHEMA = "deltaq/certificate/2"
-
 
 @dataclass(frozen=True, repr=False)
 class Proof:
@@ -71,7 +69,7 @@ def prove(self: System, almost_every_start: bool = False) -> Proof:
     True
     """
     text, because = self._certificate(almost_every_start)
-    return Proof(None if text is None else {"schema": _SCHEMA} | json.loads(text), because)
+    return Proof(None if text is None else json.loads(text), because)
 
 
 def integrals(self: System, formulation: str = "chetaev", degree: int = 2, names: Iterable[str] = ()) -> Integrals:
@@ -106,4 +104,4 @@ def integrals(self: System, formulation: str = "chetaev", degree: int = 2, names
     if not 1 <= degree <= 3:
         raise ValueError(f"degree: {degree} is not from 1 to 3")
     found: dict[str, Any] = json.loads(self._integrals(formulation, degree, list(names)))
-    return Integrals.of({"schema": "deltaq/integrals/1"} | found)
+    return Integrals.of(found)
