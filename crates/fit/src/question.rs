@@ -8,7 +8,7 @@ use motion::{
 };
 use scene::Scene;
 
-use crate::unknown::with_start;
+use crate::unknown::{constant_names, with_start};
 use crate::{Film, FitError, Problem, Unknown};
 
 /// Residuals above this size count linearly where the weight of outliers is to be reduced.
