@@ -15,6 +15,9 @@ const LARGE: f64 = 1e-5;
 const MOVE: f64 = 1.0 / (1 << 20) as f64;
 const LEAST: f64 = 1e-30;
 const MOVES: usize = 11;
+/// Shares that differ by more than this part of one, of displacements that differ in their last digits, are
+/// round-off.
+const SAME_SHARE: f64 = 0.1;
 /// A quantity that changes by less than this fraction of itself does not depend on the displaced state.
 const SEEN: f64 = 1.0 / (1 << 30) as f64;
 
@@ -190,7 +193,13 @@ impl Probe<'_> {
             let mut y = self.y.to_vec();
             y[j] += step;
             if let Some(part) = share(self, &y) {
-                return Some((y[j] - self.y[j]) / part);
+                let size = (y[j] - self.y[j]) / part;
+                // what the last digits of a displacement out of all proportion change is round-off
+                y[j] *= 1.0 + UNITS * f64::EPSILON;
+                let is_told = reach == 0.0
+                    || step <= reach / MOVE
+                    || share(self, &y).is_some_and(|there| (there / part - 1.0).abs() < SAME_SHARE);
+                return is_told.then_some(size);
             }
             step /= MOVE;
         }
