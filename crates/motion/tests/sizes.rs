@@ -2,7 +2,7 @@
 
 use equations::Compiled;
 use motion::parts::{sizes, unbounded_sizes};
-use motion::{Metric, REMOVED_CONSTRAINT, choices, derive_at};
+use motion::{Metric, REMOVED_CONSTRAINT, Settings, VAKONOMIC_COSTATE, choices, derive_at, solve_choice};
 use scene::Scene;
 
 /// A free particle goes `v T` far; its size by which it is integrated is at most 1.
@@ -45,4 +45,21 @@ fn what_another_state_drives_has_the_size_that_it_makes_of_it() {
         let found = sizes(&mut compiled, &mut metric, 0.0, &y, 2.0);
         assert!((found[at("P_y")] / (4.0 * speed) - 1.0).abs() < 1e-3, "{speed}: {names:?} {found:?}");
     }
+}
+
+#[test]
+fn round_off_of_a_large_displacement_says_no_size() {
+    // y' = 0: no velocity depends on p_x, but in the last digits of a displacement by 1e29
+    let text = "title = \"test\"\n[coordinates]\nx = { start = 1.1 }\ny = { start = 1 }\nz = { start = 0.7 }\n[definitions]\n\
+                W = \"angular_velocity(rotation(zxz, 4 - x, (1 + z^2)^x, 2^(1e-3)))\"\n[system]\n\
+                lagrangian = \"(x'^2 + y'^2 + z'^2)/2 + (1 + z^2)^(pi/4)*y'*x' + dot(W, W)/5\"\n\
+                constraints = [\"x' - sqrt(1 + y'^2*(0.1*pi)^2)\"]\nforces = { z = \"z'*pi^(x')\" }\n\
+                [invariants]\nheld = \"z'\"\n[start.velocities]\n\"y'\" = 0\n\"z'\" = 1\n[run]\nduration = 1\n";
+    let scene = Scene::parse("test", text).unwrap();
+    let choice = choices(&scene).into_iter().find(|choice| choice.formulation == VAKONOMIC_COSTATE).unwrap();
+    let equations = derive_at(&scene.system, &scene.start, &choice).unwrap();
+    let (mut compiled, mut metric) = (Compiled::new(&equations).unwrap(), Metric::new(&scene.system).unwrap());
+    let start = solve_choice(&scene, &choice, &Settings::default()).unwrap().states_at(0.0).unwrap();
+    let sizes = unbounded_sizes(&mut compiled, &mut metric, 0.0, &start, 1.0);
+    assert!(sizes.iter().all(|size| *size < 1e3), "{sizes:?}");
 }
