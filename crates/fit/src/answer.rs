@@ -29,6 +29,8 @@ const SAME: f64 = 0.5;
 
 /// A fit with what was fitted.
 type Fitted = Result<(Problem, Fit), FitError>;
+/// Chetaev's motion where it is known, with its problem, and a formulation that fits.
+type Guides<'a> = (Option<(&'a Problem, &'a Choice, &'a Fit)>, Option<&'a (Problem, Fit)>);
 
 /// Fits every formulation that is wanted and gives verdicts. One that cannot be fitted has the reason. Where
 /// standard deviations are estimated, `films` have them afterwards: such that the best formulation leaves as
@@ -259,7 +261,7 @@ fn fit_choices(
     films: &[Film],
     question: &Question,
     first: usize,
-    (near, beside): (Option<(&Problem, &Choice, &Fit)>, Option<&(Problem, Fit)>),
+    (near, beside): Guides,
 ) -> Vec<(Choice, Fitted)> {
     let problem = |choice: &Choice| {
         let mut problem = problem_of(scene, choice, films, question)?;

@@ -264,8 +264,8 @@ fn steps_are_as_long_as_their_impulses_allow() {
 
 #[test]
 fn switches_of_velocities_are_seen_where_velocities_are_unknowns_or_outputs() {
-    // M is not diagonal, so that the costate form solves p = M v at every instant; with a constraint, which is
-    // holonomic, some velocities are combinations of others. All formulations have one motion
+    // M is not diagonal, so that the costate form solves p = M v at every instant; with a constraint, which
+    // is holonomic, some velocities are combinations of others. All formulations have one motion
     let free = ("[coordinates]\nx = { start = 0 }\ny = { start = 0 }", "x'^2/2 + y'^2/2 + cos(y)*x'*y'/2", "[]");
     let bound = (
         "[coordinates]\nx = { start = 0 }\ny = { start = 0 }\nz = { start = 0 }",

@@ -207,7 +207,7 @@ impl ScaledMatrices {
 ///
 /// The largest counts as at least 1, the size of scaled entries: one singular value has no ratio of its own.
 fn ratio(values: &DVector<f64>) -> (f64, Vec<f64>) {
-    let least = values.iter().last().map_or(0.0, |s| s / values.amax().max(1.0));
+    let least = values.iter().next_back().map_or(0.0, |s| s / values.amax().max(1.0));
     (least, values.as_slice().to_vec())
 }
 
