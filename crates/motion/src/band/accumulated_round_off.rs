@@ -155,7 +155,7 @@ pub fn accumulated(
 /// `d`, then `η`: the mean round-off of rates up to some instant, where that is largest, in the direction of
 /// the way that a state goes by its rate, and as a part of the largest rate; of states whose round-off
 /// counts. All of one sign: that in which the looser run is apart from the kept one.
-pub(crate) fn offsets_of(rates_at: &mut Rates, looked: &[Looked], looser: &[Vec<f64>], counts: &[bool]) -> Vec<f64> {
+fn offsets_of(rates_at: &mut Rates, looked: &[Looked], looser: &[Vec<f64>], counts: &[bool]) -> Vec<f64> {
     let zeros = vec![0.0_f64; counts.len()];
     let [mut sums, mut means, mut way, mut farthest] = [(); 4].map(|()| zeros.clone());
     let [mut largest, mut apart, mut rates] = [(); 3].map(|()| zeros.clone());

@@ -5,7 +5,7 @@ use std::iter::zip;
 use integrate::Options;
 
 use super::TwoRuns;
-use super::accumulated_round_off::{Looked, RoundOff, accumulated, is_small, largest, look, look_closer, offsets_of};
+use super::accumulated_round_off::{Looked, RoundOff, accumulated, is_small, largest, look, look_closer};
 use super::limits::{BEFORE_THE_END, BETWEEN, FEW, LOOKS};
 use super::perturbed_rates::perturbed;
 use crate::charts::{self, Course};
@@ -49,21 +49,15 @@ pub(crate) fn round_off(runs: &mut dyn TwoRuns) -> RoundOff {
         closer(runs, &mut looked);
         (looked, looser, sizes)
     };
-    let names = runs.names();
-    let grid = runs.equidistant(LOOKS);
-    let mut rates =
-        |t: f64, y: &[f64], rates: &mut [f64]| runs.states(t).is_some() && runs.compiled().rates(t, y, rates).is_ok();
-    match accumulated(&mut rates, &|| names.clone(), &looked, &looser, &sizes) {
-        // what counts shows at any instant; how much it is at equidistant ones: what is large for the time
-        // of a few steps would be far too much in all of another run
-        RoundOff::Counts(offsets) => {
-            let counts: Vec<bool> = offsets[..sizes.len()].iter().map(|offset| *offset != 0.0).collect();
-            let (looked, looser): (Vec<_>, Vec<_>) =
-                zip(looked, looser).filter(|((t, ..), _)| grid.contains(t)).unzip();
-            RoundOff::Counts(offsets_of(&mut rates, &looked, &looser, &counts))
-        }
-        found => found,
+    let found = rates_of(runs, &looked, &looser, &sizes);
+    if !matches!(found, RoundOff::Counts(_)) {
+        return found;
     }
+    // what is large for the time of a few steps raises a doubt: in all of another run it would be far too
+    // much
+    let grid = runs.equidistant(LOOKS);
+    let (looked, looser): (Vec<_>, Vec<_>) = zip(looked, looser).filter(|((t, ..), _)| grid.contains(t)).unzip();
+    rates_of(runs, &looked, &looser, &sizes)
 }
 
 /// Sums of terms by adjoints at these instants.
@@ -74,6 +68,13 @@ fn closer(runs: &mut dyn TwoRuns, looked: &mut [Looked]) {
             look_closer(runs.compiled(), looked);
         }
     }
+}
+
+fn rates_of(runs: &mut dyn TwoRuns, looked: &[Looked], looser: &[Vec<f64>], sizes: &[f64]) -> RoundOff {
+    let names = runs.names();
+    let mut rates =
+        |t: f64, y: &[f64], rates: &mut [f64]| runs.states(t).is_some() && runs.compiled().rates(t, y, rates).is_ok();
+    accumulated(&mut rates, &|| names.clone(), looked, looser, sizes)
 }
 
 impl Motion {
