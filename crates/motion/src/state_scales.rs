@@ -196,8 +196,7 @@ impl Probe<'_> {
                 let size = (y[j] - self.y[j]) / part;
                 // what the last digits of a displacement out of all proportion change is round-off
                 y[j] *= 1.0 + UNITS * f64::EPSILON;
-                let is_told = reach == 0.0
-                    || step <= reach / MOVE
+                let is_told = step <= reach / MOVE
                     || share(self, &y).is_some_and(|there| (there / part - 1.0).abs() < SAME_SHARE);
                 return is_told.then_some(size);
             }
