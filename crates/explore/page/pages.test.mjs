@@ -104,7 +104,9 @@ export async function taken(page, kinds) {
     for (let i = 0; i < 3000 && !files[kind]; i++) {
       await new Promise((resolve) => setTimeout(resolve, 20));
       const fresh = readdirSync(folder).find((name) => !before.has(name) && !name.endsWith(".crdownload"));
-      if (fresh && existsSync(join(folder, fresh))) files[kind] = { name: fresh, bytes: readFileSync(join(folder, fresh)) };
+      // the name is there, and empty, before what is written is
+      const bytes = fresh && existsSync(join(folder, fresh)) ? readFileSync(join(folder, fresh)) : "";
+      if (bytes.length > 0) files[kind] = { name: fresh, bytes };
     }
     files[kind] ??= { name: "nothing", bytes: Buffer.alloc(0) };
   }
