@@ -45,8 +45,10 @@ impl Equations {
         let defined = self.definitions.iter().map(|(symbol, _)| *symbol);
         let mut told: HashSet<Symbol> = defined.chain(self.known_symbols()).chain(self.unknowns()).collect();
         told.extend(self.parameters.keys());
-        let outputs = self.own.iter().copied().zip(self.coordinates.iter().chain(&self.velocities).copied());
-        let outputs: HashMap<Symbol, Expr> = outputs.filter(|(own, _)| !told.contains(own)).collect();
+        let (q, v) = self.own.split_at(self.own.len() / 2);
+        let outputs = q.iter().zip(&self.coordinates).chain(v.iter().zip(&self.velocities));
+        let outputs: HashMap<Symbol, Expr> =
+            outputs.map(|(&own, &output)| (own, output)).filter(|(own, _)| !told.contains(own)).collect();
         let is_told = |e: &Expr| self.symbols_behind([*e]).is_subset(&told);
         quantities.map(|e| Some(self.graph.substitute(e, &outputs)).filter(is_told)).collect()
     }

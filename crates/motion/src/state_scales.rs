@@ -3,7 +3,7 @@
 use equations::{Compiled, Outputs};
 
 use crate::Metric;
-use crate::band::limits::{ROUND_OFF, UNITS};
+use crate::band::limits::{CERTAINTY, ROUND_OFF, UNITS};
 use crate::band::ulp_perturbation::signs;
 use crate::metric::subtract;
 
@@ -15,9 +15,6 @@ const LARGE: f64 = 1e-5;
 const MOVE: f64 = 1.0 / (1 << 20) as f64;
 const LEAST: f64 = 1e-30;
 const MOVES: usize = 11;
-/// Shares that differ by more than this part of one, of displacements that differ in their last digits, are
-/// round-off.
-const SAME_SHARE: f64 = 0.1;
 /// A quantity that changes by less than this fraction of itself does not depend on the displaced state.
 const SEEN: f64 = 1.0 / (1 << 30) as f64;
 
@@ -194,10 +191,11 @@ impl Probe<'_> {
             y[j] += step;
             if let Some(part) = share(self, &y) {
                 let size = (y[j] - self.y[j]) / part;
-                // what the last digits of a displacement out of all proportion change is round-off
+                // a share is known to a part 1/CERTAINTY; what the last digits of a displacement out of all
+                // proportion change by more is round-off
                 y[j] *= 1.0 + UNITS * f64::EPSILON;
                 let is_told = step <= reach / MOVE
-                    || share(self, &y).is_some_and(|there| (there / part - 1.0).abs() < SAME_SHARE);
+                    || share(self, &y).is_some_and(|there| (there / part - 1.0).abs() < 1.0 / CERTAINTY);
                 return is_told.then_some(size);
             }
             step /= MOVE;
