@@ -1,6 +1,7 @@
 //! Scenes drawn from the whole language, under every command: no panic, no code but those of the guide.
 //!
-//! `DELTAQ_SCENES=20000` draws more of them; `DELTAQ_FIRST=N` begins with scene N.
+//! `DELTAQ_SCENES=20000` draws more of them; `DELTAQ_FIRST=N` begins with scene N; `DELTAQ_PATIENCE=5` stops
+//! commands after 5 s.
 
 use std::collections::BTreeMap;
 use std::fmt::Write;
@@ -11,7 +12,7 @@ use crate::support::{command, text};
 
 /// Scenes of the check.
 const SCENES: u64 = 20;
-/// A command is stopped after this many seconds, which is no fault of it.
+/// A command is stopped after this many seconds, which is not a fault of it.
 const PATIENCE: u64 = 20;
 /// Codes that the guide names, but for those that are faults of the program: 4 and 5.
 const CODES: [i32; 4] = [0, 1, 2, 3];
@@ -261,7 +262,7 @@ fn equations(draw: &mut Draw, names: &[&str]) -> String {
 
 /// The code with which a call ended; or what is wrong with how it did.
 fn ended(scene: u64, call: &[String]) -> Result<Option<i32>, String> {
-    let clock = Instant::now();
+    let (clock, patience) = (Instant::now(), number("DELTAQ_PATIENCE").unwrap_or(PATIENCE));
     let words: Vec<&str> = call.iter().map(|word| &word[..]).collect();
     let mut child = command(&words)
         .args(["--quiet"])
@@ -271,10 +272,10 @@ fn ended(scene: u64, call: &[String]) -> Result<Option<i32>, String> {
         .spawn()
         .expect("it runs");
     while child.try_wait().expect("it ends").is_none() {
-        if clock.elapsed() > Duration::from_secs(PATIENCE) {
+        if clock.elapsed() > Duration::from_secs(patience) {
             child.kill().expect("it can be stopped");
             let _ = child.wait();
-            println!("stopped after {PATIENCE} s: scene {scene}, {}", call.join(" "));
+            println!("stopped after {patience} s: scene {scene}, {}", call.join(" "));
             return Ok(None);
         }
         std::thread::sleep(Duration::from_millis(2));
