@@ -220,10 +220,11 @@ fn judged(fine: &mut Transport, coarse: &mut Transport, paths: &[Path; 2]) -> Re
                     DVector::from_iterator(rows.ncols(), rows.column_iter().map(|x| x.norm_squared()))
                 };
                 let terms = squares(fine.terms_of(&here));
-                let all = terms.sum().sqrt();
+                // what a constant could add is no round-off of the motion
+                let own = terms[constants.len()].sqrt();
                 sums.noise += squares(&here.rows - there.rows) * width.abs();
                 sums.terms += terms * width.abs();
-                sums.moves |= here.acceleration.hypot(here.speed / way) > CERTAINTY * LAST_DIGITS * all;
+                sums.moves |= here.acceleration.hypot(here.speed / way) > CERTAINTY * LAST_DIGITS * own;
             }
             sums.acceleration += (here.acceleration * root).powi(2);
             sums.speed += (here.speed * root).powi(2);

@@ -115,3 +115,24 @@ fn round_off_of_what_balances_is_no_motion() {
     assert!(matches!(proved(&scene).0.this_start, Finding::NotApplicable(_)));
     assert_eq!((decision.verdict, decision.set.dimension()), (Verdict::Contained, 1));
 }
+
+/// In the unit of z a constant of size 1 would add terms of 1e23 to motions of 1e9: no round-off of these.
+#[test]
+fn constants_in_another_unit_hide_no_motion() {
+    let text = r#"
+title = "In small units"
+coordinates = { x = { start = 1.1 }, y = { start = 0.4 }, z = { start = 0.7 }, phi = { start = 0.4 } }
+[system]
+lagrangian = "(x'^2 + y'^2 + z'^2 + phi'^2)/2"
+constraints = ["x' - x*phi*y'", "y + 1e7*z - 7000000.4"]
+forces = { z = "phi'" }
+[start]
+project = true
+velocities = { "z'" = 1, "phi'" = 0 }
+[run]
+duration = 0.5
+"#;
+    let scene = written(text, &[]);
+    assert!(is_vakonomic(&scene).moves());
+    assert_eq!(multipliers(&scene), None);
+}
