@@ -213,12 +213,13 @@ fn followed(
     reason: &mut Option<String>,
 ) -> Result<(Vec<Minimum>, Option<Excluding>), FitError> {
     let (mut part, mut starts, mut excluded_by) = (short, starts, excluded_by);
+    let origin = Some(problem.start()).filter(|_| reason.is_none());
     for number in 0.. {
         if excluded_by.is_some() {
             starts.truncate(1);
         }
         for start in &mut starts {
-            start.unknowns = within(&part, problem.start(), &start.unknowns);
+            start.unknowns = within(&part, origin, &start.unknowns);
         }
         let mut found = refined(&part, starts, scale, Stage::Beginning, reason);
         // beside one that fits no other can be the least
@@ -371,8 +372,10 @@ fn screened(problem: &Problem, moves: &dyn Fn(&str) -> bool, starts: usize) -> V
     [Minimum::start(0, problem.start().to_vec())].into_iter().chain(others).collect()
 }
 
-/// Where motions reach the ends of their films: `theta`, or the first point halfway back to `origin`.
-fn within(problem: &Problem, origin: &[f64], theta: &[f64]) -> Vec<f64> {
+/// Where motions reach the ends of their films: `theta`, or the first point halfway back to an `origin` whose
+/// motion reaches the end of a first beginning.
+fn within(problem: &Problem, origin: Option<&[f64]>, theta: &[f64]) -> Vec<f64> {
+    let Some(origin) = origin.filter(|origin| *origin != theta) else { return theta.to_vec() };
     let mut problem = problem.clone();
     let at = |halvings: i32| -> Vec<f64> {
         let part = 0.5_f64.powi(halvings);
