@@ -142,15 +142,16 @@ impl Comparison {
             let point = &found.decision.set.point;
             let has_others = self.runs[family].outcome.as_ref().is_ok_and(|run| run.constants != *point);
             if has_others && matches!(found.answer(), Answer::SomeProved | Answer::Some { .. }) {
-                let start = Start::Known(Found::given(point.clone()));
+                let open = found.decision.open();
+                let start = Start::Known(Found { open, ..Found::given(point.clone()) });
                 let fitted = fit_run(&self.scene, &mut self.runs, family, decided.curve, start, metric, settings);
                 decided.witness = fitted.map(Option::flatten).map_err(|refused| refused.to_string()).transpose();
             }
         }
     }
 
-    /// Puts the constants that a run has instead of fitted ones that leave a larger gap: a search is no
-    /// reason to go farther away.
+    /// Puts the constants that a run has instead of fitted ones that leave, by more than errors, a larger gap up
+    /// to the same time: a search is no reason to go farther away.
     pub(crate) fn keep_closer(&mut self) {
         for fit in &mut self.fits {
             let (first, second) = (fit.run.min(fit.target), fit.run.max(fit.target));
@@ -158,7 +159,8 @@ impl Comparison {
             let (Some(found), Some(pair), Ok(motion)) = (&mut fit.fitted, pair, &self.runs[fit.run].outcome) else {
                 continue;
             };
-            if found.gap.largest > pair.gap.largest {
+            let is_seen = found.gap.verdict == Verdict::Different && found.gap.end == pair.gap.end;
+            if is_seen && found.gap.largest > pair.gap.largest {
                 let names = constant_names(&motion.equations).into_iter();
                 found.constants = names.zip(motion.constants.iter().copied()).collect();
                 found.gap = pair.gap.clone();

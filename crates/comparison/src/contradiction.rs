@@ -239,9 +239,7 @@ impl Comparison {
         let fault = decided.witness.as_ref().filter(|_| some).and_then(|witness| match witness {
             Err(refused) => Some(format!("with those found there is no motion: {refused}")),
             Ok(fitted) => {
-                // constants are known to fewer digits than motions
-                let least = TRUSTED * fitted.gap.scale;
-                let apart = fitted.gap.points.iter().any(|point| point.gap > point.limit.max(least));
+                let apart = fitted.gap.verdict == Verdict::Different;
                 apart.then(|| format!("those found leave a gap of {:.1e}", fitted.gap.largest))
             }
         });

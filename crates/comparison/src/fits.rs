@@ -202,7 +202,7 @@ pub fn fit_run(
             search(setting(scene), &equations, goal, &aim, metric, settings)?
         }
     };
-    let Some(Found { constants, by_half, starts }) = found else { return Ok(Some(None)) };
+    let Some(Found { constants, by_half, starts, mut open }) = found else { return Ok(Some(None)) };
     let end = goal.end();
     let within = Setting { end, ..setting(scene) };
     let mut gap_of = |constants: &[f64]| -> Result<(Motion, Gap), SolveError> {
@@ -217,10 +217,12 @@ pub fn fit_run(
     }
     let largest = |gap: &Gap| if gap.end == end { gap.largest } else { f64::INFINITY };
     let by_half = if by_half == constants { gap.largest } else { largest(&gap_of(&by_half)?.1) };
-    let is_close = starts > 0 && gap.verdict == Verdict::Different && gap.largest < CLOSE * gap.scale;
-    if is_close && gap.largest <= unknown(scene, &mut motion, metric, settings)? {
-        let because =
-            "a search knows the constants to ten digits, and what is left is less than they leave open".into();
+    if starts > 0 && gap.largest < CLOSE * gap.scale {
+        let size = constants.iter().fold(0.0, |a: f64, c| a.max(c.abs()));
+        open = vec![KNOWN * size; constants.len()];
+    }
+    if gap.verdict == Verdict::Different && gap.largest <= unknown(scene, &mut motion, &open, metric, settings)? {
+        let because = "what is left is less than the digits of the constants leave open".into();
         gap.verdict = Verdict::Undecided { because };
     }
     let names = constant_names(&motion.equations);
@@ -231,22 +233,21 @@ pub fn fit_run(
 /// The part of the constants to which a search knows them.
 const KNOWN: f64 = 1e-10;
 
-/// The largest gap that the digits of a motion's constants make that a search does not know.
+/// The largest gap that changes of a motion's constants make by which they are `open`.
 ///
 /// # Errors
 /// [`SolveError`] where a motion cannot be started or read off.
 pub fn unknown(
     scene: &Scene,
     motion: &mut Motion,
+    open: &[f64],
     metric: &mut Metric,
     settings: &Settings,
 ) -> Result<f64, SolveError> {
-    let constants = motion.constants.clone();
-    let size = constants.iter().fold(0.0, |a: f64, c| a.max(c.abs()));
     let mut gap = 0.0;
-    for j in 0..constants.len() {
-        let mut moved = constants.clone();
-        moved[j] += KNOWN * size;
+    for (j, by) in open.iter().enumerate().filter(|(_, by)| **by > 0.0) {
+        let mut moved = motion.constants.clone();
+        moved[j] += by;
         let within = Setting { end: motion.end(), ..setting(scene) };
         let mut other = solve(within, motion.equations.clone(), &ConstantsRule::Given(moved), settings)?;
         gap += compare_motions(motion, &mut other, metric)?.largest;

@@ -118,6 +118,17 @@ impl Decision {
         self.sizes.moves
     }
 
+    /// How far each constant may be off, but for those that are free: by what moves the mismatch less than the
+    /// noise.
+    pub fn open(&self) -> Vec<f64> {
+        let matrix = self.triangle.columns(0, self.columns.len()).into_owned();
+        let (svd, limit) = (SingularValues::of(&matrix), CERTAINTY * self.sizes.noise);
+        let seen = || (0..svd.values.len()).filter(|&k| svd.values[k] > limit);
+        let part = |i: usize| seen().map(|k| (svd.right[(k, i)] / svd.values[k]).powi(2)).sum::<f64>().sqrt();
+        let each = self.columns.iter().enumerate();
+        each.map(|(i, column)| CERTAINTY * self.noise * part(i) * column.scale.abs()).collect()
+    }
+
     /// Whether a mismatch stands out from the noise.
     pub fn shows(&self, mismatch: f64) -> bool {
         mismatch > CERTAINTY * self.noise

@@ -59,12 +59,14 @@ pub struct Found {
     pub by_half: Vec<f64>,
     /// Number of starts.
     pub starts: usize,
+    /// How far each constant is not known, where no search has found it.
+    pub open: Vec<f64>,
 }
 
 impl Found {
     /// Constants that are known without a search.
     pub fn given(constants: Vec<f64>) -> Found {
-        Found { by_half: constants.clone(), constants, starts: 0 }
+        Found { by_half: constants.clone(), constants, starts: 0, open: Vec::new() }
     }
 }
 
@@ -105,7 +107,7 @@ pub(crate) fn search(
             if differences.is_close(&whole, 1.0) {
                 let constants = differences.squares(&whole, settings).unwrap_or(whole);
                 let starts = aim.guesses.len().max(number + 1);
-                return Ok(Some(Found { by_half: constants.clone(), constants, starts }));
+                return Ok(Some(Found { starts, ..Found::given(constants) }));
             }
         }
         let value = differences.largest(&constants, BEGINNING, FINE);
@@ -139,7 +141,7 @@ pub(crate) fn search(
         let exact = if vanishes { differences.squares(constants, settings) } else { None };
         exact.unwrap_or_else(|| constants.clone())
     };
-    Ok(Some(Found { constants: least(count), by_half: least(count / 2), starts: count }))
+    Ok(Some(Found { by_half: least(count / 2), starts: count, ..Found::given(least(count)) }))
 }
 
 /// The starts of the better half.
