@@ -94,3 +94,16 @@ fn the_smallest_questions_are_answered() {
         assert!(!text.is_empty() && !text.contains("NaN"), "{line}: {text}");
     }
 }
+
+/// Numbers of which an exact factor comes out of a sum, and of its powers another one.
+#[test]
+fn high_powers_of_sums_of_long_numbers_end() {
+    let scene = "title = \"Powers\"\ncoordinates = { x = { start = 0.7 }, y = { start = 0.3 } }\n[system]\n\
+                 lagrangian = \"(x'^2 + y'^2)/2 + (1 + step(y', 0.1, 0.4, 1e-3)^2)^41\"\n\
+                 constraints = [\"x' - y'\"]\n[start]\nvelocities = { \"y'\" = 1 }\n[run]\nduration = 1\n";
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("powers.toml");
+    fs::write(&path, scene).expect("written");
+    let shown = Command::new(env!("CARGO_BIN_EXE_deltaq")).arg("show").arg(path).output().expect("it runs");
+    assert_eq!(shown.status.code(), Some(0), "{}", String::from_utf8_lossy(&shown.stderr));
+}

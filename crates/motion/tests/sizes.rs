@@ -2,7 +2,7 @@
 
 use equations::Compiled;
 use motion::parts::{sizes, unbounded_sizes};
-use motion::{Metric, REMOVED_CONSTRAINT, Settings, VAKONOMIC_COSTATE, choices, derive_at, solve_choice};
+use motion::{CHETAEV, Metric, REMOVED_CONSTRAINT, Settings, VAKONOMIC_COSTATE, choices, derive_at, solve_choice};
 use scene::Scene;
 
 /// A free particle goes `v T` far; its size by which it is integrated is at most 1.
@@ -62,4 +62,20 @@ fn round_off_of_a_large_displacement_says_no_size() {
     let start = solve_choice(&scene, &choice, &Settings::default()).unwrap().states_at(0.0).unwrap();
     let sizes = unbounded_sizes(&mut compiled, &mut metric, 0.0, &start, 1.0);
     assert!(sizes.iter().all(|size| *size < 1e3), "{sizes:?}");
+}
+
+/// Near the end M is singular, where velocities are differences of large terms: not before.
+#[test]
+fn terms_at_a_singular_end_hide_no_change_before() {
+    let text = "title = \"test\"\ncoordinates = { x = { start = 0.3 }, y = { start = 1.1 } }\n\
+                system = { lagrangian = \"(x'^2 + y'^2)/2 + 1.37*(0.1 - x)*x'*y'\" }\n\
+                invariants = { held = \"x'\" }\nstart = { velocities = { \"x'\" = 0.3, \"y'\" = 0.2 } }\n\
+                run = { duration = 2 }\n";
+    let scene = Scene::parse("test", text).unwrap_or_else(|e| panic!("{e}"));
+    for formulation in [CHETAEV, VAKONOMIC_COSTATE] {
+        let choice = choices(&scene).into_iter().find(|choice| choice.formulation == formulation).expect("a choice");
+        let motion = solve_choice(&scene, &choice, &Settings::default()).expect("a motion");
+        let [found] = &motion.breaches[..] else { panic!("{:?}", motion.breaches) };
+        assert!(!motion.is_complete() && found.t < 0.1 && found.estimate < 1e-9, "{} {found:?}", motion.end());
+    }
 }

@@ -92,7 +92,11 @@ impl InvariantMonitor {
         let residuals = self.constraints.evaluate(&self.inputs).iter().map(|f| f.value.abs()).collect();
         self.start = (residuals, start.invariants.clone());
         self.breaches.clear();
-        self.sizes = start.invariants.iter().map(|x| x.abs()).collect();
+        self.forget_sizes();
+    }
+
+    fn forget_sizes(&mut self) {
+        self.sizes = self.start.1.iter().map(|x| x.abs()).collect();
     }
 
     /// The doubt that begins where the scene's own constraints, or what has to be constant, are off by more
@@ -115,6 +119,8 @@ impl InvariantMonitor {
             clear &= holds && self.are_constant(runs, *t, kept);
         }
         let mut errors = Errors::default();
+        // what terms grow to later is no round-off before
+        self.forget_sizes();
         for (t, kept) in kept.iter().filter(|_| !clear) {
             errors.add([kept, &runs.looser(*t).ok()?]);
             if let Some(because) = self.complaint(runs, *t, kept, &errors) {

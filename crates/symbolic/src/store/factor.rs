@@ -124,11 +124,15 @@ impl Arena {
         if inside.len() < 2 {
             return e;
         }
-        let inverse = (base, Rational::integer(-1));
         let (mut cofactors, mut others) = (Vec::new(), Vec::new());
         for (i, &(term, coefficient)) in terms.iter().enumerate() {
             if inside.binary_search(&i).is_ok() {
-                cofactors.push((self.power_product(Number::ONE, vec![(term, Rational::ONE), inverse]), coefficient));
+                let (number, mut factors) = self.monomial(term);
+                // one less of the factor as it stands: its inverse may be written in another content
+                for (_, exponent) in factors.iter_mut().filter(|(factor, _)| *factor == base) {
+                    *exponent = exponent.as_integer().map_or(*exponent, |n| Rational::integer(n - 1));
+                }
+                cofactors.push((self.power_product(number, factors), coefficient));
             } else {
                 others.push((term, coefficient));
             }
