@@ -48,7 +48,7 @@ pub struct LeadingTerm {
 }
 
 /// A growth is compared with its prediction if it was measured within this part of the time in which the
-/// predicted term leads.
+/// predicted term leads. It is measured within as large a part of the common time.
 pub(crate) const LEADS: f64 = 0.3;
 
 impl Growth {
@@ -68,9 +68,8 @@ fn norm(x: &[f64]) -> f64 {
     x.iter().map(|a| a * a).sum::<f64>().sqrt()
 }
 
-/// The shortest fit range, as a fraction of the common time, and the longest.
+/// The shortest fit range, as a fraction of the common time.
 const SHORTEST: f64 = 1e-4;
-const LONGEST: f64 = 0.3;
 /// Where the fit range begins, as a fraction of its end.
 const BEGIN: f64 = 0.15;
 /// Instants in the fit.
@@ -101,7 +100,7 @@ pub fn growth(
     let mut to = horizon * SHORTEST;
     while difference_at(BEGIN * to)?.2 <= FIT_CERTAINTY * limit_at(start + BEGIN * to) {
         to *= 1.5;
-        if to > LONGEST * horizon {
+        if to > LEADS * horizon {
             return Ok(None);
         }
     }

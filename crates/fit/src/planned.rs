@@ -4,6 +4,7 @@ use std::str::FromStr;
 
 use scene::Scene;
 
+use crate::answer::MOST_NUMBERS;
 use crate::film::column;
 use crate::quantity::unit_of;
 use crate::{Deviations, Film, FitError, quantity};
@@ -25,9 +26,6 @@ pub struct Sampling {
     /// Standard deviation of columns that have no other, and the unit it is written in.
     pub sigma: Option<f64>,
 }
-
-/// Samples that a film can have.
-const MOST_SAMPLES: f64 = 1e5;
 
 impl FromStr for Sampling {
     type Err = FitError;
@@ -54,8 +52,8 @@ impl FromStr for Sampling {
         let needed = |x: Option<f64>, what: &str| x.ok_or_else(|| refused(format!("there is no {what}")));
         let (rate, seconds) = (needed(rate, "rate, as in 60Hz")?, needed(seconds, "length, as in 10s")?);
         let samples = (rate * seconds).round();
-        if !(1.0..=MOST_SAMPLES).contains(&samples) {
-            return Err(refused(format!("it has {samples} samples; 1 to {MOST_SAMPLES} are possible")));
+        if !(1.0..=MOST_NUMBERS as f64).contains(&samples) {
+            return Err(refused(format!("it has {samples} samples; 1 to {MOST_NUMBERS} are possible")));
         }
         Ok(Sampling { rate, seconds, sigma })
     }

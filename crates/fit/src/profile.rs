@@ -8,7 +8,7 @@
 //!
 //! until `|J δ|²` is small; where that does not happen, by Levenberg and Marquardt's method.
 
-use motion::shooting::Minimum;
+use motion::shooting::{CHORDS, Minimum};
 use nalgebra::{DMatrix, DVector, Dyn, SVD};
 
 use crate::Problem;
@@ -22,8 +22,7 @@ pub(crate) const SHOWN: f64 = 1e-7;
 const OUTWARDS: usize = 5;
 const STEPS: usize = 15;
 pub(crate) const CLOSE: f64 = 0.05;
-/// Chords in a row, and `|J δ|²` of the last one.
-const CHORDS: usize = 5;
+/// `|J δ|²` of the last chord.
 pub(crate) const LAST: f64 = 0.02;
 /// Distances are halved up to this many times.
 const HALVINGS: usize = 2;

@@ -8,10 +8,6 @@ use symbolic::{Expr, Graph, Matrix, Symbol};
 use crate::elimination::{Candidate, LinearForms, Pivot, SparseMatrix, choose_pivot};
 use crate::{RemovalError, State, System};
 
-/// Terms that multiplying out may make in one elimination. Those of a chain double with each body, and little
-/// cancels in them.
-const TERMS: usize = 5_000;
-
 /// Nodes of a coefficient that is not multiplied out: how many terms it would have is not even counted.
 const LONG: usize = 1_000;
 
@@ -66,7 +62,8 @@ impl SolvedConstraints {
             let value = g.bounded(entry.e, &beside).filter(|value| value.is_finite());
             value.map_or(f64::INFINITY, |value| value.magnitude)
         };
-        let mut terms_left = TERMS;
+        // those of a chain double with each body, and little cancels in them
+        let mut terms_left = TOO_LONG;
         // before − factor · entry, where entry is undivided/pivot
         let mut difference = |before: Entry, factor: Entry, entry: Entry, (undivided, pivot): (Expr, Expr)| {
             let was_zero = before.number == 0.0 && (factor.number == 0.0 || entry.number == 0.0);

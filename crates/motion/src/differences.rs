@@ -18,7 +18,7 @@
 //! unit and is judged by its own size; its round-off is what it scatters by where x moves by its last digits.
 
 use crate::SolveError;
-use crate::band::limits::BETWEEN;
+use crate::band::limits::{BETWEEN, ROUND_OFF};
 use symbolic::limits::OF_TERMS;
 
 /// Weights of the differences of order 8 and of order 6.
@@ -31,8 +31,6 @@ const KINK: [f64; 4] = [14.0 / 5.0, -7.0 / 5.0, 2.0 / 5.0, -1.0 / 20.0];
 const DISTANCES: std::ops::Range<i32> = 2..16;
 /// Error of a derivative over the largest one that is accepted.
 const LIMIT: f64 = 1e-10;
-/// Round-off is looked for at this distance; it is a sample.
-const LAST_DIGITS: f64 = 1.0 / (1_u64 << 44) as f64;
 /// A kink is looked for at these powers of 1/4, is the same at three in turn, and differs by this part of
 /// itself at most.
 const POWERS: std::ops::Range<i32> = 4..20;
@@ -127,7 +125,7 @@ fn sums(x: f64, h: f64, here: &[f64], at: &mut dyn FnMut(f64) -> Values) -> Resu
 fn round_off(here: &[f64], at: &mut dyn FnMut(f64) -> Values) -> Values {
     let mut found: Vec<f64> = here.iter().map(|x| f64::EPSILON * x.abs()).collect();
     for j in 1..5 {
-        let step = LAST_DIGITS * f64::from(j);
+        let step = ROUND_OFF * f64::from(j);
         let (after, before) = (at(step)?, at(-step)?);
         for (i, found) in found.iter_mut().enumerate() {
             *found = found.max(BETWEEN * (after[i] + before[i] - 2.0 * here[i]).abs());

@@ -7,8 +7,9 @@ use integrate::{DenseOutput, Solution, Status, StopCause};
 use mechanics::SingularValues;
 use nalgebra::{DMatrix, DVector};
 use symbolic::Expr;
+use symbolic::limits::LINE;
 
-use crate::band::SAME_STOP;
+use crate::TRUSTED;
 use crate::lost_rank;
 
 /// What helps where steps became too short and no divisor of the equations vanishes.
@@ -87,7 +88,7 @@ impl Ending {
     /// How the kept run ended, unless the looser one stopped while that went on, in a run over this time.
     pub fn joint(kept: Ending, looser: Ending, [start, end]: [f64; 2]) -> Ending {
         // both stop near the same singularity, or for different causes
-        let much_before = |t: f64, later: f64| (later - t) * (end - start).signum() > SAME_STOP * (later - start).abs();
+        let much_before = |t: f64, later: f64| (later - t) * (end - start).signum() > TRUSTED * (later - start).abs();
         match (kept, looser) {
             (Ending::Completed, Ending::Stopped { t, cause }) => Ending::unconfirmed(t, &cause),
             (Ending::Stopped { t: later, .. }, Ending::Stopped { t, cause }) if much_before(t, later) => {
@@ -119,15 +120,13 @@ fn guard_words(equations: &Equations, index: usize) -> String {
 
 /// A quantity in the user's own names: written out where that is short, else by the states behind it.
 pub(crate) fn in_own_names(equations: &Equations, mut quantity: Expr) -> String {
-    /// Nodes of an expression that can be read.
-    const SHORT: usize = 30;
     let g = &equations.graph;
     for &(symbol, definition) in equations.definitions.iter().rev() {
-        if g.size(&[quantity]) <= SHORT && g.depends_on(quantity, symbol) {
+        if g.size(&[quantity]) <= LINE && g.depends_on(quantity, symbol) {
             quantity = g.substitute(quantity, &HashMap::from([(symbol, definition)]));
         }
     }
-    if g.size(&[quantity]) <= SHORT {
+    if g.size(&[quantity]) <= LINE {
         return g.plain(quantity);
     }
     let behind = equations.symbols_behind([quantity]);

@@ -5,6 +5,9 @@
 //! number of the first start that led to it, so that one search says what half of its starts would have found
 //! ([`least_from`]).
 
+/// Steps in a row by the same Jacobian.
+pub const CHORDS: usize = 5;
+
 /// A start of a search, or the end that it led to.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Minimum {

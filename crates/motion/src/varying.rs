@@ -1,5 +1,7 @@
 //! Equations derived and compiled once, for other starts, free constants and values of some parameters.
 
+use std::f64::consts::GOLDEN_RATIO;
+
 use equations::{Equations, FreeConstant};
 use mechanics::{ConstantsRule, Parameter, RemovalProgram, State, System};
 use scene::Scene;
@@ -150,7 +152,7 @@ fn derived(scene: &Scene, choice: &Choice, varied: &[Parameter], form: Form) -> 
     let mut system = scene.system.clone();
     let is_varied = |p: &&mut Parameter| varied.iter().any(|varied| varied.symbol == p.symbol);
     for (p, part) in system.parameters.iter_mut().filter(is_varied).zip(1..) {
-        p.value += APART * (1.0 + p.value.abs()) * (0.5 + (integrate::GOLDEN * f64::from(part)).fract());
+        p.value += APART * (1.0 + p.value.abs()) * (0.5 + (GOLDEN_RATIO * f64::from(part)).fract());
     }
     Ok(derive_in_form(&system, &scene.start, choice, form)?.0)
 }

@@ -3,7 +3,7 @@
 use equations::Formulation;
 use integrate::{DenseOutput, EvaluationError, Options, Problem, Start, Status, integrate};
 use mechanics::{ConstantsRule, State, System};
-use motion::band::SAME_STOP;
+use motion::TRUSTED;
 use motion::{Choice, Ending, Motion, Setting, Settings, derive_at, solve};
 use referees::maggi::{self, Maggi};
 
@@ -66,7 +66,7 @@ impl Reference {
     pub fn up_to(&self, start: f64, end: f64) -> Result<Known<'_>, String> {
         // an end is needed even where nothing is to be compared but the start
         let later = if end == start { start + SHORTEST } else { end };
-        let same_stop = |t: f64| (later - t).abs() <= SAME_STOP * (later - start).abs();
+        let same_stop = |t: f64| (later - t).abs() <= TRUSTED * (later - start).abs();
         match self {
             Reference::Closed(road) => Ok(Box::new(move |t| Some((road(t), road(t))))),
             Reference::Maggi(posed) => {

@@ -2,6 +2,7 @@
 
 use std::collections::HashSet;
 
+use symbolic::limits::TOO_LONG;
 use symbolic::{CompileError, Evaluator, Expr, Symbol};
 
 use super::chosen::Plan;
@@ -16,9 +17,6 @@ use crate::equations::{Block, Equations};
 /// products apart that are used more than once.
 const LONG_PARTS: usize = 12;
 const SHORT_PARTS: usize = 3;
-
-/// Multiplications over which a block is left to the LU: the code would be too long.
-const MOST: usize = 20_000;
 
 /// Multiplications over which only one way is tried.
 const LONG: usize = 400;
@@ -221,7 +219,8 @@ fn eliminated(
     if unneeded.contains(&true) {
         ways.push(Strategy::UnneededFirst);
     }
-    let mut orders: Vec<_> = ways.into_iter().filter_map(|w| Some((w, pattern.order(w, &unneeded, MOST)?))).collect();
+    let mut orders: Vec<_> =
+        ways.into_iter().filter_map(|w| Some((w, pattern.order(w, &unneeded, TOO_LONG)?))).collect();
     orders.sort_by_key(|(_, order)| order.operations);
     if orders.first().is_some_and(|(_, order)| order.operations > LONG) {
         orders.truncate(1);

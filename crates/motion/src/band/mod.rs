@@ -54,9 +54,7 @@ pub use estimate::{ErrorEstimate, error_estimate, error_estimates};
 pub use estimate_failure::Doubt;
 pub use invariant_monitor::Breach;
 pub use known::{Answer, Known, NoInformation, ask, ask_alone};
-pub use limits::{
-    BEFORE_THE_END, CERTAINTY, CHUNK, COARSEST, INSTANTS, SAME_ESTIMATE, SAME_STOP, SAMPLES, SEARCH_STEPS, TRUSTED,
-};
+pub use limits::{BEFORE_THE_END, CERTAINTY, CHUNK, INSTANTS, SAME_ESTIMATE, SAMPLES, SEARCH_STEPS, TRUSTED};
 pub(crate) use runs::TwoRuns;
 
 use self::limits::{ROUND_OFF, ROUNDED};

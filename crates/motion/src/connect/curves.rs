@@ -1,12 +1,11 @@
 //! Motions that are one curve.
 
+use crate::band::limits::SOME;
 use crate::connect::two_point::TwoPoint;
 use crate::shooting::Minimum;
 use symbolic::limits;
 
-/// Instants at which curves are compared, and how much more constants differ than curves where they do.
-const COMPARED: usize = 16;
-/// Curves are one where they differ by less, in units of the problem.
+/// Curves are one where they differ by less, in units of the problem; and how much more constants differ then.
 const SAME: f64 = 1e-4;
 const MORE: f64 = 100.0;
 
@@ -19,7 +18,7 @@ pub(super) fn one_per_curve(exact: Vec<Minimum>, problem: &mut TwoPoint) -> Vec<
     let mut kept: Vec<((Minimum, bool), Vec<f64>)> = Vec::new();
     for found in exact {
         let x = &found.unknowns;
-        let curve = problem.curve(x, COMPARED).unwrap_or_default();
+        let curve = problem.curve(x, SOME).unwrap_or_default();
         let is_same = |((other, _), known): &&mut ((Minimum, bool), Vec<f64>)| {
             let apart = largest(&curve, known);
             !curve.is_empty()

@@ -8,11 +8,12 @@ use nalgebra::{DMatrix, DVector};
 use crate::charts::{self, Course};
 use crate::direction::Chord;
 use crate::numbers::precise;
+use crate::shooting::CHORDS;
 use crate::variational::{PLAIN_RUNS, VariationalRun, Which};
 use crate::{Ending, Prepared, Setting, Settings, SolveError, TIGHTER};
 
-/// Residual at the horizon that is accepted, over the tolerance of the integration and the costate's size.
-const RESIDUAL: f64 = 1e3;
+/// Residual of a boundary value that is accepted, over the tolerance of the kept run and its size.
+pub(crate) const RESIDUAL: f64 = 1e3;
 
 /// Steps that a run of the search may take on average, over those of the run from the guess: beside a
 /// singularity a run may take a thousand times more, and the search does not get past it.
@@ -46,8 +47,7 @@ pub(super) fn natural_constants(
     Ok(search.in_units(&shot.unknowns))
 }
 
-/// Steps by the same Jacobian; each has to lessen the residual to this part.
-const CHORDS: usize = 5;
+/// Each step by the same Jacobian has to lessen the residual to this part.
 const LESS: f64 = 0.1;
 
 /// The chord of this motion; `None` where its constants are not found, or derivatives are not carried.
