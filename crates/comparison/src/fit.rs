@@ -16,17 +16,12 @@ use symbolic::Expr;
 use symbolic::limits::SAME;
 
 use motion::band::{SAMPLES, SEARCH_STEPS};
+use motion::shooting::{BEGINNING, LONGER};
 use motion::{Metric, Motion, Prepared, Setting, Settings, SingleRun, SolveError, TIGHTER, larger, outputs, solve};
 
 /// Instants at which gaps are looked at; of these every fourth for a first look, and for the sum of squares.
 pub const INSTANTS: usize = 160;
 const COARSE: usize = 4;
-
-/// Other motions may take so many times the steps of the best guess: they are far from it.
-const TIMES: usize = 2;
-
-/// The shortest beginning of a motion that is looked at.
-const EARLIEST: f64 = 0.1;
 
 /// Where the search comes this close, relative to the length of the way, it is refined at the full tolerance.
 pub(crate) const CLOSE: f64 = 1e-4;
@@ -115,15 +110,14 @@ impl Differences {
         Ok(Differences { prepared, coarse, tolerance, goal, origin, places, start, end, last })
     }
 
-    /// Steps times operations of the motion with these constants. From now on motions may take a few times
-    /// the steps.
-    fn limit_steps(&mut self, constants: &[f64]) -> usize {
+    /// From now on motions may take a few times the steps of the one with these constants.
+    fn limit_steps(&mut self, constants: &[f64]) {
         let options = self.coarse.options(self.tolerance);
         self.prepared.set_constants(constants);
-        let Ok(run) = self.prepared.integrate(self.end, &options) else { return 0 };
-        let steps = run.solution.work.steps + run.solution.work.rejected;
-        self.coarse.max_steps = self.coarse.max_steps.min(TIMES * steps.max(SAMPLES));
-        steps * self.prepared.compiled.cost()[1].operations()
+        if let Ok(run) = self.prepared.integrate(self.end, &options) {
+            let steps = run.solution.work.steps + run.solution.work.rejected;
+            self.coarse.max_steps = self.coarse.max_steps.min(LONGER * steps.max(SAMPLES));
+        }
     }
 
     /// From now on motions are integrated as finely as the one that is to be met.
@@ -218,15 +212,15 @@ impl Differences {
 
     /// For each constant the change by which a beginning of the motion changes as much as it is long.
     fn sizes_at(&mut self, from: &[f64]) -> Vec<f64> {
-        let way = self.way(EARLIEST, COARSE);
-        let Some(at) = self.at(from, EARLIEST, COARSE) else { return vec![1.0; from.len()] };
+        let way = self.way(BEGINNING, COARSE);
+        let Some(at) = self.at(from, BEGINNING, COARSE) else { return vec![1.0; from.len()] };
         let mut size = |j: usize| {
             let mut size = 1.0_f64;
             let (mut grown, mut shrunk) = (false, false);
             for _ in 0..30 {
                 let mut moved = from.to_vec();
                 moved[j] += size;
-                let change = self.at(&moved, EARLIEST, COARSE);
+                let change = self.at(&moved, BEGINNING, COARSE);
                 let change = change.map_or(f64::INFINITY, |there| (there - &at).norm());
                 (grown, shrunk) = (grown || change <= way, shrunk || change > way);
                 if grown && shrunk {

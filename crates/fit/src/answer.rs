@@ -9,15 +9,13 @@ use scene::Scene;
 
 use crate::design::length_that_tells;
 use crate::fit::{sought, with_intervals};
+use crate::planned::MOST_NUMBERS;
 use crate::profile::LAST;
 use crate::question::{SLIP, has_constants, is_constant, is_law, problem_of};
 use crate::search::{HOPELESS, begun, is_as_high};
 use crate::settled::{explain, settle};
 use crate::verdict::{beside, is_excluded, least};
 use crate::{Film, Fit, FitError, Problem, Question, Row, Unknown, Verdict, creep, known, verdicts};
-
-/// Most numbers of all films: with them a fit takes minutes.
-pub(crate) const MOST_NUMBERS: usize = 300_000;
 
 /// Further groups of starts for a formulation that would be excluded and is not poor, or where none fits.
 const GROUPS: usize = 3;

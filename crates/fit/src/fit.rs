@@ -5,7 +5,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::distribution::{RISE, normal_tails, rise_at_bound};
-use crate::profile::{CLOSE, Profile};
+use crate::profile::{LAST, Profile};
 use crate::residual_tests::{ResidualTest, residual_tests};
 use crate::search::{Excluding, Found, NEAR_STEPS, search};
 use crate::shown::{Near, Shown, moving, off_stationary, shown};
@@ -239,7 +239,7 @@ fn estimate(problem: &Problem, best: &Minimum, errors: &[f64], i: usize, profile
             return profile.end(side, RISE, bound);
         }
         let rise = profile.rise(at);
-        if (rise - RISE).abs() <= CLOSE * RISE {
+        if (rise - RISE).abs() <= LAST * RISE {
             return at;
         }
         profiled = true;

@@ -4,10 +4,12 @@ use std::str::FromStr;
 
 use scene::Scene;
 
-use crate::answer::MOST_NUMBERS;
 use crate::film::column;
 use crate::quantity::unit_of;
 use crate::{Deviations, Film, FitError, quantity};
+
+/// Most numbers of all films: with them a fit takes minutes.
+pub(crate) const MOST_NUMBERS: usize = 300_000;
 
 /// When a film looks: `60Hz,0.5mm,10s` is 600 times in ten seconds, with a standard deviation of 0.5 mm where
 /// a column has no other.

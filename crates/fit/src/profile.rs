@@ -21,7 +21,6 @@ pub(crate) const SHOWN: f64 = 1e-7;
 /// Steps outwards and steps in all to the end of a profile, and the part of the rise that they come to.
 const OUTWARDS: usize = 5;
 const STEPS: usize = 15;
-pub(crate) const CLOSE: f64 = 0.05;
 /// `|J δ|²` of the last chord.
 pub(crate) const LAST: f64 = 0.02;
 /// Distances are halved up to this many times.
@@ -196,7 +195,7 @@ impl<'a> Profile<'a> {
             if found.is_infinite() {
                 return if side < 0.0 { bound } else { f64::INFINITY };
             }
-            if (found - rise).abs() <= CLOSE * rise {
+            if (found - rise).abs() <= LAST * rise {
                 return x;
             }
             if found < rise {

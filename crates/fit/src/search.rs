@@ -22,8 +22,6 @@ const LONGER: f64 = 1.5;
 const FOLLOWED: [usize; 4] = [12, 10, 8, 4];
 /// Starts beside one that is known and fits.
 const FEW: usize = 4;
-/// Starts that are fitted to the whole film at once beside the first one.
-const SCREENED: usize = 2;
 /// Times the steps of the first motion that one may take.
 const STEPS: usize = 40;
 /// The same beside a minimum, over the whole film.
@@ -239,7 +237,8 @@ fn followed(
     Ok((starts, excluded_by))
 }
 
-/// Starts that have to lead to the least χ² of a formulation before it is excluded.
+/// Starts that have to lead to the least χ² of a formulation before it is excluded, and that are fitted to the
+/// whole film at once beside the first one.
 pub(crate) const SEVERAL: usize = 2;
 /// Films that are looked at alone.
 const ALONE: usize = 3;
@@ -372,7 +371,7 @@ fn screened(problem: &Problem, moves: &dyn Fn(&str) -> bool, starts: usize) -> V
         }
     }
     others.sort_by(|a, b| a.value.total_cmp(&b.value));
-    others.truncate(SCREENED);
+    others.truncate(SEVERAL);
     [Minimum::start(0, problem.start().to_vec())].into_iter().chain(others).collect()
 }
 

@@ -39,14 +39,14 @@ use mechanics::{ConstantsRule, State};
 use scene::Scene;
 use symbolic::limits::{HALF_THE_DIGITS, SAME};
 
-use crate::band::SEARCH_STEPS;
-use crate::constants::{RESIDUAL, constant_names};
-use crate::shooting::{Minimum, distinct};
+use crate::band::{RESIDUAL, SEARCH_STEPS};
+use crate::constants::constant_names;
+use crate::shooting::{BEGINNING, Minimum, distinct};
 use crate::variational::{VariationalRun, Which};
 use crate::{Choice, Motion, Settings, SolveError, TIGHTER, VAKONOMIC, over_threads, solve_choice};
 use action::action;
 pub use conjugate::{ConjugateTime, samples, times};
-use curves::one_per_curve;
+use curves::{ONE, one_per_curve};
 pub use second_variation::SecondVariation;
 use second_variation::second_variation;
 use two_point::TwoPoint;
@@ -118,13 +118,9 @@ impl Connection {
     }
 }
 
-/// A motion that is found by way of shorter ones begins with this part of the time, and is given up where it
-/// can be followed by less than the other. Every second guess goes that way first.
-const FIRST: f64 = 0.1;
+/// A motion that is found by way of shorter ones is given up where it can be followed by less than this part
+/// of the time. Every second guess goes that way first.
 const LEAST: f64 = 1e-3;
-/// Two results of searches, or two final ones, are one where unknowns differ by less, in units of the
-/// problem.
-const ONE: [f64; 2] = [1e-4, 1e-6];
 
 /// The motions of `choice` from the start of `scene` that end where `aim` says, as far as its starts lead to
 /// them. Constants of the choice are a first guess; costates that its rule makes zero, and that never move,
@@ -235,7 +231,7 @@ fn search(problem: &mut TwoPoint, guess: &[f64], settings: &Settings) -> Result<
 /// a long motion folds, a short one does not. Velocities go as one over the time.
 fn grown(problem: &mut TwoPoint, guess: &[f64], settings: &Settings) -> Option<Vec<f64>> {
     let (start, end) = (problem.scene_start.t, problem.aim.t);
-    let (mut part, mut step) = (FIRST, FIRST);
+    let (mut part, mut step) = (BEGINNING, BEGINNING);
     problem.aim.t = start + part * (end - start);
     let short: Vec<f64> = guess.iter().map(|x| x / part).collect();
     let mut found = search(problem, &short, settings).ok();

@@ -8,7 +8,7 @@ use mechanics::ConstantsRule;
 use crate::{Prepared, Setting, Settings, SolveError};
 use transversality::natural_constants;
 pub use transversality::searched;
-pub(crate) use transversality::{RESIDUAL, chord, places};
+pub(crate) use transversality::{chord, places};
 
 /// Compiles `equations` and computes what they start from. Nothing is integrated, unless the constants are
 /// natural at a horizon; that is done as `settings` say.

@@ -10,6 +10,7 @@ use symbolic::Expr;
 use symbolic::limits::LINE;
 
 use crate::TRUSTED;
+use crate::band::limits::NEARLY_ZERO;
 use crate::lost_rank;
 
 /// What helps where steps became too short and no divisor of the equations vanishes.
@@ -135,9 +136,6 @@ pub(crate) fn in_own_names(equations: &Equations, mut quantity: Expr) -> String 
     format!("a quantity of {}", names.join(", "))
 }
 
-/// A guard is nearly zero when it is under this fraction of the largest value that it had.
-const NEARLY_ZERO: f64 = 1e-2;
-
 /// The guard that has shrunk most since these points, if it is nearly zero at the end of the run.
 fn nearly_zero_guard(
     equations: &Equations,
@@ -189,8 +187,6 @@ fn nearly_dependent(
     before: &[(f64, Vec<f64>)],
     dense: &DenseOutput,
 ) -> Option<String> {
-    /// Components of the undetermined direction above this fraction of the largest are named.
-    const TOLD: f64 = 0.3;
     let [before, end] = [before, &[(dense.end(), dense.end_state().to_vec())]]
         .map(|points| points.iter().map(|(t, y)| compiled.block_matrices(*t, y)).collect::<Vec<_>>());
     let found = equations.blocks.iter().enumerate().filter_map(|(i, block)| {
@@ -209,7 +205,7 @@ fn nearly_dependent(
     });
     let (block, ratio, direction) = found.min_by(|a, b| a.1.total_cmp(&b.1))?;
     let largest = direction.amax();
-    let told = block.unknowns.iter().zip(&direction).filter(|(_, x)| x.abs() >= TOLD * largest);
+    let told = block.unknowns.iter().zip(&direction).filter(|(_, x)| x.abs() >= NEARLY_ZERO * largest);
     let names: Vec<String> = told.map(|(&z, _)| equations.graph.name(z)).collect();
     Some(format!("the equations for {} are nearly dependent, {ratio:.1e} of what they were", names.join(", ")))
 }

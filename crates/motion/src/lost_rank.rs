@@ -10,7 +10,7 @@ use symbolic::limits::{SAME, SHOWN};
 use symbolic::{Expr, Matrix, Symbol, Vanishing};
 
 use crate::Metric;
-use crate::band::TRUSTED;
+use crate::band::limits::NEARLY_ZERO;
 use crate::numbers::{enumerate, short};
 use crate::variables::in_variables_of;
 
@@ -87,7 +87,7 @@ pub(crate) fn words(equations: &Equations, compiled: &mut Compiled, dense: &Dens
             let scaled = DMatrix::from_fn(h, n, |i, j| end[(i, j)] / start.row(i).norm().max(f64::MIN_POSITIVE));
             let square = SingularValues::of(&(&scaled * scaled.transpose()));
             let last = square.right.row(h - 1);
-            let told = (0..h).filter(|&i| last[i].abs() > TRUSTED * last.amax());
+            let told = (0..h).filter(|&i| last[i].abs() > NEARLY_ZERO * last.amax());
             told.map(|i| numbers[i].to_string()).collect()
         }
         _ => numbers.iter().map(usize::to_string).collect(),

@@ -44,9 +44,11 @@ pub enum Reference {
     },
 }
 
-/// Tolerances of the two runs of an [`Reference::Ode`], and the limit on their steps.
+/// Steps of equal length of a long run, and the limit on those of the adaptive methods.
+pub const MILLION: usize = 1_000_000;
+
+/// Tolerances of the two runs of an [`Reference::Ode`].
 const TOLERANCES: [f64; 2] = [1e-11, 1e-13];
-const STEPS: usize = 2_000_000;
 
 /// Tolerances of the runs of [`Reference::Maggi`] and [`Reference::Equivalent`]: their solves round off more.
 const MAGGI: [f64; 2] = [1e-10, 1e-12];
@@ -109,7 +111,7 @@ impl Reference {
             Reference::Ode { y, rates, read } => {
                 let run = |tolerance: f64| {
                     let mut field = Field { dimension: y.len(), rates };
-                    let options = Options { max_steps: STEPS, ..Options::with_tolerance(tolerance) };
+                    let options = Options { max_steps: 2 * MILLION, ..Options::with_tolerance(tolerance) };
                     let start = Start { t: start, y: y.clone() };
                     let solution = integrate(&mut field, &start, end, &options).map_err(|e| e.to_string())?;
                     match solution.status {
@@ -139,7 +141,7 @@ fn derived(
 ) -> Result<Motion, motion::SolveError> {
     let constants = ConstantsRule::Zero;
     let choice = Choice { label: formulation.title.into(), formulation, removal: None, constants: constants.clone() };
-    let settings = Settings { tolerance: MAGGI[0], max_steps: STEPS, ..Settings::default() };
+    let settings = Settings { tolerance: MAGGI[0], max_steps: 2 * MILLION, ..Settings::default() };
     solve(Setting { system, start, end }, derive_at(system, start, &choice)?, &constants, &settings)
 }
 

@@ -11,23 +11,22 @@
 //! where that comes to another gap, the number of starts matters.
 
 use equations::Equations;
-use motion::shooting::{Minimum, least_from, spread};
+use motion::shooting::{BEGINNING, Minimum, least_from, spread};
 use motion::{Metric, Motion, Setting, Settings, SolveError};
 
 use super::squares::Power;
-use super::{COARSE, Differences, EARLIEST, INSTANTS};
+use super::{COARSE, Differences, INSTANTS};
 
-/// Number of starts: as many as this work allows (steps times operations times runs), within these bounds.
-const WORK: usize = 1_300_000;
-const STARTS: [usize; 2] = [24, 96];
+/// Number of starts.
+const STARTS: usize = 32;
 
 /// One start of so many is a guess.
 const GUESSES: usize = 3;
 
 /// Guesses are compared after this part of the motion, and the better half of them is followed. The first
 /// part that one is fitted to is no longer; the next ones are longer by a factor between these.
-const BEGINNING: f64 = 0.4;
-const LONGER: [f64; 2] = [1.2, 2.0];
+const COMPARED: f64 = 0.4;
+const FACTORS: [f64; 2] = [1.2, 2.0];
 
 /// The powers after the second. The largest of `k` gaps at a minimum for the power `p` is at most `k^(1/p)`
 /// times the least near it: ends that are farther from the best are left.
@@ -77,47 +76,45 @@ pub(crate) fn search(
 ) -> Result<Option<Found>, SolveError> {
     let mut differences = Differences::new(setting, equations, target, metric, settings)?;
     let Some(first) = differences.closest(aim.guesses) else { return Ok(None) };
-    let work = differences.limit_steps(&first) * (1 + first.len());
-    let mut count = (WORK / work.max(1)).clamp(STARTS[0], STARTS[1]);
+    differences.limit_steps(&first);
     if !aim.may_vanish && differences.is_close(&first, 1.0) {
         differences.refine(settings);
-        count = STARTS[0];
     }
     // drawn starts are followed that are no worse
     let limit = differences.largest(&first, 1.0, COARSE);
     let (mut guessed, mut drawn) = (Vec::new(), Vec::new());
     let starts = Starts::new(aim, &first, &differences.sizes_at(&first));
-    for number in 0..count {
+    for number in 0..STARTS {
         let Start { constants, growth } = starts.at(number);
         let Some([part, longer]) = growth else {
             let value = differences.largest(&constants, 1.0, COARSE);
             drawn.extend((value <= limit).then(|| Minimum { value, ..Minimum::start(number, constants) }));
             continue;
         };
-        let constants = differences.grown(&constants, part, longer, BEGINNING);
-        if aim.may_vanish && differences.is_close(&constants, BEGINNING) {
-            let whole = differences.grown(&constants, BEGINNING * longer, longer, 1.0);
+        let constants = differences.grown(&constants, part, longer, COMPARED);
+        if aim.may_vanish && differences.is_close(&constants, COMPARED) {
+            let whole = differences.grown(&constants, COMPARED * longer, longer, 1.0);
             if differences.is_close(&whole, 1.0) {
                 let constants = differences.squares(&whole, settings).unwrap_or(whole);
                 let starts = aim.guesses.len().max(number + 1);
                 return Ok(Some(Found { by_half: constants.clone(), constants, starts }));
             }
         }
-        let value = differences.largest(&constants, BEGINNING, 1);
+        let value = differences.largest(&constants, COMPARED, 1);
         guessed.push(Minimum { value, ..Minimum::start(number, constants) });
     }
-    let half = guessed.partition_point(|guess| guess.first < count / 2);
+    let half = guessed.partition_point(|guess| guess.first < STARTS / 2);
     let better = [&guessed[..half], &guessed].map(better_half);
     guessed.retain(|guess| better.iter().any(|better| better.contains(&guess.first)));
     let mut ends: Vec<Minimum> = guessed.into_iter().chain(drawn).collect();
     for end in &mut ends {
-        let [part, longer] = starts.at(end.first).growth.map_or([1.0, 1.0], |[_, longer]| [BEGINNING * longer, longer]);
+        let [part, longer] = starts.at(end.first).growth.map_or([1.0, 1.0], |[_, longer]| [COMPARED * longer, longer]);
         end.unknowns = differences.grown(&end.unknowns, part, longer, 1.0);
         end.value = differences.largest(&end.unknowns, 1.0, 1);
     }
     for power in POWERS {
         let beyond = (INSTANTS as f64).powf(1.0 / power);
-        let limit = beyond * least_from(count, &ends);
+        let limit = beyond * least_from(STARTS, &ends);
         for end in ends.iter_mut().filter(|end| end.value <= limit) {
             let sum = Power { power, scale: end.value, stride: 1, part: 1.0 };
             let unknowns = differences.minimum(&end.unknowns, &sum);
@@ -134,7 +131,7 @@ pub(crate) fn search(
         let exact = if vanishes { differences.squares(constants, settings) } else { None };
         exact.unwrap_or_else(|| constants.clone())
     };
-    Ok(Some(Found { constants: least(count), by_half: least(count / 2), starts: count }))
+    Ok(Some(Found { constants: least(STARTS), by_half: least(STARTS / 2), starts: STARTS }))
 }
 
 /// The starts of the better half.
@@ -196,7 +193,7 @@ impl<'a> Starts<'a> {
         let by = spread(number, n + 2);
         if number < self.guesses.len() || number.is_multiple_of(GUESSES) {
             let guess = if number < self.guesses.len() { number } else { number / GUESSES };
-            let growth = [geometric([EARLIEST, BEGINNING], by[n + 1]), geometric(LONGER, by[n])];
+            let growth = [geometric([BEGINNING, COMPARED], by[n + 1]), geometric(FACTORS, by[n])];
             return Start { constants: self.guesses[guess % self.guesses.len()].clone(), growth: Some(growth) };
         }
         let radius = geometric(REACH, by[n]);

@@ -8,9 +8,7 @@ use motion::{Settings, TIGHTER};
 use motion::{VariationalRun, Which};
 
 /// The coarse search is done where an iteration brings less than this part.
-const GAIN: f64 = 1e-4;
-/// The same for one minimum of many.
-const ROUGH: f64 = 1e-2;
+const GAIN: f64 = 1e-2;
 
 /// Which sum is minimized: `Σ |r_k|^p`, `r_k` at every `stride`-th instant, by the squares of `w_k r_k` with
 /// `w_k = (|r_k|/s)^(p/2 − 1)`.
@@ -48,7 +46,7 @@ impl Differences {
     /// The constants of a minimum of such a sum near `guess`; these where nothing is found.
     pub(super) fn minimum(&mut self, guess: &[f64], power: &Power) -> Vec<f64> {
         let coarse = self.coarse.clone();
-        self.least((self.tolerance, ROUGH), &coarse, guess, power).map_or(guess.to_vec(), |found| found.unknowns)
+        self.least((self.tolerance, GAIN), &coarse, guess, power).map_or(guess.to_vec(), |found| found.unknowns)
     }
 
     /// The minimum at this tolerance.

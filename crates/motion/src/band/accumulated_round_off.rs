@@ -9,7 +9,7 @@
 use equations::Compiled;
 
 use super::estimate_failure::Doubt;
-use super::limits::{CERTAINTY, ROUND_OFF, ROUNDED, UNITS};
+use super::limits::{CERTAINTY, ROUND_OFF, UNITS};
 use crate::numbers::precise;
 use symbolic::limits::SAME;
 
@@ -179,7 +179,7 @@ fn offsets_of(rates_at: &mut Rates, looked: &[Looked], looser: &[Vec<f64>], coun
         }
     }
     let time = looked.last().map_or(0.0, |last| last.0 - looked[0].0);
-    let offset = |i: usize| if counts[i] { (ROUNDED * means[i]).copysign(time * farthest[i]) } else { 0.0 };
+    let offset = |i: usize| if counts[i] { (0.5 * f64::EPSILON * means[i]).copysign(time * farthest[i]) } else { 0.0 };
     let offsets: Vec<f64> = (0..counts.len()).map(offset).collect();
     // how much of what is apart the offsets would make alone
     let likeness = |i: usize| if offsets[i] == 0.0 { 0.0 } else { apart[i] / (offsets[i] * time) };

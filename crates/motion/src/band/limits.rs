@@ -16,9 +16,6 @@ pub const SAME_ESTIMATE: f64 = 1e-8;
 /// thousand steps lose that much, and rates that lose more are found ([`super::accumulated_round_off`]).
 pub(crate) const ROUND_OFF: f64 = 256.0 * f64::EPSILON;
 
-/// The error of a sum over what is added up to it: numbers are rounded to the nearest.
-pub(crate) const ROUNDED: f64 = 0.5 * f64::EPSILON;
-
 /// Units in the last place by which a start is moved: fewer may vanish in the first sum, and more would be an
 /// error of the start. Round-off may be so many times what a sample of it shows, and what the difference of
 /// the runs does: sums of it are upper bounds.
@@ -32,6 +29,12 @@ pub(crate) const BETWEEN: f64 = 8.0;
 /// any tolerance.
 pub const BEFORE_THE_END: f64 = 0.9;
 
+/// A quantity is nearly zero under this part of the largest that it was, or than it is beside.
+pub(crate) const NEARLY_ZERO: f64 = 1e-2;
+
+/// Residual of a boundary value that is accepted, over the tolerance of the kept run and its size.
+pub const RESIDUAL: f64 = 1e3;
+
 /// Fewer steps than this may be those of the start, or of a motion that is a polynomial.
 pub(crate) const FEW_STEPS: usize = 200;
 
@@ -43,7 +46,8 @@ pub(crate) const MORE_STEPS: f64 = 1.0 / 3.0;
 pub const STRETCHES: [usize; 3] = [SAMPLES, LOOKS, FEW];
 /// Of these, the stretches at whose ends both runs are compared.
 pub const SAMPLES: usize = 200;
-pub(crate) const LOOKS: usize = 32;
+/// The second of these, also the instants by which the growth of a gap is measured.
+pub const LOOKS: usize = 32;
 pub(crate) const FEW: usize = 4;
 
 /// Instants at which something is looked at that passes between two samples: ends of steps (all, or half of
@@ -54,7 +58,7 @@ pub const INSTANTS: usize = 64;
 /// Number of instants at which sums of terms behind multipliers, and in members behind rates, are computed:
 /// they are evaluated in numbers that carry their magnitude, which takes longer than rates. At so many,
 /// curves are compared; and so many steps of the looser run, where a doubt begins, are enough for a ratio.
-pub(crate) const SOME: usize = 16;
+pub const SOME: usize = 16;
 
 /// Instants within the time of all members of an ensemble at which their constraints are looked at.
 pub const WATCHED: usize = 8;

@@ -9,6 +9,7 @@ use symbolic::limits::{HALF_THE_DIGITS, ITERATIONS};
 
 use crate::SolveError;
 use crate::band::SAMPLES;
+use crate::band::limits::NEARLY_ZERO;
 
 /// A time conjugate to the start of a motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -20,9 +21,6 @@ pub struct ConjugateTime {
     /// By how much the rank of `∂q(t)/∂x` falls.
     pub multiplicity: usize,
 }
-
-/// A singular value vanishes where it is this part of what it is beside.
-const VANISHES: f64 = 1e-3;
 
 /// `∂q(t)/∂x`.
 pub type Matrix<'a> = dyn FnMut(f64) -> Result<DMatrix<f64>, SolveError> + 'a;
@@ -155,7 +153,7 @@ fn touching(matrix: &mut Matrix, [a, b]: [&Look; 2]) -> Result<Vec<(f64, usize)>
 fn multiplicity(matrix: &mut Matrix, times: [f64; 3]) -> Result<usize, SolveError> {
     let [before, at, after] = times.map(|t| matrix(t).map(|matrix| singular_values(&matrix)));
     let (before, at, after) = (before?, at?, after?);
-    let vanishes = |i: &usize| at[*i] < VANISHES * before[*i].min(after[*i]);
+    let vanishes = |i: &usize| at[*i] < NEARLY_ZERO * before[*i].min(after[*i]);
     Ok((0..at.len()).filter(vanishes).count())
 }
 

@@ -1,13 +1,13 @@
 //! Motions that are one curve.
 
-use crate::band::limits::SOME;
+use crate::band::{CERTAINTY, SOME};
 use crate::connect::two_point::TwoPoint;
 use crate::shooting::Minimum;
-use symbolic::limits;
+use symbolic::limits::SAME;
 
-/// Curves are one where they differ by less, in units of the problem; and how much more constants differ then.
-const SAME: f64 = 1e-4;
-const MORE: f64 = 100.0;
+/// Two results of searches, or curves, and two final results are one where unknowns differ by less, in units of
+/// the problem.
+pub(super) const ONE: [f64; 2] = [1e-4, SAME];
 
 /// Motions that are one curve, once, with the least constants: one for several constants has an abnormal
 /// lift, and is marked.
@@ -22,8 +22,8 @@ pub(super) fn one_per_curve(exact: Vec<Minimum>, problem: &mut TwoPoint) -> Vec<
         let is_same = |((other, _), known): &&mut ((Minimum, bool), Vec<f64>)| {
             let apart = largest(&curve, known);
             !curve.is_empty()
-                && apart <= SAME
-                && largest(&x[free..], &other.unknowns[free..]) > MORE * apart.max(limits::SAME)
+                && apart <= ONE[0]
+                && largest(&x[free..], &other.unknowns[free..]) > CERTAINTY * apart.max(SAME)
         };
         match kept.iter_mut().find(is_same) {
             None => kept.push(((found, false), curve)),

@@ -1,12 +1,10 @@
 //! Is an expression identically zero?
 
-use crate::limits::TERMS;
+use crate::limits::{POINTS, TERMS};
 use crate::store::arena::Arena;
 use crate::{Bounded, Evaluator, Expr, Graph, Scalar, SplitMix, Symbol, faults};
 use std::collections::HashMap;
 
-/// Finite values that the numerical test asks for.
-const POINTS: usize = 32;
 /// Points tried, at most, to find those where the value is finite.
 const TRIES: usize = 20 * POINTS;
 /// The answer to the question whether an expression is identically zero.
