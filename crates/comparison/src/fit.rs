@@ -110,14 +110,15 @@ impl Differences {
         Ok(Differences { prepared, coarse, tolerance, goal, origin, places, start, end, last })
     }
 
-    /// From now on motions may take a few times the steps of the one with these constants.
-    fn limit_steps(&mut self, constants: &[f64]) {
+    /// Steps times operations of the motion with these constants. From now on motions may take a few times
+    /// the steps.
+    fn limit_steps(&mut self, constants: &[f64]) -> usize {
         let options = self.coarse.options(self.tolerance);
         self.prepared.set_constants(constants);
-        if let Ok(run) = self.prepared.integrate(self.end, &options) {
-            let steps = run.solution.work.steps + run.solution.work.rejected;
-            self.coarse.max_steps = self.coarse.max_steps.min(LONGER * steps.max(SAMPLES));
-        }
+        let Ok(run) = self.prepared.integrate(self.end, &options) else { return 0 };
+        let steps = run.solution.work.steps + run.solution.work.rejected;
+        self.coarse.max_steps = self.coarse.max_steps.min(LONGER * steps.max(SAMPLES));
+        steps * self.prepared.compiled.cost()[1].operations()
     }
 
     /// From now on motions are integrated as finely as the one that is to be met.

@@ -219,7 +219,8 @@ pub fn fit_run(
     let by_half = if by_half == constants { gap.largest } else { largest(&gap_of(&by_half)?.1) };
     let is_close = starts > 0 && gap.verdict == Verdict::Different && gap.largest < CLOSE * gap.scale;
     if is_close && gap.largest <= unknown(scene, &mut motion, metric, settings)? {
-        let because = "what is left is less than the digits leave open to which a search knows the constants".into();
+        let because =
+            "a search knows the constants to ten digits, and what is left is less than they leave open".into();
         gap.verdict = Verdict::Undecided { because };
     }
     let names = constant_names(&motion.equations);
@@ -227,8 +228,10 @@ pub fn fit_run(
     Ok(Some(Some(FittedMotion { constants, gap, starts, by_half })))
 }
 
-/// The largest gap that the digits of a motion's constants make that a search does not know: it knows them as
-/// well as the looser run knows a motion.
+/// The part of the constants to which a search knows them.
+const KNOWN: f64 = 1e-10;
+
+/// The largest gap that the digits of a motion's constants make that a search does not know.
 ///
 /// # Errors
 /// [`SolveError`] where a motion cannot be started or read off.
@@ -243,7 +246,7 @@ pub fn unknown(
     let mut gap = 0.0;
     for j in 0..constants.len() {
         let mut moved = constants.clone();
-        moved[j] += settings.tolerance * size;
+        moved[j] += KNOWN * size;
         let within = Setting { end: motion.end(), ..setting(scene) };
         let mut other = solve(within, motion.equations.clone(), &ConstantsRule::Given(moved), settings)?;
         gap += compare_motions(motion, &mut other, metric)?.largest;

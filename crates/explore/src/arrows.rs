@@ -13,7 +13,7 @@ use mechanics::{Pose, Poses, System};
 use motion::SolveError;
 use nalgebra::{DMatrix, DVector, SymmetricEigen, Vector3};
 use scene::Scene;
-use symbolic::limits::SAME;
+use symbolic::limits::HALF_THE_DIGITS;
 use symbolic::{Evaluator, Expr};
 
 use crate::run::Run;
@@ -169,9 +169,10 @@ impl Arrows {
         }
         let size = forces.norm();
         let found = |axis: usize| {
-            let weights = places[axis].clone().svd(true, true).solve(&forces, SAME).ok()?;
+            let weights = places[axis].clone().svd(true, true).solve(&forces, HALF_THE_DIGITS).ok()?;
             let off = (&places[axis] * &weights - &forces).norm();
-            let is_one = weights.iter().all(|w| *w >= -SAME * size) || weights.iter().all(|w| *w <= SAME * size);
+            let is_one = weights.iter().all(|w| *w >= -HALF_THE_DIGITS * size)
+                || weights.iter().all(|w| *w <= HALF_THE_DIGITS * size);
             (size > 0.0 && off < 1e-6 * size && is_one).then(|| weights.sum())
         };
         let (axis, sign) = [2, 1, 0].into_iter().find_map(|axis| found(axis).map(|weight| (axis, weight.signum())))?;
@@ -235,7 +236,7 @@ fn forces(matter: &DMatrix<f64>, mass: &DMatrix<f64>, reaction: &DVector<f64>, s
         return (DVector::from_element(matter.nrows(), f64::NAN), f64::NAN);
     }
     let SymmetricEigen { eigenvectors, eigenvalues } = SymmetricEigen::new(mass.clone());
-    let least = SAME * eigenvalues.amax();
+    let least = HALF_THE_DIGITS * eigenvalues.amax();
     let roots = eigenvalues.map(|x| 1.0 / x.abs().max(least).max(f64::MIN_POSITIVE).sqrt());
     let weight = &eigenvectors * DMatrix::from_diagonal(&roots) * eigenvectors.transpose();
     let (left, right) = (&weight * matter.transpose(), &weight * reaction);
@@ -243,7 +244,7 @@ fn forces(matter: &DMatrix<f64>, mass: &DMatrix<f64>, reaction: &DVector<f64>, s
         return (DVector::zeros(matter.nrows()), 0.0);
     }
     let largest = left.amax();
-    match left.clone().svd(true, true).solve(&right, SAME * largest) {
+    match left.clone().svd(true, true).solve(&right, HALF_THE_DIGITS * largest) {
         Ok(forces) => {
             let rest = (&left * &forces - &right).norm() / right.norm();
             (forces, rest)
@@ -260,8 +261,10 @@ fn directions(mark: &DMatrix<f64>, conditions: &DMatrix<f64>) -> [f64; 6] {
     }
     let SymmetricEigen { eigenvectors, eigenvalues } = SymmetricEigen::new(conditions.transpose() * conditions);
     let largest = eigenvalues.amax();
-    let allowed: Vec<_> =
-        (0..eigenvalues.len()).filter(|&i| eigenvalues[i] <= SAME * largest).map(|i| eigenvectors.column(i)).collect();
+    let allowed: Vec<_> = (0..eigenvalues.len())
+        .filter(|&i| eigenvalues[i] <= HALF_THE_DIGITS * largest)
+        .map(|i| eigenvectors.column(i))
+        .collect();
     let mut found = [0.0; 6];
     if allowed.is_empty() {
         return found;
@@ -272,7 +275,7 @@ fn directions(mark: &DMatrix<f64>, conditions: &DMatrix<f64>) -> [f64; 6] {
     order.sort_by(|a, b| covariance.eigenvalues[*b].total_cmp(&covariance.eigenvalues[*a]));
     let largest = covariance.eigenvalues.amax();
     // what is left of differences is no direction
-    let least = (SAME * largest).max(SAME * SAME);
+    let least = (HALF_THE_DIGITS * largest).max(HALF_THE_DIGITS * HALF_THE_DIGITS);
     for (k, &i) in order.iter().take(2).enumerate().filter(|(_, i)| covariance.eigenvalues[**i] > least) {
         found[3 * k..3 * k + 3].iter_mut().zip(covariance.eigenvectors.column(i).iter()).for_each(|(to, x)| *to = *x);
     }

@@ -17,8 +17,9 @@ use motion::{Metric, Motion, Setting, Settings, SolveError};
 use super::squares::Power;
 use super::{COARSE, Differences, INSTANTS};
 
-/// Number of starts.
-const STARTS: usize = 32;
+/// Number of starts: as many as this work allows (steps times operations times runs), within these bounds.
+const WORK: usize = 1_300_000;
+const STARTS: [usize; 2] = [24, 96];
 
 /// One start of so many is a guess.
 const GUESSES: usize = 3;
@@ -27,6 +28,9 @@ const GUESSES: usize = 3;
 /// part that one is fitted to is no longer; the next ones are longer by a factor between these.
 const COMPARED: f64 = 0.4;
 const FACTORS: [f64; 2] = [1.2, 2.0];
+
+/// Drawn starts are followed whose gap is at most this many times that of the best guess.
+const DRAWN: f64 = 1.2;
 
 /// The powers after the second. The largest of `k` gaps at a minimum for the power `p` is at most `k^(1/p)`
 /// times the least near it: ends that are farther from the best are left.
@@ -76,15 +80,16 @@ pub(crate) fn search(
 ) -> Result<Option<Found>, SolveError> {
     let mut differences = Differences::new(setting, equations, target, metric, settings)?;
     let Some(first) = differences.closest(aim.guesses) else { return Ok(None) };
-    differences.limit_steps(&first);
+    let work = differences.limit_steps(&first) * (1 + first.len());
+    let mut count = (WORK / work.max(1)).clamp(STARTS[0], STARTS[1]);
     if !aim.may_vanish && differences.is_close(&first, 1.0) {
         differences.refine(settings);
+        count = STARTS[0];
     }
-    // drawn starts are followed that are no worse
-    let limit = differences.largest(&first, 1.0, COARSE);
+    let limit = DRAWN * differences.largest(&first, 1.0, COARSE);
     let (mut guessed, mut drawn) = (Vec::new(), Vec::new());
     let starts = Starts::new(aim, &first, &differences.sizes_at(&first));
-    for number in 0..STARTS {
+    for number in 0..count {
         let Start { constants, growth } = starts.at(number);
         let Some([part, longer]) = growth else {
             let value = differences.largest(&constants, 1.0, COARSE);
@@ -103,7 +108,7 @@ pub(crate) fn search(
         let value = differences.largest(&constants, COMPARED, 1);
         guessed.push(Minimum { value, ..Minimum::start(number, constants) });
     }
-    let half = guessed.partition_point(|guess| guess.first < STARTS / 2);
+    let half = guessed.partition_point(|guess| guess.first < count / 2);
     let better = [&guessed[..half], &guessed].map(better_half);
     guessed.retain(|guess| better.iter().any(|better| better.contains(&guess.first)));
     let mut ends: Vec<Minimum> = guessed.into_iter().chain(drawn).collect();
@@ -114,7 +119,7 @@ pub(crate) fn search(
     }
     for power in POWERS {
         let beyond = (INSTANTS as f64).powf(1.0 / power);
-        let limit = beyond * least_from(STARTS, &ends);
+        let limit = beyond * least_from(count, &ends);
         for end in ends.iter_mut().filter(|end| end.value <= limit) {
             let sum = Power { power, scale: end.value, stride: 1, part: 1.0 };
             let unknowns = differences.minimum(&end.unknowns, &sum);
@@ -131,7 +136,7 @@ pub(crate) fn search(
         let exact = if vanishes { differences.squares(constants, settings) } else { None };
         exact.unwrap_or_else(|| constants.clone())
     };
-    Ok(Some(Found { constants: least(STARTS), by_half: least(STARTS / 2), starts: STARTS }))
+    Ok(Some(Found { constants: least(count), by_half: least(count / 2), starts: count }))
 }
 
 /// The starts of the better half.
