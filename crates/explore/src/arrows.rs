@@ -18,9 +18,12 @@ use symbolic::{Evaluator, Expr};
 
 use crate::run::Run;
 
-/// Step of central differences by a number, where they lose least.
+/// Step of differences by a number, relative to its size or one.
+const BY_NUMBER: f64 = 1e-5;
+
+/// The step by this number.
 pub(crate) fn step_by(x: f64) -> f64 {
-    f64::EPSILON.cbrt() * x.abs().max(1.0)
+    BY_NUMBER * x.abs().max(1.0)
 }
 
 /// Step of differences by time, as a part of the motion.
