@@ -45,8 +45,8 @@ const WIDTH: f64 = 0.2;
 const CONSTANT: f64 = 0.5;
 /// Asked of each motion, in the kinetic metric.
 const ACCURACY: f64 = 1e-18;
-/// Starts that are drawn before one is given up.
-const TRIES: u64 = 20;
+/// Starts that are drawn before one is given up, where equations cannot be solved at others.
+pub(crate) const TRIES: u64 = 20;
 
 /// One motion at one time.
 #[derive(Clone, Debug)]

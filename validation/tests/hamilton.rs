@@ -10,9 +10,6 @@ use referees::maggi::Maggi;
 use scene::Scene;
 use symbolic::{SplitMix, Symbol};
 
-/// Step of differences.
-const H: f64 = 1e-4;
-
 struct Reduced {
     scene: Scene,
     maggi: Maggi,
@@ -77,7 +74,8 @@ impl Reduced {
                 let rates: Vec<f64> = self.free.iter().map(|&i| v[i] + t * acceleration[i]).collect();
                 self.momenta(&moved, &rates)
             };
-            let (after, before, p) = (later(H), later(-H), self.momenta(q, &rates));
+            let h = f64::EPSILON.cbrt();
+            let (after, before, p) = (later(h), later(-h), self.momenta(q, &rates));
             let work: f64 = p.iter().zip(&rates).map(|(p, r)| p * r).sum();
             for a in 0..m {
                 let beside = |by: f64| {
@@ -85,7 +83,7 @@ impl Reduced {
                     moved[self.free[a]] += by;
                     self.lagrangian(&moved, &rates)
                 };
-                right.push((after[a] - before[a]) / (2.0 * H) - (beside(H) - beside(-H)) / (2.0 * H));
+                right.push((after[a] - before[a]) / (2.0 * h) - (beside(h) - beside(-h)) / (2.0 * h));
                 rows.extend((0..m).map(|b| if a == b { work } else { 0.0 } - rates[b] * p[a]));
             }
         }

@@ -1,16 +1,11 @@
 //! What contacts cannot exert: the reaction of a motion along velocities that no contact sees.
 
 use mechanics::elimination::{eliminate, largest, open};
-use motion::band::SAME_ESTIMATE;
+use motion::band::{SAME_ESTIMATE, SOME};
 use motion::{Motion, SolveError};
 use scene::Scene;
 use symbolic::limits::SAME;
 use symbolic::{Evaluator, Expr};
-
-/// Instants that are looked at.
-const INSTANTS: usize = 9;
-/// Steps of the derivative of momenta, as a part of the run.
-const STEP: f64 = 1e-3;
 
 /// A generalized force that a motion needs, and that no forces at the contacts of its bodies amount to.
 #[derive(Clone, Debug, PartialEq)]
@@ -46,10 +41,11 @@ pub fn beyond_contacts(scene: &Scene, motion: &mut Motion) -> Result<Option<Beyo
         Ok(program.evaluate(&[&[t], &now.coordinates[..], &now.velocities].concat()).to_vec())
     };
     let (start, end) = (motion.start(), motion.end());
-    let step = STEP * (end - start);
+    // differences of order 4 lose least where their error is round-off of them
+    let step = f64::EPSILON.powf(0.2) * (end - start);
     let (mut largest, mut size): (Option<Beyond>, f64) = (None, 0.0);
-    for k in 0..INSTANTS {
-        let t = start + 2.0 * step + (end - start - 4.0 * step) * k as f64 / (INSTANTS - 1) as f64;
+    for k in 0..=SOME {
+        let t = start + 2.0 * step + (end - start - 4.0 * step) * k as f64 / SOME as f64;
         let now = at(motion, t)?;
         // central differences of order 4
         let mut rate = vec![0.0; n];

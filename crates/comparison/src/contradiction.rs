@@ -11,7 +11,6 @@ use mechanics::{Domain, Integrability};
 use scene::Scene;
 
 use crate::fits::Fit;
-use crate::growth::LEADS;
 use crate::runs::{Decided, Pair};
 use crate::{Answer, Comparison, Growth, LeadingTerm, Membership, Run, Verdict, membership};
 use motion::band::{Answer as Asked, Known, ask};
@@ -309,7 +308,7 @@ fn stands_out(predicted: &LeadingTerm, pair: &Pair, start: f64) -> bool {
     predicted.length.is_finite()
         && pair.gap.points.iter().any(|point| {
             let past = point.t - start;
-            let leads = predicted.from < LEADS * past && past < LEADS * predicted.reach;
+            let leads = predicted.leads(past, past);
             leads && predicted.length * past.powi(predicted.exponent as i32) > 2.0 * point.limit
         })
 }

@@ -15,9 +15,6 @@ pub struct EpsilonTerm {
     pub acceleration: f64,
 }
 
-/// Steps of ε on both sides of zero, as parts of the run.
-const STEP: f64 = 1e-4;
-
 /// Of Chetaev's motion of a scene, at `count` instants; `None` without a constraint, or where the equations
 /// of one of these instants are singular.
 ///
@@ -28,7 +25,9 @@ pub fn epsilon_term(scene: &Scene, chetaev: &mut Motion, count: usize) -> Result
     if system.constraints.is_empty() {
         return Ok(None);
     }
-    let (g, n, step) = (&system.graph, system.dimension(), STEP * (chetaev.end() - chetaev.start()).abs());
+    let (g, n) = (&system.graph, system.dimension());
+    // central differences lose least there
+    let step = f64::EPSILON.cbrt() * (chetaev.end() - chetaev.start()).abs();
     let compiled = |epsilon: f64| Compiled::new(&first_order::law(system, g.number(epsilon), None));
     let mut laws = [compiled(-step)?, compiled(0.0)?, compiled(step)?];
     let mut metric = Metric::new(system)?;

@@ -13,24 +13,15 @@ use integrate::BoundaryError;
 use mechanics::ConstantsRule;
 use nalgebra::{DMatrix, DVector};
 use symbolic::Expr;
+use symbolic::limits::SAME;
 
-use motion::band::SEARCH_STEPS;
+use motion::band::{SAMPLES, SEARCH_STEPS};
+use motion::shooting::{BEGINNING, LONGER};
 use motion::{Metric, Motion, Prepared, Setting, Settings, SingleRun, SolveError, TIGHTER, larger, outputs, solve};
 
-/// Instants at which the sum of squares is taken.
-pub const INSTANTS: usize = 40;
-
-/// Instants of a search for the least gap; of these every fourth for a first look, elsewhere every second.
-const LOOKED_AT: usize = 300;
+/// Instants at which gaps are looked at; of these every fourth for a first look, and for the sum of squares.
+pub const INSTANTS: usize = 160;
 const COARSE: usize = 4;
-const FINE: usize = 2;
-
-/// Tolerance of the integrations while constants are searched.
-const SEARCH_TOLERANCE: f64 = 1e-7;
-
-/// Other motions may take so many times the steps of the best guess: they are far from it.
-const TIMES: usize = 2;
-const FEW_STEPS: usize = 50;
 
 /// Where the search comes this close, relative to the length of the way, it is refined at the full tolerance.
 pub(crate) const CLOSE: f64 = 1e-4;
@@ -59,7 +50,7 @@ pub fn best_fit(
         return Ok(None);
     }
     let end = target.end();
-    let mut differences = Differences::new(setting, equations, target, INSTANTS, metric, settings)?;
+    let mut differences = Differences::new(setting, equations, target, metric, settings)?;
     let constants = match guesses {
         [only] => Some(only.clone()),
         several => differences.closest(several),
@@ -89,7 +80,7 @@ pub struct Differences {
 }
 
 impl Differences {
-    /// At this number of instants.
+    /// At [`INSTANTS`] of the target.
     ///
     /// # Errors
     /// As of [`best_fit`].
@@ -97,14 +88,13 @@ impl Differences {
         setting: Setting,
         equations: &Equations,
         target: &mut Motion,
-        instants: usize,
         metric: &mut Metric,
         settings: &Settings,
     ) -> Result<Differences, SolveError> {
         let (start, end) = (target.start(), target.end());
         let mut goal = Vec::new();
-        for k in 1..=instants {
-            let t = start + (end - start) * k as f64 / instants as f64;
+        for k in 1..=INSTANTS {
+            let t = start + (end - start) * k as f64 / INSTANTS as f64;
             let outputs = target.at(t)?;
             let factor = metric.factor(t, &outputs.coordinates, &outputs.velocities);
             goal.push((t, DVector::from_vec(outputs.coordinates), factor));
@@ -116,7 +106,7 @@ impl Differences {
         let states = &equations.states;
         let place = |&q: &Expr| states.iter().position(|y| equations.graph.as_symbol(q) == Some(y.symbol));
         let places = equations.coordinates.iter().map(place).collect();
-        let (tolerance, last) = (SEARCH_TOLERANCE, None);
+        let (tolerance, last) = (SAME, None);
         Ok(Differences { prepared, coarse, tolerance, goal, origin, places, start, end, last })
     }
 
@@ -127,7 +117,7 @@ impl Differences {
         self.prepared.set_constants(constants);
         let Ok(run) = self.prepared.integrate(self.end, &options) else { return 0 };
         let steps = run.solution.work.steps + run.solution.work.rejected;
-        self.coarse.max_steps = self.coarse.max_steps.min(TIMES * steps.max(FEW_STEPS));
+        self.coarse.max_steps = self.coarse.max_steps.min(LONGER * steps.max(SAMPLES));
         steps * self.prepared.compiled.cost()[1].operations()
     }
 
@@ -162,7 +152,7 @@ impl Differences {
     /// Whether what these constants leave of differences is so small that it may be nothing.
     fn is_close(&mut self, constants: &[f64], part: f64) -> bool {
         let count = self.instants(part, 1) as f64;
-        self.largest(constants, part, FINE) < CLOSE * self.way(part, 1) / count.sqrt()
+        self.largest(constants, part, 1) < CLOSE * self.way(part, 1) / count.sqrt()
     }
 
     /// All differences with these constants.
@@ -221,18 +211,17 @@ impl Differences {
         self.at(constants, part, stride).map_or(f64::INFINITY, lengths)
     }
 
-    /// For each constant the change by which the first tenth of the motion changes as much as it is long.
+    /// For each constant the change by which a beginning of the motion changes as much as it is long.
     fn sizes_at(&mut self, from: &[f64]) -> Vec<f64> {
-        const PART: f64 = 0.1;
-        let way = self.way(PART, COARSE);
-        let Some(at) = self.at(from, PART, COARSE) else { return vec![1.0; from.len()] };
+        let way = self.way(BEGINNING, COARSE);
+        let Some(at) = self.at(from, BEGINNING, COARSE) else { return vec![1.0; from.len()] };
         let mut size = |j: usize| {
             let mut size = 1.0_f64;
             let (mut grown, mut shrunk) = (false, false);
             for _ in 0..30 {
                 let mut moved = from.to_vec();
                 moved[j] += size;
-                let change = self.at(&moved, PART, COARSE);
+                let change = self.at(&moved, BEGINNING, COARSE);
                 let change = change.map_or(f64::INFINITY, |there| (there - &at).norm());
                 (grown, shrunk) = (grown || change <= way, shrunk || change > way);
                 if grown && shrunk {

@@ -3,8 +3,10 @@
 use mechanics::SingularValues;
 use nalgebra::{DMatrix, DVector};
 
+use motion::band::LOOKS;
 use motion::{Metric, subtract};
 use motion::{Motion, SolveError};
+use symbolic::limits::SAME;
 
 /// Growth of a gap near the start: `gap ≈ coefficient · (t − t₀)^exponent`.
 #[derive(Clone, Debug)]
@@ -48,14 +50,20 @@ pub struct LeadingTerm {
 }
 
 /// A growth is compared with its prediction if it was measured within this part of the time in which the
-/// predicted term leads.
-pub(crate) const LEADS: f64 = 0.3;
+/// predicted term leads. It is measured within as large a part of the common time.
+const LEADS: f64 = 0.3;
+
+impl LeadingTerm {
+    /// Whether it leads between these times.
+    pub fn leads(&self, from: f64, to: f64) -> bool {
+        self.from < LEADS * from && to < LEADS * self.reach
+    }
+}
 
 impl Growth {
     /// Whether it is that of this term, as far as one was measured where the term leads.
     pub fn is_of(&self, predicted: &LeadingTerm) -> bool {
-        self.exponent.round() == f64::from(predicted.exponent)
-            || predicted.from < LEADS * self.from && self.to < LEADS * predicted.reach
+        self.exponent.round() == f64::from(predicted.exponent) || predicted.leads(self.from, self.to)
     }
 
     /// `|measured − predicted| / |predicted|` of leading coefficients, Euclidean over the coordinates.
@@ -68,13 +76,8 @@ fn norm(x: &[f64]) -> f64 {
     x.iter().map(|a| a * a).sum::<f64>().sqrt()
 }
 
-/// The shortest fit range, as a fraction of the common time, and the longest.
-const SHORTEST: f64 = 1e-4;
-const LONGEST: f64 = 0.3;
 /// Where the fit range begins, as a fraction of its end.
 const BEGIN: f64 = 0.15;
-/// Instants in the fit.
-const FIT_POINTS: usize = 24;
 /// The gap at the beginning of the fit range has to be this many times its certainty limit.
 const FIT_CERTAINTY: f64 = 300.0;
 
@@ -98,17 +101,17 @@ pub fn growth(
         Ok((s, difference, gap))
     };
     // the shortest range over which the gap stands out from the errors
-    let mut to = horizon * SHORTEST;
+    let mut to = horizon * SAME;
     while difference_at(BEGIN * to)?.2 <= FIT_CERTAINTY * limit_at(start + BEGIN * to) {
         to *= 1.5;
-        if to > LONGEST * horizon {
+        if to > LEADS * horizon {
             return Ok(None);
         }
     }
     let from = BEGIN * to;
-    let step = (to - from) / (FIT_POINTS - 1) as f64;
+    let step = (to - from) / (LOOKS - 1) as f64;
     let differences: Vec<(f64, Vec<f64>, f64)> =
-        (0..FIT_POINTS).map(|i| difference_at(from + step * i as f64)).collect::<Result<_, _>>()?;
+        (0..LOOKS).map(|i| difference_at(from + step * i as f64)).collect::<Result<_, _>>()?;
     // log gap = log c + k log s + a s + b s²
     let design = |s: f64| [1.0, s.ln(), s / to, (s / to).powi(2)];
     let shorter = |s: f64| [1.0, s.ln(), s / to, 0.0];

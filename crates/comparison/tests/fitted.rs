@@ -104,8 +104,7 @@ fn fits_with_derivatives_that_are_carried_end_at_the_same_constants_in_fewer_run
         let mut metric = Metric::new(&scene.system).expect("a metric");
         let guess: Vec<f64> = goal.iter().map(|mu| mu * 0.6 + 0.05).collect();
         let mut searched = |carries: bool| {
-            let differences =
-                Differences::new(setting(&scene), &equations, &mut target, INSTANTS, &mut metric, &settings);
+            let differences = Differences::new(setting(&scene), &equations, &mut target, &mut metric, &settings);
             let mut differences = differences.expect("differences");
             let clock = Instant::now();
             let count = INSTANTS * differences.dimension();

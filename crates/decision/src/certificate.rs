@@ -3,8 +3,9 @@
 use std::collections::BTreeSet;
 
 use symbolic::Evaluator;
+use symbolic::limits::PRIMES;
 
-use crate::exact::{Echelon, Exact, Jet, Modular, PARTS, TRIED, in_any_field, inverse};
+use crate::exact::{Echelon, Exact, Jet, Modular, PARTS, in_any_field, inverse};
 use crate::family::CostateRate;
 use crate::flow::inputs;
 use crate::order_by_order::order;
@@ -90,13 +91,13 @@ fn roots(radicands: impl Iterator<Item = Exact>) -> Vec<(String, u64)> {
         let (n, d, twos, fives) = x.fraction.parts();
         primes.extend([(2, twos), (5, fives)].into_iter().filter(|(_, exponent)| *exponent != 0).map(|(p, _)| p));
         let mut rest = n.saturating_mul(d).abs();
-        for prime in 2..TRIED {
+        for prime in 2..i128::from(PRIMES) {
             while rest > 1 && rest % prime == 0 {
                 rest /= prime;
                 primes.insert(prime);
             }
         }
-        primes.extend((1 < rest && rest < TRIED * TRIED).then_some(rest));
+        primes.extend((1 < rest && rest < i128::from(PRIMES * PRIMES)).then_some(rest));
     }
     primes.into_iter().filter_map(|p| Some((p.to_string(), Modular::root_of_prime(p)?.value()))).collect()
 }

@@ -5,12 +5,10 @@ use std::collections::{HashMap, HashSet};
 
 use equations::Equations;
 use mechanics::{Parameter, System};
+use symbolic::limits::TOO_LONG;
 use symbolic::{Expr, Graph, Symbol, Vanishing};
 
 use crate::family::{Family, costate};
-
-/// Nodes over which an elimination is given up.
-const LARGEST: usize = 20_000;
 
 /// Whether the family's equations hold along every motion of `curve` with `η = section`, or with every `η`
 /// where that is `None`; wherever both are regular.
@@ -171,10 +169,10 @@ fn eliminated(g: &Graph, equations: &[Expr], z: &[Symbol]) -> Option<Vec<Expr>> 
                 continue;
             }
             for (x, &y) in other.iter_mut().zip(&row) {
-                *x = g.expand_if_shorter(g.sub(*x, g.mul(factor, y)), LARGEST);
+                *x = g.expand_if_shorter(g.sub(*x, g.mul(factor, y)), TOO_LONG);
             }
             other[j] = g.zero();
-            if g.size(other) > LARGEST {
+            if g.size(other) > TOO_LONG {
                 return None;
             }
         }

@@ -4,6 +4,7 @@ use std::collections::HashMap;
 use std::sync::Arc;
 
 use mechanics::{State, System};
+use symbolic::limits::IN_FIELD;
 use symbolic::{Evaluator, Expr, Symbol, Tape};
 
 use crate::DecisionError;
@@ -14,9 +15,6 @@ use crate::identity::is_identity;
 use crate::proof::Question;
 use crate::random_start::at_random;
 use crate::start::ExactStart;
-
-/// Points of a second field at which an identity is tried again after it was found.
-const TRIALS: u64 = 4;
 
 /// Constants as functions of the start, for which the motion belongs to the family at every start on the
 /// constraint.
@@ -117,7 +115,7 @@ impl Ansatz<'_> {
         let fractions = in_field(first, || self.fractions(start, points, unknowns))?;
         in_field(second, || {
             let solution: Vec<Modular> = fractions.iter().map(|&x| Modular::fraction(x)).collect::<Option<_>>()?;
-            for seed in points..points + TRIALS {
+            for seed in points..points + IN_FIELD {
                 for row in self.rows(start, seed)? {
                     let sum = row.iter().zip(&solution).fold(Modular::ZERO, |sum, (&r, &a)| sum + r * a);
                     if sum != row[unknowns] {

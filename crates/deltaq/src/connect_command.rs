@@ -6,14 +6,12 @@ use motion::{Aim, Connection, Connections, SecondVariation, Settings, connect};
 use scene::Scene;
 use schemars::JsonSchema;
 use serde::Serialize;
+use symbolic::limits::SHOWN;
 
 use crate::cli::ConnectArguments;
 use crate::columns::{Numbers, named};
 use crate::solve_command::{choice, limited};
 use program::{Answer, TextOrJson, parallel, typed};
-
-/// Motions that are printed in text; JSON has all.
-const PRINTED: usize = 30;
 
 /// Runs the command.
 pub(crate) fn run(arguments: &ConnectArguments) -> Result<Answer> {
@@ -76,12 +74,12 @@ fn text(scene: &Scene, formulation: &str, aim: &Aim, found: &Connections) -> Str
     if !found.found.is_empty() && found.found.iter().all(is_neither) {
         text += "none of them is a local minimum of the action: if there is one, it was not found\n";
     }
-    for (motion, number) in found.found.iter().zip(1..).take(PRINTED) {
+    for (motion, number) in found.found.iter().zip(1..).take(SHOWN) {
         text += "\n";
         text += &one(number, motion, found, aim);
     }
-    if found.found.len() > PRINTED {
-        text += &format!("\n{} more in JSON: --format json\n", found.found.len() - PRINTED);
+    if found.found.len() > SHOWN {
+        text += &format!("\n{} more in JSON: --format json\n", found.found.len() - SHOWN);
     }
     text
 }

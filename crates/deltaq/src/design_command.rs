@@ -7,11 +7,9 @@ use fit::{Aim, Best, Design, Designed, Deviations, EXCLUDED, Film, Point, Questi
 use motion::Settings;
 use program::{Answer, TextOrJson, parallel, typed};
 use scene::Scene;
+use symbolic::limits::SHOWN;
 
 use crate::cli::DesignArguments;
-
-/// Other ends of the search that are printed in text.
-const PRINTED: usize = 2;
 
 /// Chooses films.
 ///
@@ -93,7 +91,7 @@ impl Found<'_> {
                 let _ = writeln!(text, "the scene's own numbers: {error}");
             }
         }
-        for other in others.iter().take(PRINTED) {
+        for other in others.iter().take(SHOWN) {
             let chosen = self.design.chosen().iter().zip(&other.at);
             let at: Vec<String> = chosen.map(|(chosen, at)| format!("{} = {at:.5}", chosen.label)).collect();
             let _ = writeln!(text, "another end of the search, {}: {}", at.join(", "), self.words(other));

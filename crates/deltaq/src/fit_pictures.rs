@@ -4,11 +4,11 @@ use std::path::PathBuf;
 
 use anyhow::Result;
 use fit::{Film, Fit, RISE, Row, profile};
+use motion::band::LOOKS;
 use picture::{Axis, Curve, Panel, Picture, Style};
 use program::File;
 
-/// Points of a profile, and how far it goes beyond the interval, in its widths.
-const POINTS: u32 = 40;
+/// How far a profile goes beyond the interval, in its widths.
 const BEYOND: f64 = 0.5;
 
 /// `film.svg`, `residuals.svg`, and `profile-NAME.svg` for each of these numbers.
@@ -95,7 +95,7 @@ fn rise(row: &Row, name: &str) -> Option<Picture> {
     let (low, high) = (low?, high?);
     let bound = problem.unknowns().iter().find(|u| u.label() == name)?.bound.unwrap_or(f64::NEG_INFINITY);
     let (from, to) = ((low - BEYOND * (high - low)).max(bound), high + BEYOND * (high - low));
-    let at: Vec<f64> = (0..=POINTS).map(|i| from + (to - from) * f64::from(i) / f64::from(POINTS)).collect();
+    let at: Vec<f64> = (0..=LOOKS).map(|i| from + (to - from) * i as f64 / LOOKS as f64).collect();
     let rises = profile(problem, fit, name, &at)?;
     let points = at.iter().copied().zip(rises).filter(|(_, rise)| rise.is_finite()).collect();
     let curves = vec![

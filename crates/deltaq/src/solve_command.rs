@@ -258,16 +258,15 @@ const PATIENCE: Duration = Duration::from_millis(500);
 
 /// Does `work`, and shows on a terminal how far that is which is watched, unless `quiet`.
 fn progress<T>(watched: &Interrupt, setting: Setting, quiet: bool, work: impl FnOnce() -> T) -> T {
-    const PARTS: f64 = 1000.0;
     let (start, end) = (setting.start.t, setting.end);
     let (done, news) = channel::<()>();
     thread::scope(|scope| {
         scope.spawn(move || {
             let mut bar = None;
             while news.recv_timeout(PATIENCE) == Err(RecvTimeoutError::Timeout) {
-                let bar = bar.get_or_insert_with(|| parallel::progress(PARTS as usize, quiet));
+                let bar = bar.get_or_insert_with(|| parallel::progress(SAMPLES, quiet));
                 let (t, steps) = watched.reached();
-                bar.set_position(((t - start) / (end - start) * PARTS) as u64);
+                bar.set_position(((t - start) / (end - start) * SAMPLES as f64) as u64);
                 bar.set_message(format!("t = {t:.6}, {steps} steps"));
             }
             if let Some(bar) = bar {

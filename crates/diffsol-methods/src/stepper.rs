@@ -24,8 +24,6 @@ type States = NalgebraVec<f64>;
 const MULTISTEP_MOVE: f64 = 1000.0;
 /// What Newton's iteration may leave, in tolerances: the estimate misses it; bad mass matrices make it large.
 const ITERATION: f64 = 0.02;
-/// Limits of diffsol on failures; a run that meets them is stuck, the step size being bounded from below.
-const LIBRARY_FAILURES: usize = 100_000;
 
 /// A method of diffsol.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -58,8 +56,9 @@ pub(crate) fn run(method: Diffsol, system: &System, start: &Start, end: f64, opt
         Err(error) => return stepping::run(system, Err(solver_cause(&error)), start, end, options),
     };
     problem.ode_options.nonlinear_solver_tolerance = ITERATION;
-    problem.ode_options.max_nonlinear_solver_failures = LIBRARY_FAILURES;
-    problem.ode_options.max_error_test_failures = LIBRARY_FAILURES;
+    // failures shorten steps, which are bounded from below
+    problem.ode_options.max_nonlinear_solver_failures = usize::MAX;
+    problem.ode_options.max_error_test_failures = usize::MAX;
     let call = Call { system, start, end, options };
     match method {
         Diffsol::Bdf => call.drive(problem.bdf::<Linear>(), Kind { degree: 5, told_above: MULTISTEP_MOVE }),

@@ -4,16 +4,10 @@
 use std::collections::HashMap;
 
 use mechanics::linear::Factors;
-use symbolic::limits::{CONTRACTION, HALF_THE_DIGITS, ITERATIONS};
+use symbolic::limits::{CONTRACTION, HALF_THE_DIGITS, ITERATIONS, LAST_DIGITS};
 use symbolic::{Evaluator, Expr, Graph, Symbol};
 
 use crate::DiscreteError;
-
-/// A correction relative to the largest unknown under which an iteration has converged.
-const SOLVED: f64 = 4e-15;
-
-/// A correction that the next one, by quadratic convergence, would not be noticed after.
-const UNNOTICED: f64 = 2e-17;
 
 /// What corrections under this part of the unknowns lead to is near.
 const FAR: f64 = 1e-2;
@@ -80,9 +74,10 @@ impl Iteration {
                 *z -= change;
             }
             found = self.relative_correction(first);
-            // of a quadratically convergent sequence the next term is found · (found / before)²
+            // of a quadratically convergent sequence the next term is found · (found / before)²; under the
+            // last digit it is not noticed
             let next = found * (found / before).powi(2);
-            if self.linear || found <= SOLVED || (before.is_finite() && next <= UNNOTICED) {
+            if self.linear || found <= LAST_DIGITS || (before.is_finite() && next <= f64::EPSILON) {
                 return Ok(());
             }
             let shrinks = found < CONTRACTION * before;
@@ -90,11 +85,11 @@ impl Iteration {
                 return Ok(());
             }
             if !shrinks && self.of_rates(first).max(impulses) > FAR {
-                return Err(DiscreteError::NotConverged { t, iterations, found, limit: SOLVED });
+                return Err(DiscreteError::NotConverged { t, iterations, found, limit: LAST_DIGITS });
             }
             before = found;
         }
-        Err(DiscreteError::NotConverged { t, iterations: ITERATIONS, found, limit: SOLVED })
+        Err(DiscreteError::NotConverged { t, iterations: ITERATIONS, found, limit: LAST_DIGITS })
     }
 
     fn relative_correction(&self, first: usize) -> f64 {

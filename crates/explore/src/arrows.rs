@@ -13,16 +13,21 @@ use mechanics::{Pose, Poses, System};
 use motion::SolveError;
 use nalgebra::{DMatrix, DVector, SymmetricEigen, Vector3};
 use scene::Scene;
+use symbolic::limits::HALF_THE_DIGITS;
 use symbolic::{Evaluator, Expr};
 
 use crate::run::Run;
 
-/// Step of differences by a coordinate, relative to its size or one.
-pub(crate) const BY_COORDINATE: f64 = 1e-5;
+/// Step of differences by a number, relative to its size or one.
+const BY_NUMBER: f64 = 1e-5;
+
+/// The step by this number.
+pub(crate) fn step_by(x: f64) -> f64 {
+    BY_NUMBER * x.abs().max(1.0)
+}
+
 /// Step of differences by time, as a part of the motion.
-pub(crate) const BY_TIME: f64 = 1e-4;
-/// Directions and forces below this part of the largest are zero.
-const ZERO: f64 = 1e-7;
+const BY_TIME: f64 = 1e-4;
 
 /// What is needed of a scene, compiled.
 pub(crate) struct Arrows {
@@ -128,7 +133,7 @@ impl Arrows {
 
     /// Poses with coordinate `i` a little less and a little more, and by how much these are apart.
     fn around(&mut self, t: f64, q: &[f64], i: usize) -> ([Vec<Pose>; 2], f64) {
-        let h = BY_COORDINATE * q[i].abs().max(1.0);
+        let h = step_by(q[i]);
         let at = |step: f64| {
             let mut q = q.to_vec();
             q[i] += step;
@@ -139,7 +144,7 @@ impl Arrows {
 
     /// `∂/∂t` of the place whose path is drawn.
     fn drift(&mut self, t: f64, q: &[f64]) -> DVector<f64> {
-        let h = BY_COORDINATE * t.abs().max(1.0);
+        let h = step_by(t);
         let mut at = |t: f64| Vector3::from(self.poses.at(t, q)[self.first].marked());
         let drift = (at(t + h) - at(t - h)) / (2.0 * h);
         DVector::from_column_slice(drift.as_slice())
@@ -167,9 +172,10 @@ impl Arrows {
         }
         let size = forces.norm();
         let found = |axis: usize| {
-            let weights = places[axis].clone().svd(true, true).solve(&forces, ZERO).ok()?;
+            let weights = places[axis].clone().svd(true, true).solve(&forces, HALF_THE_DIGITS).ok()?;
             let off = (&places[axis] * &weights - &forces).norm();
-            let is_one = weights.iter().all(|w| *w >= -ZERO * size) || weights.iter().all(|w| *w <= ZERO * size);
+            let is_one = weights.iter().all(|w| *w >= -HALF_THE_DIGITS * size)
+                || weights.iter().all(|w| *w <= HALF_THE_DIGITS * size);
             (size > 0.0 && off < 1e-6 * size && is_one).then(|| weights.sum())
         };
         let (axis, sign) = [2, 1, 0].into_iter().find_map(|axis| found(axis).map(|weight| (axis, weight.signum())))?;
@@ -233,7 +239,7 @@ fn forces(matter: &DMatrix<f64>, mass: &DMatrix<f64>, reaction: &DVector<f64>, s
         return (DVector::from_element(matter.nrows(), f64::NAN), f64::NAN);
     }
     let SymmetricEigen { eigenvectors, eigenvalues } = SymmetricEigen::new(mass.clone());
-    let least = ZERO * eigenvalues.amax();
+    let least = HALF_THE_DIGITS * eigenvalues.amax();
     let roots = eigenvalues.map(|x| 1.0 / x.abs().max(least).max(f64::MIN_POSITIVE).sqrt());
     let weight = &eigenvectors * DMatrix::from_diagonal(&roots) * eigenvectors.transpose();
     let (left, right) = (&weight * matter.transpose(), &weight * reaction);
@@ -241,7 +247,7 @@ fn forces(matter: &DMatrix<f64>, mass: &DMatrix<f64>, reaction: &DVector<f64>, s
         return (DVector::zeros(matter.nrows()), 0.0);
     }
     let largest = left.amax();
-    match left.clone().svd(true, true).solve(&right, ZERO * largest) {
+    match left.clone().svd(true, true).solve(&right, HALF_THE_DIGITS * largest) {
         Ok(forces) => {
             let rest = (&left * &forces - &right).norm() / right.norm();
             (forces, rest)
@@ -258,8 +264,10 @@ fn directions(mark: &DMatrix<f64>, conditions: &DMatrix<f64>) -> [f64; 6] {
     }
     let SymmetricEigen { eigenvectors, eigenvalues } = SymmetricEigen::new(conditions.transpose() * conditions);
     let largest = eigenvalues.amax();
-    let allowed: Vec<_> =
-        (0..eigenvalues.len()).filter(|&i| eigenvalues[i] <= ZERO * largest).map(|i| eigenvectors.column(i)).collect();
+    let allowed: Vec<_> = (0..eigenvalues.len())
+        .filter(|&i| eigenvalues[i] <= HALF_THE_DIGITS * largest)
+        .map(|i| eigenvectors.column(i))
+        .collect();
     let mut found = [0.0; 6];
     if allowed.is_empty() {
         return found;
@@ -270,7 +278,7 @@ fn directions(mark: &DMatrix<f64>, conditions: &DMatrix<f64>) -> [f64; 6] {
     order.sort_by(|a, b| covariance.eigenvalues[*b].total_cmp(&covariance.eigenvalues[*a]));
     let largest = covariance.eigenvalues.amax();
     // what is left of differences is no direction
-    let least = (ZERO * largest).max(ZERO * ZERO);
+    let least = (HALF_THE_DIGITS * largest).max(HALF_THE_DIGITS * HALF_THE_DIGITS);
     for (k, &i) in order.iter().take(2).enumerate().filter(|(_, i)| covariance.eigenvalues[**i] > least) {
         found[3 * k..3 * k + 3].iter_mut().zip(covariance.eigenvectors.column(i).iter()).for_each(|(to, x)| *to = *x);
     }

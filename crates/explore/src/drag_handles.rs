@@ -10,7 +10,7 @@ use motion::SolveError;
 use scene::Scene;
 use serde_json::{Value, json};
 
-use crate::arrows::{BY_COORDINATE, BY_TIME};
+use crate::arrows::step_by;
 use crate::bodies::shown;
 use crate::controls::start_numbers;
 use crate::question::Question;
@@ -21,7 +21,7 @@ pub(crate) fn of(scene: &Scene, question: &Question) -> Result<Option<Value>, So
     let Some(here) = held(scene)? else { return Ok(None) };
     let mut numbers = Vec::new();
     for (name, value) in start_numbers(scene) {
-        let step = BY_COORDINATE * value.abs().max(1.0);
+        let step = step_by(value);
         let mut set: Vec<(String, f64)> = question.set.iter().map(|(name, x)| (name.clone(), *x)).collect();
         set.retain(|(known, _)| *known != name && !motion::is_costate(known));
         set.push((name.clone(), value + step));
@@ -39,7 +39,7 @@ fn held(scene: &Scene) -> Result<Option<[f64; 9]>, SolveError> {
     let Some(body) = view.bodies.iter().position(|body| view.is_moved(&scene.system, body)) else { return Ok(None) };
     let mut poses = view.poses(&scene.system)?;
     let pose = poses.at(start.t, &start.q).swap_remove(body);
-    let h = BY_TIME * start.t.abs().max(1.0);
+    let h = step_by(start.t);
     let marked = |poses: &mut Poses, h: f64| {
         let q: Vec<f64> = start.q.iter().zip(&start.v).map(|(q, v)| q + h * v).collect();
         poses.at(start.t + h, &q)[body].marked()

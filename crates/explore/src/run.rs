@@ -2,9 +2,9 @@
 
 use equations::{Equations, Outputs};
 use integrate::{Options, Status};
-use motion::band::COARSEST;
 use motion::{Choice, Motion, Settings, SingleRun, SolveError, Varying, error_estimate, setting, solve_choice};
 use scene::Scene;
+use symbolic::limits::SAME;
 
 use crate::cache::Cache;
 use crate::question::Question;
@@ -16,7 +16,7 @@ const MAX_STEPS: [usize; 2] = [200_000, 5_000];
 pub(crate) fn settings(question: &Question) -> Settings {
     let of = |tolerance: f64, max_steps: usize| Settings { tolerance, max_steps, ..Settings::default() };
     match question.tolerance {
-        _ if question.glance => of(COARSEST, MAX_STEPS[1]),
+        _ if question.glance => of(SAME, MAX_STEPS[1]),
         tolerance if tolerance > 0.0 => of(tolerance, MAX_STEPS[0]),
         _ => of(Settings::default().tolerance, MAX_STEPS[0]),
     }

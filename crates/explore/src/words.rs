@@ -3,16 +3,13 @@
 use comparison::words::{Headline, decisions, rows};
 use comparison::{Answer, Comparison, Extent, Gap, Pair, Verdict, integrability};
 use mechanics::Integrability;
-use motion::{CHETAEV, EquationStyle, Metric, SolveError, VAKONOMIC, derive_at, equations_text, system_text};
+use motion::{CHETAEV, EquationStyle, Metric, SolveError, TRUSTED, VAKONOMIC, derive_at, equations_text, system_text};
 use serde_json::{Value, json};
 
 use crate::motions::yardstick;
 use crate::question::{Question, Refused};
 use crate::run::settings;
 use crate::subject::Subject;
-
-/// A gap from which on motions are apart, in the unit of the yardstick.
-const SEEN: f64 = 1e-3;
 
 /// The system and the equations of every motion, in Markdown with LaTeX.
 pub(crate) fn equations(subject: &Subject) -> Result<Value, Refused> {
@@ -80,7 +77,7 @@ fn pair(comparison: &Comparison, pair: &Pair, (yardstick, unit): (f64, &str)) ->
     let coordinates = coordinates.map(|(c, by)| json!({ "name": c.name, "unit": c.unit, "by": by }));
     json!({
         "first": label(pair.first), "second": label(pair.second), "verdict": gap.verdict.word(), "because": because,
-        "proved": gap.proved, "certain": gap.certain_from, "visible": visible(gap, SEEN * yardstick), "largest": gap.largest / yardstick,
+        "proved": gap.proved, "certain": gap.certain_from, "visible": visible(gap, TRUSTED * yardstick), "largest": gap.largest / yardstick,
         "unit": unit, "until": gap.end, "coordinates": coordinates.collect::<Vec<_>>(),
     })
 }

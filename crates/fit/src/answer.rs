@@ -9,6 +9,7 @@ use scene::Scene;
 
 use crate::design::length_that_tells;
 use crate::fit::{sought, with_intervals};
+use crate::planned::MOST_NUMBERS;
 use crate::profile::LAST;
 use crate::question::{SLIP, has_constants, is_constant, is_law, problem_of};
 use crate::search::{HOPELESS, begun, is_as_high};
@@ -16,16 +17,11 @@ use crate::settled::{explain, settle};
 use crate::verdict::{beside, is_excluded, least};
 use crate::{Film, Fit, FitError, Problem, Question, Row, Unknown, Verdict, creep, known, verdicts};
 
-/// Most numbers of all films: with them a fit takes minutes.
-const MOST_NUMBERS: usize = 300_000;
-
 /// Further groups of starts for a formulation that would be excluded and is not poor, or where none fits.
 const GROUPS: usize = 3;
 
 /// Rounds in which standard deviations are estimated, and the part of themselves to which they are.
 const ROUNDS: usize = 4;
-/// χ² of two families that are one, or of which one contains the other, are in order up to this.
-const SAME: f64 = 0.5;
 
 /// A fit with what was fitted.
 type Fitted = Result<(Problem, Fit), FitError>;
@@ -220,7 +216,7 @@ fn in_order(
             continue;
         }
         let (Ok((of, best)), Ok((problem, fit))) = (&fits[i].1, &fits[j].1) else { continue };
-        if best.chi_squared + SAME < fit.chi_squared
+        if !is_as_high(fit.chi_squared, best.chi_squared)
             && let Some(start) = known::same_motion(scene, (&fits[i].0, of, best), (&fits[j].0, problem))
         {
             let found = again(problem, &start);
@@ -232,7 +228,7 @@ fn in_order(
     for (choice, fitted) in fits.iter_mut().filter(|(choice, _)| known::contains_chetaev(scene, choice)) {
         ordered = true;
         let Ok((problem, found)) = fitted else { continue };
-        if found.chi_squared > fit.chi_squared + SAME {
+        if !is_as_high(found.chi_squared, fit.chi_squared) {
             let starts = known::beside_chetaev(scene, choice, problem, (own, chetaev, &known::numbers(fit)));
             let found: Vec<Fitted> = starts.iter().map(|start| again(problem, start)).collect();
             found.into_iter().for_each(|found| keep_less(fitted, found));

@@ -6,20 +6,15 @@
 
 use motion::shooting::Minimum;
 
-use crate::distribution::{RISE, normal_tails};
-use crate::fit::RISE_AT_BOUND;
+use crate::distribution::{RISE, normal_tails, rise_at_bound};
 use crate::profile::Profile;
+use crate::search::{HALVINGS, NEAR_STEPS};
 use crate::{Estimate, Fit, FitError, Problem, Unknown};
 
-/// Maximum number of halvings of the initial 1/N down to the least one, and factor by which motions may take
-/// more steps than there.
-const HALVINGS: i32 = 8;
-const STEPS: usize = 16;
-
-/// `problem` with a bound for its unknown `i`, 1/N: the least with which motions can be followed.
+/// `problem` with a bound for its unknown `i`, 1/N: the least of its halves with which motions can be followed.
 pub(crate) fn followed(problem: &Problem, i: usize) -> Problem {
     let start = problem.start()[i];
-    let mut tried = problem.limited(problem.start(), STEPS);
+    let mut tried = problem.limited(problem.start(), NEAR_STEPS);
     let mut reaches = |slip: f64| {
         let mut theta = problem.start().to_vec();
         theta[i] = slip;
@@ -40,7 +35,7 @@ pub(crate) fn joined(
     let creeping = creeping.map(|mut fit| {
         let (slip, rise) = (&mut fit.estimates[i], at_bound.map(|kept| kept - fit.chi_squared));
         // between 0 and the least that is followed, the end is at 0
-        if slip.interval[0] <= least || rise.is_some_and(|rise| rise <= RISE_AT_BOUND) {
+        if slip.interval[0] <= least || rise.is_some_and(|rise| rise <= rise_at_bound()) {
             (slip.interval[0], slip.profiled) = (0.0, true);
         }
         slip.at_bound = rise.map_or(slip.at_bound, |rise| Some(0.5 * normal_tails(rise.max(0.0).sqrt())));

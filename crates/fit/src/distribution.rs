@@ -1,5 +1,7 @@
 //! Tail probabilities of the normal and the χ² distribution.
 
+use symbolic::limits::ITERATIONS;
+
 /// `P(X > x)` of a χ² distribution with `k > 0` degrees of freedom: the incomplete gamma function
 /// `Q(k/2, x/2)`, by its series where that converges fast and by a continued fraction otherwise.
 ///
@@ -63,16 +65,25 @@ pub const RISE: f64 = 3.841_458_820_694_124;
 /// is this much above: by noise, where it is right, in one of 9,300 films.
 pub const EXCLUDED: f64 = 15.0;
 
+/// χ² by which a number of 95 % rises where it is at its bound: `½χ²₀ + ½χ²₁`.
+pub(crate) fn rise_at_bound() -> f64 {
+    exceeded(2.0 * chi_squared_tail(RISE, 1.0), 1.0)
+}
+
 /// What χ² has to be above the least for an exclusion at the same level, where the other has `more ≥ 1`
 /// unknowns: noise lowers χ² by a χ² distribution with as many degrees of freedom.
 pub fn threshold(more: usize) -> f64 {
-    let (level, more) = (chi_squared_tail(EXCLUDED, 1.0), more.max(1) as f64);
-    let (mut low, mut high) = (0.0, 4.0 * (EXCLUDED + more));
-    for _ in 0..80 {
+    if more > 1 { exceeded(chi_squared_tail(EXCLUDED, 1.0), more as f64) } else { EXCLUDED }
+}
+
+/// What χ² of so many degrees of freedom exceeds at this probability, of one that [`EXCLUDED`] has or more.
+fn exceeded(level: f64, freedom: f64) -> f64 {
+    let (mut low, mut high) = (0.0, 4.0 * (EXCLUDED + freedom));
+    for _ in 0..ITERATIONS {
         let middle = 0.5 * (low + high);
-        if chi_squared_tail(middle, more) > level { low = middle } else { high = middle }
+        if chi_squared_tail(middle, freedom) > level { low = middle } else { high = middle }
     }
-    if more > 1.0 { high } else { EXCLUDED }
+    high
 }
 
 /// Standard deviations of a normal distribution whose tails are as rare as χ² this far `above` with `more`
@@ -83,7 +94,7 @@ pub(crate) fn sigmas(above: f64, more: usize) -> f64 {
         return above.sqrt();
     }
     let (mut low, mut high) = (0.0, above.sqrt());
-    for _ in 0..60 {
+    for _ in 0..ITERATIONS {
         let middle = 0.5 * (low + high);
         if normal_tails(middle) > rare { low = middle } else { high = middle }
     }

@@ -4,17 +4,12 @@ use motion::shooting::{Minimum, least_from};
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use crate::distribution::{RISE, normal_tails};
-use crate::profile::{CLOSE, Profile};
+use crate::distribution::{RISE, normal_tails, rise_at_bound};
+use crate::profile::{LAST, Profile};
 use crate::residual_tests::{ResidualTest, residual_tests};
-use crate::search::{Excluding, Found, search};
+use crate::search::{Excluding, Found, NEAR_STEPS, search};
 use crate::shown::{Near, Shown, moving, off_stationary, shown};
 use crate::{Film, FitError, Problem, Residual, Unknown};
-
-/// χ² by which a number of 95 % rises where it is at its bound: `½χ²₀ + ½χ²₁`.
-pub(crate) const RISE_AT_BOUND: f64 = 2.705_543_454_095_404;
-/// Times the steps of the best motion that one of a profile may take.
-const PROFILE_STEPS: usize = 5;
 
 /// An unknown as it is estimated.
 #[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
@@ -166,7 +161,7 @@ pub(crate) fn with_intervals(problem: &Problem, fit: Fit) -> Fit {
     }
     let whole = Minimum { value: fit.chi_squared, ..Minimum::start(0, fit.numbers()) };
     let Ok(Near { held, less, best, jacobian }) = Near::new(problem, &whole) else { return fit };
-    let mut near = less.coarse().limited(&best.unknowns, PROFILE_STEPS);
+    let mut near = less.coarse().limited(&best.unknowns, NEAR_STEPS);
     let Ok((values, _)) = near.weighed(&best.unknowns, false) else { return fit };
     let best = Minimum { value: values.norm_squared(), ..best };
     let errors = shown(&less, &best.unknowns, &jacobian).errors;
@@ -194,7 +189,7 @@ fn stationary(problem: &Problem, best: &Minimum, i: usize, step: f64) -> Estimat
     let lengths = jacobian.column_iter().map(|column| column.norm());
     let mut errors: Vec<f64> = lengths.map(|l| if l > 0.0 { l.recip() } else { 1.0 }).collect();
     errors[i] = step;
-    let near = problem.limited(&best.unknowns, PROFILE_STEPS);
+    let near = problem.limited(&best.unknowns, NEAR_STEPS);
     let mut profile = Profile::new(&near, &jacobian, best, &errors, i);
     let interval = [-1.0, 1.0].map(|side| profile.end(side, RISE, bound));
     let error = 0.5 * (interval[1] - interval[0]) / RISE.sqrt();
@@ -237,14 +232,14 @@ fn estimate(problem: &Problem, best: &Minimum, errors: &[f64], i: usize, profile
         let Some(profile) = &mut profile else { return at.max(bound) };
         if side < 0.0 && at <= bound {
             let rise = profile.rise(bound);
-            if value <= bound || rise <= RISE_AT_BOUND || rise.is_infinite() {
+            if value <= bound || rise <= rise_at_bound() || rise.is_infinite() {
                 return bound;
             }
             profiled = true;
             return profile.end(side, RISE, bound);
         }
         let rise = profile.rise(at);
-        if (rise - RISE).abs() <= CLOSE * RISE {
+        if (rise - RISE).abs() <= LAST * RISE {
             return at;
         }
         profiled = true;

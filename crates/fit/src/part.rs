@@ -25,9 +25,6 @@ pub(crate) struct Part {
     start: f64,
 }
 
-/// Change of a clock by which derivatives are taken.
-const CLOCK_STEP: f64 = 1e-5;
-
 /// Where a number comes from.
 #[derive(Clone, Copy)]
 pub(crate) enum Place {
@@ -131,13 +128,15 @@ impl Part {
 
     /// Derivatives of the values by its clock, unknown `j`.
     fn by_clock(&self, theta: &[f64], j: usize) -> Result<Vec<Vec<f64>>, String> {
-        let ends = [CLOCK_STEP, -CLOCK_STEP].map(|step| {
+        // central differences lose least there
+        let change = f64::EPSILON.cbrt();
+        let ends = [change, -change].map(|step| {
             let mut moved = theta.to_vec();
             moved[j] += step;
             self.seen_at(&self.film, &moved)
         });
         let [high, low] = ends;
-        let slope = |(a, b): (&f64, &f64)| (a - b) / (2.0 * CLOCK_STEP);
+        let slope = |(a, b): (&f64, &f64)| (a - b) / (2.0 * change);
         Ok(high?.iter().zip(&low?).map(|(a, b)| a.iter().zip(b).map(slope).collect()).collect())
     }
 

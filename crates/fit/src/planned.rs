@@ -8,6 +8,9 @@ use crate::film::column;
 use crate::quantity::unit_of;
 use crate::{Deviations, Film, FitError, quantity};
 
+/// Most numbers of all films: with them a fit takes minutes.
+pub(crate) const MOST_NUMBERS: usize = 300_000;
+
 /// When a film looks: `60Hz,0.5mm,10s` is 600 times in ten seconds, with a standard deviation of 0.5 mm where
 /// a column has no other.
 ///
@@ -25,9 +28,6 @@ pub struct Sampling {
     /// Standard deviation of columns that have no other, and the unit it is written in.
     pub sigma: Option<f64>,
 }
-
-/// Samples that a film can have.
-const MOST_SAMPLES: f64 = 1e5;
 
 impl FromStr for Sampling {
     type Err = FitError;
@@ -54,8 +54,8 @@ impl FromStr for Sampling {
         let needed = |x: Option<f64>, what: &str| x.ok_or_else(|| refused(format!("there is no {what}")));
         let (rate, seconds) = (needed(rate, "rate, as in 60Hz")?, needed(seconds, "length, as in 10s")?);
         let samples = (rate * seconds).round();
-        if !(1.0..=MOST_SAMPLES).contains(&samples) {
-            return Err(refused(format!("it has {samples} samples; 1 to {MOST_SAMPLES} are possible")));
+        if !(1.0..=MOST_NUMBERS as f64).contains(&samples) {
+            return Err(refused(format!("it has {samples} samples; 1 to {MOST_NUMBERS} are possible")));
         }
         Ok(Sampling { rate, seconds, sigma })
     }

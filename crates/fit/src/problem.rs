@@ -1,9 +1,9 @@
 //! Residuals of films and their derivatives by the unknowns.
 
-use motion::band::COARSEST;
 use motion::{Choice, Settings, is_costate};
 use nalgebra::{DMatrix, DVector};
 use scene::Scene;
+use symbolic::limits::SAME;
 
 use crate::identifiability::{Identifiability, identifiability};
 use crate::part::{Part, Place};
@@ -171,7 +171,7 @@ impl Problem {
     #[must_use]
     pub(crate) fn coarse(&self) -> Problem {
         let mut coarse = self.clone();
-        coarse.parts.iter_mut().for_each(|part| part.model.coarsen(part.film.finest().min(COARSEST)));
+        coarse.parts.iter_mut().for_each(|part| part.model.coarsen(part.film.finest().min(SAME)));
         coarse
     }
 

@@ -8,7 +8,7 @@
 //!
 //! until `|J δ|²` is small; where that does not happen, by Levenberg and Marquardt's method.
 
-use motion::shooting::Minimum;
+use motion::shooting::{CHORDS, Minimum};
 use nalgebra::{DMatrix, DVector, Dyn, SVD};
 
 use crate::Problem;
@@ -21,9 +21,7 @@ pub(crate) const SHOWN: f64 = 1e-7;
 /// Steps outwards and steps in all to the end of a profile, and the part of the rise that they come to.
 const OUTWARDS: usize = 5;
 const STEPS: usize = 15;
-pub(crate) const CLOSE: f64 = 0.05;
-/// Chords in a row, and `|J δ|²` of the last one.
-const CHORDS: usize = 5;
+/// `|J δ|²` of the last chord.
 pub(crate) const LAST: f64 = 0.02;
 /// Distances are halved up to this many times.
 const HALVINGS: usize = 2;
@@ -197,7 +195,7 @@ impl<'a> Profile<'a> {
             if found.is_infinite() {
                 return if side < 0.0 { bound } else { f64::INFINITY };
             }
-            if (found - rise).abs() <= CLOSE * rise {
+            if (found - rise).abs() <= LAST * rise {
                 return x;
             }
             if found < rise {

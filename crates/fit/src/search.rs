@@ -20,18 +20,15 @@ const FIRST: usize = 20;
 const LONGER: f64 = 1.5;
 /// Starts that are followed from one beginning to the next, by its number: short ones tell little of them.
 const FOLLOWED: [usize; 4] = [12, 10, 8, 4];
-/// Starts for the whole film are up to this many times halfway to the first one.
-const NEARER: i32 = 8;
 /// Starts beside one that is known and fits.
 const FEW: usize = 4;
-/// Starts that are fitted to the whole film at once beside the first one.
-const SCREENED: usize = 2;
 /// Times the steps of the first motion that one may take.
 const STEPS: usize = 40;
-/// Times the steps of its own first motion, over the whole film.
-const NEAR_STEPS: usize = 8;
-/// Halvings of the way back to the start, where unknowns have gone where a longer motion cannot follow.
-const HALVINGS: i32 = 10;
+/// The same beside a minimum, over the whole film.
+pub(crate) const NEAR_STEPS: usize = 16;
+/// How often the way back to a start is halved: where unknowns have gone where a longer motion cannot follow,
+/// where starts are for a whole film, where a bound is looked for.
+pub(crate) const HALVINGS: i32 = 8;
 /// A beginning is fitted where χ² is within this many standard deviations; then a start is given up whose χ²
 /// is this much above, and digits
 /// of χ² are not looked for where it is so many times the number of residuals.
@@ -232,7 +229,8 @@ fn followed(
         }
         if let Some(beside) = beside.filter(|_| excluded_by.is_none()) {
             let words = || format!("the first {} samples", part.samples());
-            excluded_by = excluded(&part, &mut starts, scale, beside).map(|sigmas| (words(), sigmas));
+            let limit = excluded_by_one(problem);
+            excluded_by = excluded(&part, &mut starts, scale, beside, limit).map(|sigmas| (words(), sigmas));
         }
         let samples = (part.samples() as f64 * LONGER) as usize;
         part = problem.beginning(samples.min(problem.samples()))?;
@@ -240,13 +238,18 @@ fn followed(
     Ok((starts, excluded_by))
 }
 
-/// Starts that have to lead to the least χ² of a formulation before it is excluded.
+/// Starts that have to lead to the least χ² of a formulation before it is excluded, and that are fitted to the
+/// whole film at once beside the first one.
 pub(crate) const SEVERAL: usize = 2;
-/// How much more χ² has to be above for one of several parts: what keeps the level for eight beginnings of
-/// all films and of each of [`ALONE`].
-const LOOKS: f64 = 7.0;
 /// Films that are looked at alone.
 const ALONE: usize = 3;
+
+/// What χ² of one of `n` parts has to be above the least for the level of [`EXCLUDED`] among all: `2 ln n`
+/// more, as tails fall with `exp(−χ²/2)`. Parts are the beginnings of all films, and of each of [`ALONE`].
+fn excluded_by_one(problem: &Problem) -> f64 {
+    let beginnings = 1.0 + (problem.samples() as f64 / FIRST as f64).max(1.0).ln() / LONGER.ln();
+    EXCLUDED + 2.0 * (beginnings * (1 + ALONE) as f64).ln()
+}
 
 /// Film `number`, if that excludes the formulation alone: unknowns of its own are few, and several starts
 /// lead to one minimum.
@@ -261,17 +264,18 @@ fn excluded_alone(
     let beside = part.beside.insert(Box::new((best, own)));
     let best = least(&beside.0, &beside.1[0], &beside.1[1], Stage::Profile).ok()?.value;
     let found = search(&part, moves, starts, false).ok()?;
-    let above = Some(found.best.value - best).filter(|x| *x >= EXCLUDED + LOOKS && found.best.reached >= SEVERAL);
+    let above =
+        Some(found.best.value - best).filter(|x| *x >= excluded_by_one(problem) && found.best.reached >= SEVERAL);
     let by_all = above.map(|above| sigmas(above, 1));
     let by = found.excluded_by.map(|(_, sigmas)| sigmas).or(by_all)?;
     Some((format!("film {} alone", number + 1), by))
 }
 
-/// The significance at which this beginning excludes its formulation, if it does: by a least χ² that several
-/// starts reach. Where it may, `starts` become the minima.
-fn excluded(part: &Problem, starts: &mut Vec<Minimum>, scale: &[f64], (best, own): &Beside) -> Option<f64> {
+/// The significance at which this beginning excludes its formulation, if it does: by a least χ² over this
+/// limit that several starts reach. Where it may, `starts` become the minima.
+fn excluded(part: &Problem, starts: &mut Vec<Minimum>, scale: &[f64], (best, own): &Beside, limit: f64) -> Option<f64> {
     let best = least(&best.beginning(part.samples()).ok()?, &own[0], &own[1], Stage::Profile).ok()?.value;
-    let enough = |found: &[Minimum]| Some(found.first()?.value - best).filter(|above| *above >= EXCLUDED + LOOKS);
+    let enough = |found: &[Minimum]| Some(found.first()?.value - best).filter(|above| *above >= limit);
     enough(starts)?;
     *starts = refined(part, std::mem::take(starts), scale, Stage::Whole, &mut None);
     let mut as_one = starts.clone();
@@ -361,14 +365,14 @@ fn screened(problem: &Problem, moves: &dyn Fn(&str) -> bool, starts: usize) -> V
     let mut others: Vec<Minimum> = Vec::new();
     for number in 1..starts {
         // far ones and near ones: nothing is linear as far as the extent of the film
-        let nearer: Vec<f64> = scale.iter().map(|s| s * 0.5_f64.powi(number as i32 % NEARER)).collect();
+        let nearer: Vec<f64> = scale.iter().map(|s| s * 0.5_f64.powi(number as i32 % HALVINGS)).collect();
         let start = moved(problem, &nearer, moves, number);
         if let Ok((values, _)) = evaluated.weighed(&start.unknowns, false) {
             others.push(Minimum { value: values.norm_squared(), ..start });
         }
     }
     others.sort_by(|a, b| a.value.total_cmp(&b.value));
-    others.truncate(SCREENED);
+    others.truncate(SEVERAL);
     [Minimum::start(0, problem.start().to_vec())].into_iter().chain(others).collect()
 }
 

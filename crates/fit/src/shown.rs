@@ -5,12 +5,11 @@ use nalgebra::{DMatrix, DVector};
 
 use crate::least::{Stage, least, scaled};
 use crate::profile::SHOWN;
+use crate::search::is_as_high;
 use crate::{FitError, Problem};
 
 /// A change of residuals, as the length of a vector, that is none.
 const NOTHING: f64 = 1e-3;
-/// An unknown is held where χ² rises by no more than this.
-const SAME_CHI_SQUARED: f64 = 0.01;
 
 /// What films show of the unknowns to first order.
 #[derive(Clone, Debug, PartialEq)]
@@ -126,7 +125,7 @@ pub(crate) fn off_stationary(problem: &Problem, best: Minimum) -> Minimum {
             let mut theta = best.unknowns.clone();
             theta[i] += side * step;
             let found = least(problem, &theta, &scale, Stage::Whole);
-            if let Some(found) = found.ok().filter(|found| found.value < least_known.value - SAME_CHI_SQUARED) {
+            if let Some(found) = found.ok().filter(|found| !is_as_high(least_known.value, found.value)) {
                 least_known = Minimum { reached: best.reached, first: best.first, ..found };
             }
         }
@@ -165,7 +164,8 @@ impl Near {
         }
         scale.iter_mut().for_each(|length| *length = 1.0 / *length);
         let found = least(&shown, &theta, &scale, Stage::Whole).map_err(no_motion)?;
-        if found.value > best.value + SAME_CHI_SQUARED {
+        // an unknown is held where χ² is as high
+        if !is_as_high(found.value, best.value) {
             return Ok(all(Vec::new(), jacobian));
         }
         let (_, jacobian) = shown.clone().weighed(&found.unknowns, true).map_err(no_motion)?;

@@ -7,15 +7,12 @@ use decision::{DecisionError, ExactStart};
 use equations::Outputs;
 use mechanics::{Constancy, System, Watched, project_velocity};
 use motion::band::{INSTANTS, Known};
-use motion::{CHETAEV, Choice, Settings, SolveError, derive, solve_choice};
+use motion::{CHETAEV, Choice, Settings, SolveError, TIGHTER, derive, solve_choice};
 use scene::Scene;
 use symbolic::{Expr, Graph, Symbol};
 
 use crate::ansatz::{self, ansatz};
 use crate::{Ansatz, Open, Printed, Reversed, constants, reversible};
-
-/// Tolerance of the motion along which what is printed is looked at.
-const TOLERANCE: f64 = 1e-12;
 
 /// Measures and integrals of a scene's motions under one formulation.
 #[derive(Clone)]
@@ -188,7 +185,7 @@ fn changes(scene: &Scene, choice: &Choice, printed: &[Printed]) -> Result<(Vec<K
     if printed.is_empty() && own.is_empty() {
         return Ok(Default::default());
     }
-    let settings = Settings { tolerance: TOLERANCE, ..Settings::default() };
+    let settings = Settings { tolerance: TIGHTER * Settings::default().tolerance, ..Settings::default() };
     let mut motion = solve_choice(scene, choice, &settings).map_err(|fault| fault.to_string())?;
     let g = motion.equations.graph.clone();
     let printed: Vec<Expr> = printed.iter().map(|p| again(&g, &p.text)).collect::<Result<_, _>>()?;

@@ -10,9 +10,10 @@ use crate::dense::segment_with_slope;
 use crate::events::Segment;
 use crate::limits::{HUGE, ROUNDINGS};
 use crate::options::{Method, Options};
-use crate::root::{GOLDEN, SECTIONS};
+use crate::root::SECTIONS;
 use crate::system::{Failure, System};
 use crate::taylor_step::{DEFECT, LEAST_RELATIVE};
+use std::f64::consts::GOLDEN_RATIO;
 
 /// The parabola comes near zero where it comes under this part of the smaller end.
 const NEAR: f64 = 0.02;
@@ -74,7 +75,7 @@ impl Place {
 
 /// Two places that divide an interval by the golden section: not halves, which may hit a zero.
 fn inner(low: f64, high: f64) -> [f64; 2] {
-    [high - GOLDEN * (high - low), low + GOLDEN * (high - low)]
+    [high - (high - low) / GOLDEN_RATIO, low + (high - low) / GOLDEN_RATIO]
 }
 
 /// Whether a zero is before the second of two places, or what has none is less at the first one.
@@ -151,7 +152,7 @@ impl DivisorZeros {
         self.at(system, segment, high, j)?;
         let mut beyond = self.place.clone();
         for _ in 0..LAST_DIGITS {
-            let [left, right] = [1.0 - GOLDEN, GOLDEN].map(|share| before.towards(&beyond, share));
+            let [left, right] = [2.0 - GOLDEN_RATIO, GOLDEN_RATIO - 1.0].map(|share| before.towards(&beyond, share));
             if [&left, &right].into_iter().any(|place| place.is_at(&before) || place.is_at(&beyond)) {
                 break;
             }

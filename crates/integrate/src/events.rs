@@ -5,7 +5,7 @@ use crate::root::{find_root_between, least};
 use crate::system::{Failure, System};
 
 /// Number of equal parts in which each step is sampled.
-pub(crate) const PARTS: usize = 8;
+pub const PARTS: usize = 8;
 
 /// A function with a pole where another is zero may change its sign twice near that zero: it is sampled at
 /// this distance before the zero, as a part of the way to it.

@@ -95,12 +95,13 @@ mod time_loop;
 pub use boundary::{AT_ONCE, BoundaryError, Residuals, ShootOptions, Shot, fit, shoot};
 pub use dense::DenseOutput;
 pub use error::{CallError, DenseError};
+pub use events::PARTS;
 pub use interrupt::Interrupt;
 pub use lanes::{LANES, Lane, LaneProblem, LaneRun, LaneStart, Left, Shortest, integrate_lanes};
 pub use options::{Dense, LinkedMethod, Method, Options, Projection};
 pub use problem::{EvaluationError, Gauge, Problem, Start};
 pub use rank::{cosine, may_lose as may_lose_rank, orthonormal};
-pub use root::{GOLDEN, find_root, least};
+pub use root::{find_root, least};
 pub use status::{Before, ProjectionReport, Solution, Status, StopCause, Work};
 pub use step_resolution::{GAUGE_LIMIT, GAUGE_NODES, gauge_growth};
 

@@ -1,7 +1,7 @@
 //! Roots and minima of scalar functions.
 
-/// The golden section.
-pub const GOLDEN: f64 = 0.618_033_988_749_894_9;
+use std::f64::consts::GOLDEN_RATIO;
+
 /// Sections of the bracket of a minimum, which becomes shorter by eight digits: half of those of a number.
 pub(crate) const SECTIONS: usize = 40;
 
@@ -10,16 +10,16 @@ pub(crate) const SECTIONS: usize = 40;
 /// # Errors
 /// The first one of `f`.
 pub fn least<E>(mut f: impl FnMut(f64) -> Result<f64, E>, [mut a, mut d]: [f64; 2]) -> Result<(f64, f64), E> {
-    let (mut b, mut c) = (d - GOLDEN * (d - a), a + GOLDEN * (d - a));
+    let (mut b, mut c) = (d - (d - a) / GOLDEN_RATIO, a + (d - a) / GOLDEN_RATIO);
     let (mut at_b, mut at_c) = (f(b)?, f(c)?);
     for _ in 0..SECTIONS {
         if at_b <= at_c {
             (d, c, at_c) = (c, b, at_b);
-            b = d - GOLDEN * (d - a);
+            b = d - (d - a) / GOLDEN_RATIO;
             at_b = f(b)?;
         } else {
             (a, b, at_b) = (b, c, at_c);
-            c = a + GOLDEN * (d - a);
+            c = a + (d - a) / GOLDEN_RATIO;
             at_c = f(c)?;
         }
     }

@@ -31,13 +31,13 @@ use std::array::from_fn;
 use crate::dense::Basis;
 use crate::options::Options;
 use crate::problem::Start;
-use crate::root::GOLDEN;
 use crate::status::StopCause;
 use crate::stepper::{Attempt, Stepper, next_step};
 use crate::system::{Failure, System};
 use crate::taylor_step::{
     DEFECT, Ends, GROUP, LEAST_RELATIVE, MANY, UNLIMITED, first_powers, longest_step, once, order,
 };
+use std::f64::consts::GOLDEN_RATIO;
 
 /// Where coefficients overflow, the unit of time is shortened by this factor, this often.
 const SHORTER_UNIT: f64 = 1e-8;
@@ -198,7 +198,7 @@ impl<'s, 'p> Taylor<'s, 'p> {
         let moves = ends.map(|((y, reached), absolute)| (y - reached).abs() / (absolute + relative * y.abs()));
         let forgiven = 1.0 + moves.fold(0.0, f64::max);
         for _ in 0..places {
-            self.place = (self.place + GOLDEN).fract();
+            self.place = (self.place + GOLDEN_RATIO).fract();
             let t = begin + self.taken * self.place;
             let x = (t - begin) / self.unit;
             for (row, (y, slope)) in

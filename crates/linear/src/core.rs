@@ -3,12 +3,11 @@
 use mechanics::SingularValues;
 use nalgebra::{DMatrix, DVector, Schur, linalg::balancing::balance_parlett_reinsch};
 use num_complex::Complex;
+use symbolic::limits::ITERATIONS;
 
 use crate::discs::Discs;
 use crate::weyl::Weyl;
 
-/// Iterations of the QR algorithm for each eigenvalue.
-const ITERATIONS: usize = 200;
 /// Axes in which it is tried.
 const TURNS: usize = 5;
 

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use nalgebra::{DMatrix, DVector};
-use symbolic::limits::{ITERATIONS, NOTHING};
+use symbolic::limits::{ITERATIONS, NOTHING, SAME};
 use symbolic::{Evaluator, Expr, SplitMix};
 
 use crate::elimination::{LinearForms, PIVOT_CHOICE, eliminate, largest, open};
@@ -15,7 +15,6 @@ const BEHIND: f64 = 1e-5;
 /// in steps that double.
 const WAYS: u64 = 6;
 const CHANGE: f64 = 0.05;
-const FIRST: f64 = 1e-6;
 
 impl System {
     /// Indices of constraints that all others follow from, in their order, where some do: of `A v + b = 0`,
@@ -156,7 +155,7 @@ impl Rows {
     fn keeps_rank(&mut self, start: &[f64], first: &DMatrix<f64>, rank: usize, way: u64) -> Option<bool> {
         let mut random = SplitMix::new(way);
         let wanted = DVector::from_fn(start.len(), |_, _| 2.0 * random.unit() - 1.0);
-        let (mut place, mut step) = (DVector::from_column_slice(start), FIRST);
+        let (mut place, mut step) = (DVector::from_column_slice(start), SAME);
         for _ in 0..ITERATIONS {
             // by Runge and Kutta's method
             let a = self.allowed(place.as_slice(), &wanted, rank)?;

@@ -2,25 +2,15 @@
 
 use std::collections::{BTreeMap, HashMap};
 
-use symbolic::limits::{NOTHING, TOO_LONG};
+use symbolic::limits::{BESIDE, NOTHING, TOO_LONG};
 use symbolic::{Expr, Graph, Matrix, Symbol};
 
 use crate::elimination::{Candidate, LinearForms, Pivot, SparseMatrix, choose_pivot};
 use crate::{RemovalError, State, System};
 
-/// Terms that multiplying out may make in one elimination. Those of a chain double with each body, and little
-/// cancels in them.
-const TERMS: usize = 5_000;
-
-/// Nodes of a coefficient that is not multiplied out: how many terms it would have is not even counted.
-const LONG: usize = 1_000;
-
 /// What is multiplied out may add up this much more than what it stands for: near `q = 24` the powers of `q`
 /// that are `(q − 24)⁴` add up a million to come to nothing.
 const ADDED_UP: f64 = 1e3;
-
-/// That is looked at where every value is larger by this part: at the start itself much is zero.
-const BESIDE: f64 = 1e-4;
 
 /// A coefficient, its value at the start (NaN where that is not finite) and the nodes of its expression.
 #[derive(Clone, Copy)]
@@ -61,12 +51,14 @@ impl SolvedConstraints {
         let known = |e: Expr| sized(e, number(e));
         let all_known = |row: BTreeMap<usize, Expr>| row.into_iter().map(|(j, e)| (j, known(e))).collect();
         let mut matrix: SparseMatrix<Entry> = SparseMatrix::new(rows.into_iter().map(all_known).collect());
+        // at the start itself much is zero
         let beside: HashMap<Symbol, f64> = values.iter().map(|(&s, x)| (s, (1.0 + BESIDE) * x)).collect();
         let added_up = |entry: Entry| {
             let value = g.bounded(entry.e, &beside).filter(|value| value.is_finite());
             value.map_or(f64::INFINITY, |value| value.magnitude)
         };
-        let mut terms_left = TERMS;
+        // those of a chain double with each body, and little cancels in them
+        let mut terms_left = TOO_LONG;
         // before − factor · entry, where entry is undivided/pivot
         let mut difference = |before: Entry, factor: Entry, entry: Entry, (undivided, pivot): (Expr, Expr)| {
             let was_zero = before.number == 0.0 && (factor.number == 0.0 || entry.number == 0.0);
@@ -77,7 +69,7 @@ impl SolvedConstraints {
             let mut rest = sized(e, if same { before.number - subtracted } else { number(e) });
             // sin²/cos + cos is 1/cos
             let over_pivot = g.sub(g.mul(before.e, pivot), g.mul(factor.e, undivided));
-            let terms = if rest.size > LONG { usize::MAX } else { g.expanded_terms(over_pivot) };
+            let terms = if rest.size > TOO_LONG { usize::MAX } else { g.expanded_terms(over_pivot) };
             if terms <= terms_left {
                 terms_left -= terms;
                 let over_pivot = known(cleared(g, g.div(g.expand(over_pivot), pivot)));

@@ -37,16 +37,16 @@ use std::sync::{Mutex, PoisonError};
 use integrate::{BoundaryError, Interrupt, ShootOptions, shoot};
 use mechanics::{ConstantsRule, State};
 use scene::Scene;
-use symbolic::limits::HALF_THE_DIGITS;
+use symbolic::limits::{HALF_THE_DIGITS, SAME};
 
-use crate::band::SEARCH_STEPS;
+use crate::band::{RESIDUAL, SEARCH_STEPS};
 use crate::constants::constant_names;
-use crate::shooting::{Minimum, distinct};
+use crate::shooting::{BEGINNING, Minimum, distinct};
 use crate::variational::{VariationalRun, Which};
 use crate::{Choice, Motion, Settings, SolveError, TIGHTER, VAKONOMIC, over_threads, solve_choice};
 use action::action;
 pub use conjugate::{ConjugateTime, samples, times};
-use curves::one_per_curve;
+use curves::{ONE, one_per_curve};
 pub use second_variation::SecondVariation;
 use second_variation::second_variation;
 use two_point::TwoPoint;
@@ -118,19 +118,9 @@ impl Connection {
     }
 }
 
-/// Tolerance of the runs of a search, and of what it misses; the latter also of the final one, over its
-/// tolerance.
-const SEARCH: f64 = 1e-8;
-const SEARCHED: f64 = 1e-5;
-const RESIDUAL: f64 = 1e4;
-const ITERATIONS: usize = 40;
-/// A motion that is found by way of shorter ones begins with this part of the time, and is given up where it
-/// can be followed by less than the other. Every second guess goes that way first.
-const FIRST: f64 = 0.1;
+/// A motion that is found by way of shorter ones is given up where it can be followed by less than this part
+/// of the time. Every second guess goes that way first.
 const LEAST: f64 = 1e-3;
-/// Two results of searches, or two final ones, are one where unknowns differ by less, in units of the
-/// problem.
-const ONE: [f64; 2] = [1e-4, 1e-6];
 
 /// The motions of `choice` from the start of `scene` that end where `aim` says, as far as its starts lead to
 /// them. Constants of the choice are a first guess; costates that its rule makes zero, and that never move,
@@ -165,12 +155,11 @@ pub fn connect(scene: &Scene, choice: &Choice, aim: &Aim, settings: &Settings) -
             return Ok(Connections { unknowns: problem.names, found, failures, runs: [0, 0], every_constant, none });
         }
     }
-    let coarse =
-        Settings { tolerance: SEARCH / TIGHTER, max_steps: SEARCH_STEPS.min(settings.max_steps), ..settings.clone() };
+    let coarse = Settings { tolerance: SAME, max_steps: SEARCH_STEPS.min(settings.max_steps), ..settings.clone() };
     let guesses = guesses::guesses(&problem, aim.starts)?;
     let problem = Mutex::new(problem.scaled(&guesses.units, &guesses.sizes));
     let searched = from_all(&problem, aim.threads, &guesses.values, |problem, i, guess| {
-        let plain = |problem: &mut TwoPoint| search(problem, guess, &coarse, SEARCHED);
+        let plain = |problem: &mut TwoPoint| search(problem, guess, &coarse);
         match i % 2 {
             0 => grown(problem, guess, &coarse).map_or_else(|| plain(problem), Ok),
             _ => plain(problem).or_else(|error| grown(problem, guess, &coarse).ok_or(error)),
@@ -191,8 +180,7 @@ pub fn connect(scene: &Scene, choice: &Choice, aim: &Aim, settings: &Settings) -
     }
     each_once(&mut near, ONE[0]);
     let guesses: Vec<Vec<f64>> = near.iter().map(|near| near.unknowns.clone()).collect();
-    let enough = RESIDUAL * TIGHTER * settings.tolerance;
-    let fine = from_all(&problem, aim.threads, &guesses, |problem, _, guess| search(problem, guess, settings, enough));
+    let fine = from_all(&problem, aim.threads, &guesses, |problem, _, guess| search(problem, guess, settings));
     let mut exact = Vec::new();
     for ((shot, done), near) in fine.into_iter().zip(near) {
         runs = [runs[0] + done[0], runs[1] + done[1]];
@@ -234,30 +222,24 @@ fn from_all(
 }
 
 /// Unknowns, in units of the problem, from this guess on.
-fn search(
-    problem: &mut TwoPoint,
-    guess: &[f64],
-    settings: &Settings,
-    residual: f64,
-) -> Result<Vec<f64>, BoundaryError> {
+fn search(problem: &mut TwoPoint, guess: &[f64], settings: &Settings) -> Result<Vec<f64>, BoundaryError> {
     problem.settings = settings.clone();
-    let options = ShootOptions { max_iterations: ITERATIONS, ..ShootOptions::with_tolerance(residual) };
-    Ok(shoot(problem, guess, &options)?.unknowns)
+    Ok(shoot(problem, guess, &ShootOptions::with_tolerance(RESIDUAL * TIGHTER * settings.tolerance))?.unknowns)
 }
 
 /// The same where a motion that takes less time is found first, and followed as it takes more and more: what
 /// a long motion folds, a short one does not. Velocities go as one over the time.
 fn grown(problem: &mut TwoPoint, guess: &[f64], settings: &Settings) -> Option<Vec<f64>> {
     let (start, end) = (problem.scene_start.t, problem.aim.t);
-    let (mut part, mut step) = (FIRST, FIRST);
+    let (mut part, mut step) = (BEGINNING, BEGINNING);
     problem.aim.t = start + part * (end - start);
     let short: Vec<f64> = guess.iter().map(|x| x / part).collect();
-    let mut found = search(problem, &short, settings, SEARCHED).ok();
+    let mut found = search(problem, &short, settings).ok();
     while let Some(x) = found.as_mut().filter(|_| part < 1.0) {
         let next = (part + step).min(1.0);
         let by_then = problem.followed(x, (next - part) * (end - start));
         problem.aim.t = if next < 1.0 { start + next * (end - start) } else { end };
-        match by_then.and_then(|guess| search(problem, &guess, settings, SEARCHED).ok()) {
+        match by_then.and_then(|guess| search(problem, &guess, settings).ok()) {
             Some(longer) => (*x, part, step) = (longer, next, 1.5 * step),
             None => step *= 0.5,
         }
@@ -287,7 +269,7 @@ fn count(all: &mut Vec<(String, usize)>, reason: String, starts: usize) {
 fn reason(error: &BoundaryError) -> String {
     match error {
         BoundaryError::NotConverged { .. } => {
-            format!("no end after {ITERATIONS} steps of the search, or a minimum of the distance that is not zero")
+            "no end of the search, or a minimum of the distance that is not zero".into()
         }
         BoundaryError::Singular { .. } => "the unknowns do not determine the end".into(),
         _ => "the motion of the guess stops before the end".into(),

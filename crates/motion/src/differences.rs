@@ -17,8 +17,8 @@
 //! the same for all `h`, where that of what is smooth falls below round-off. Each part of `y` has its own
 //! unit and is judged by its own size; its round-off is what it scatters by where x moves by its last digits.
 
-use crate::SolveError;
-use crate::band::limits::BETWEEN;
+use crate::band::limits::{BETWEEN, NEARLY_ZERO, ROUND_OFF};
+use crate::{Settings, SolveError};
 use symbolic::limits::OF_TERMS;
 
 /// Weights of the differences of order 8 and of order 6.
@@ -29,15 +29,14 @@ const KINK: [f64; 4] = [14.0 / 5.0, -7.0 / 5.0, 2.0 / 5.0, -1.0 / 20.0];
 /// Distances over the size of the number are these powers of 1/4: a start may have a pole nearby, as at a
 /// heading of 90°.
 const DISTANCES: std::ops::Range<i32> = 2..16;
-/// Error of a derivative over the largest one that is accepted.
-const LIMIT: f64 = 1e-10;
-/// Round-off is looked for at this distance; it is a sample.
-const LAST_DIGITS: f64 = 1.0 / (1_u64 << 44) as f64;
-/// A kink is looked for at these powers of 1/4, is the same at three in turn, and differs by this part of
-/// itself at most.
+/// A kink is looked for at these powers of 1/4, and is the same at three in turn.
 const POWERS: std::ops::Range<i32> = 4..20;
 const IN_TURN: usize = 3;
-const ALIKE: f64 = 0.01;
+
+/// Error of a derivative over the largest one that is accepted: as of a motion at defaults.
+fn limit() -> f64 {
+    Settings::default().tolerance
+}
 
 type Values = Result<Vec<f64>, SolveError>;
 
@@ -46,16 +45,16 @@ pub(crate) fn derivative(name: &str, x: f64, at: &mut dyn FnMut(f64) -> Values) 
     let size = size(x);
     let here = at(x)?;
     let mut found = best(x, &here, &vec![0.0; here.len()], at)?;
-    if found.error > LIMIT {
+    if found.error > limit() {
         let round_off = round_off(&here, &mut |s| at(x + s * size))?;
         found = best(x, &here, &round_off, at)?;
     }
     let refused = |what: String| {
         Err(SolveError::Member { reason: format!("the start does not move smoothly with {name}: {what}") })
     };
-    if found.error > LIMIT {
+    if found.error > limit() {
         let error = found.error;
-        return refused(format!("its derivative is known to {error:.1e} of itself, the limit is {LIMIT:.0e}"));
+        return refused(format!("its derivative is known to {error:.1e} of itself, the limit is {:.0e}", limit()));
     }
     if found.even && has_kink(&mut |s| at(x + s * size)) {
         return refused("it has a kink there".into());
@@ -90,7 +89,7 @@ fn best(x: f64, here: &[f64], round_off: &[f64], at: &mut dyn FnMut(f64) -> Valu
         let (mut error, mut even) = (0.0_f64, false);
         for (i, [high, low, kink]) in sums.iter().enumerate() {
             let digits = f64::EPSILON * here[i].abs() / h;
-            let scale = high.abs() + here[i].abs() / size + round_off[i] / (h * LIMIT);
+            let scale = high.abs() + here[i].abs() / size + round_off[i] / (h * limit());
             error = error.max(((high - low).abs() + digits) / scale.max(f64::MIN_POSITIVE));
             even |= kink.abs() > BETWEEN * digits;
         }
@@ -127,7 +126,7 @@ fn sums(x: f64, h: f64, here: &[f64], at: &mut dyn FnMut(f64) -> Values) -> Resu
 fn round_off(here: &[f64], at: &mut dyn FnMut(f64) -> Values) -> Values {
     let mut found: Vec<f64> = here.iter().map(|x| f64::EPSILON * x.abs()).collect();
     for j in 1..5 {
-        let step = LAST_DIGITS * f64::from(j);
+        let step = ROUND_OFF * f64::from(j);
         let (after, before) = (at(step)?, at(-step)?);
         for (i, found) in found.iter_mut().enumerate() {
             *found = found.max(BETWEEN * (after[i] + before[i] - 2.0 * here[i]).abs());
@@ -146,14 +145,14 @@ pub(crate) fn has_kink(at: &mut dyn FnMut(f64) -> Values) -> bool {
         let Ok(sums) = sums(0.0, h, &here, at) else { continue };
         for (i, [_, _, kink]) in sums.into_iter().enumerate() {
             let Some((before, times)) = open[i] else { continue };
-            if times > 0 && round_off[i] / h >= ALIKE * before.abs() {
+            if times > 0 && round_off[i] / h >= NEARLY_ZERO * before.abs() {
                 if times >= IN_TURN {
                     return true;
                 }
                 open[i] = None;
                 continue;
             }
-            let is_alike = times > 0 && (kink - before).abs() <= ALIKE * before.abs();
+            let is_alike = times > 0 && (kink - before).abs() <= NEARLY_ZERO * before.abs();
             open[i] = Some((kink, if is_alike { times + 1 } else { 1 }));
         }
         if open.iter().all(Option::is_none) {

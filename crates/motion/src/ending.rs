@@ -7,8 +7,10 @@ use integrate::{DenseOutput, Solution, Status, StopCause};
 use mechanics::SingularValues;
 use nalgebra::{DMatrix, DVector};
 use symbolic::Expr;
+use symbolic::limits::LINE;
 
-use crate::band::SAME_STOP;
+use crate::TRUSTED;
+use crate::band::limits::NEARLY_ZERO;
 use crate::lost_rank;
 
 /// What helps where steps became too short and no divisor of the equations vanishes.
@@ -87,7 +89,7 @@ impl Ending {
     /// How the kept run ended, unless the looser one stopped while that went on, in a run over this time.
     pub fn joint(kept: Ending, looser: Ending, [start, end]: [f64; 2]) -> Ending {
         // both stop near the same singularity, or for different causes
-        let much_before = |t: f64, later: f64| (later - t) * (end - start).signum() > SAME_STOP * (later - start).abs();
+        let much_before = |t: f64, later: f64| (later - t) * (end - start).signum() > TRUSTED * (later - start).abs();
         match (kept, looser) {
             (Ending::Completed, Ending::Stopped { t, cause }) => Ending::unconfirmed(t, &cause),
             (Ending::Stopped { t: later, .. }, Ending::Stopped { t, cause }) if much_before(t, later) => {
@@ -119,15 +121,13 @@ fn guard_words(equations: &Equations, index: usize) -> String {
 
 /// A quantity in the user's own names: written out where that is short, else by the states behind it.
 pub(crate) fn in_own_names(equations: &Equations, mut quantity: Expr) -> String {
-    /// Nodes of an expression that can be read.
-    const SHORT: usize = 30;
     let g = &equations.graph;
     for &(symbol, definition) in equations.definitions.iter().rev() {
-        if g.size(&[quantity]) <= SHORT && g.depends_on(quantity, symbol) {
+        if g.size(&[quantity]) <= LINE && g.depends_on(quantity, symbol) {
             quantity = g.substitute(quantity, &HashMap::from([(symbol, definition)]));
         }
     }
-    if g.size(&[quantity]) <= SHORT {
+    if g.size(&[quantity]) <= LINE {
         return g.plain(quantity);
     }
     let behind = equations.symbols_behind([quantity]);
@@ -135,9 +135,6 @@ pub(crate) fn in_own_names(equations: &Equations, mut quantity: Expr) -> String 
     let names: Vec<String> = states.map(|y| g.name(y.symbol)).collect();
     format!("a quantity of {}", names.join(", "))
 }
-
-/// A guard is nearly zero when it is under this fraction of the largest value that it had.
-const NEARLY_ZERO: f64 = 1e-2;
 
 /// The guard that has shrunk most since these points, if it is nearly zero at the end of the run.
 fn nearly_zero_guard(
@@ -190,8 +187,6 @@ fn nearly_dependent(
     before: &[(f64, Vec<f64>)],
     dense: &DenseOutput,
 ) -> Option<String> {
-    /// Components of the undetermined direction above this fraction of the largest are named.
-    const TOLD: f64 = 0.3;
     let [before, end] = [before, &[(dense.end(), dense.end_state().to_vec())]]
         .map(|points| points.iter().map(|(t, y)| compiled.block_matrices(*t, y)).collect::<Vec<_>>());
     let found = equations.blocks.iter().enumerate().filter_map(|(i, block)| {
@@ -210,7 +205,7 @@ fn nearly_dependent(
     });
     let (block, ratio, direction) = found.min_by(|a, b| a.1.total_cmp(&b.1))?;
     let largest = direction.amax();
-    let told = block.unknowns.iter().zip(&direction).filter(|(_, x)| x.abs() >= TOLD * largest);
+    let told = block.unknowns.iter().zip(&direction).filter(|(_, x)| x.abs() >= NEARLY_ZERO * largest);
     let names: Vec<String> = told.map(|(&z, _)| equations.graph.name(z)).collect();
     Some(format!("the equations for {} are nearly dependent, {ratio:.1e} of what they were", names.join(", ")))
 }

@@ -17,10 +17,7 @@ pub enum EquationStyle {
     Latex,
 }
 
-/// The same for what the user wrote.
-const LONG_SYSTEM: usize = 200;
-
-/// Formulas of more symbols and numbers than this are so too, however few are different.
+/// Formulas of more symbols and numbers than this are cut into named pieces, however few are different.
 const LONG_PRINTED: usize = 500;
 
 /// The derived equations and what was left out of them.
@@ -81,7 +78,7 @@ pub fn system_text(system: &System, style: EquationStyle) -> String {
     let g = &system.graph;
     let mut whole = [&[system.lagrangian], &system.constraints[..]].concat();
     let mut pieces = Vec::new();
-    if whole.iter().any(|&e| g.size(&[e]) > LONG_SYSTEM || g.printed_length(e) > LONG_PRINTED) {
+    if whole.iter().any(|&e| g.printed_length(e) > LONG_PRINTED) {
         (pieces, whole) = g.abbreviate(&whole, "s");
     }
     let mut writer = Writer { text: String::new(), graph: g, style, pieces: pieces.into_iter().collect() };

@@ -1,7 +1,7 @@
 //! Equidistant values, as the decimals that are meant.
 
-/// Steps in the last of these digits from one value to the next, at least: closer ones are not rounded.
-const STEPS: f64 = 1e3;
+use crate::TRUSTED;
+
 /// Powers of ten up to this one are exact.
 const EXACT: i32 = 22;
 
@@ -23,10 +23,12 @@ pub fn equidistant_value(from: f64, to: f64, count: usize, place: usize) -> f64 
             let last = f64::DIGITS as i32 - 1 - from.abs().max(to.abs()).log10().floor().max(-400.0) as i32;
             let tens = 10_f64.powi(last.abs());
             let step = (to - from).abs() / (count - 1) as f64;
+            // values that the last of these digits tells apart too badly are not rounded
+            let digit = TRUSTED * step;
             match last {
-                0..=EXACT if step * tens >= STEPS => (value * tens).round() / tens,
-                ..0 if last >= -EXACT && step / tens >= STEPS => (value / tens).round() * tens,
-                _ if last > EXACT && step * tens >= STEPS => {
+                0..=EXACT if digit * tens >= 1.0 => (value * tens).round() / tens,
+                ..0 if last >= -EXACT && digit / tens >= 1.0 => (value / tens).round() * tens,
+                _ if last > EXACT && digit * tens >= 1.0 => {
                     format!("{value:.*}", last.unsigned_abs() as usize).parse().unwrap_or(value)
                 }
                 _ => value,

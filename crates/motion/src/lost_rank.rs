@@ -6,10 +6,11 @@ use equations::{Compiled, ConstraintRows, Equations};
 use integrate::DenseOutput;
 use mechanics::{SingularValues, System};
 use nalgebra::DMatrix;
-use symbolic::limits::SHOWN;
+use symbolic::limits::{SAME, SHOWN};
 use symbolic::{Expr, Matrix, Symbol, Vanishing};
 
 use crate::Metric;
+use crate::band::limits::NEARLY_ZERO;
 use crate::numbers::{enumerate, short};
 use crate::variables::in_variables_of;
 
@@ -70,11 +71,6 @@ pub(crate) fn column_factors(compiled: &mut Compiled, metric: &mut Metric, t: f6
     lengths.map_or(vec![1.0; n], |lengths| lengths.into_iter().map(factor).collect())
 }
 
-/// Components of the combination that loses its hold, over the largest, that are named.
-const TOLD: f64 = 1e-3;
-/// A coordinate under this part of what it or another of its kind was is zero to the reader.
-const ZERO: f64 = 1e-5;
-
 /// Which constraints say nothing of the velocities at the end of a run, and where that is.
 pub(crate) fn words(equations: &Equations, compiled: &mut Compiled, dense: &DenseOutput) -> String {
     let (h, n) = compiled.rank();
@@ -91,7 +87,7 @@ pub(crate) fn words(equations: &Equations, compiled: &mut Compiled, dense: &Dens
             let scaled = DMatrix::from_fn(h, n, |i, j| end[(i, j)] / start.row(i).norm().max(f64::MIN_POSITIVE));
             let square = SingularValues::of(&(&scaled * scaled.transpose()));
             let last = square.right.row(h - 1);
-            let told = (0..h).filter(|&i| last[i].abs() > TOLD * last.amax());
+            let told = (0..h).filter(|&i| last[i].abs() > NEARLY_ZERO * last.amax());
             told.map(|i| numbers[i].to_string()).collect()
         }
         _ => numbers.iter().map(usize::to_string).collect(),
@@ -119,7 +115,7 @@ fn place(equations: &Equations, dense: &DenseOutput) -> Option<String> {
     };
     let (start, end) = (at(dense.start(), dense.start_state()), at(dense.end(), dense.end_state()));
     let size = start.iter().chain(&end).fold(0.0_f64, |most, x| most.max(x.abs()));
-    let value = |x: f64| if x.abs() < ZERO * size { "0".into() } else { short(x) };
+    let value = |x: f64| if x.abs() < SAME * size { "0".into() } else { short(x) };
     let names = equations.rows.as_ref()?.coordinates.iter();
     Some(names.zip(&end).map(|(name, &x)| format!("{name} = {}", value(x))).collect::<Vec<_>>().join(", "))
 }

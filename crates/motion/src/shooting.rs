@@ -5,6 +5,16 @@
 //! number of the first start that led to it, so that one search says what half of its starts would have found
 //! ([`least_from`]).
 
+/// Steps that a run of a search may take, over those of the run from its guess: beside a singularity a run may
+/// take a thousand times more, and the search does not get past it.
+pub const LONGER: usize = 4;
+
+/// A motion that is found by way of shorter ones begins with this part of the time.
+pub const BEGINNING: f64 = 0.1;
+
+/// Steps in a row by the same Jacobian.
+pub const CHORDS: usize = 5;
+
 /// A start of a search, or the end that it led to.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Minimum {

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use equations::{Compiled, EvaluationFailure, Outputs, Tangents};
 use integrate::{Gauge, Options, Problem, Solution, Start, Status, StopCause};
 
+use crate::band::CHUNK;
 use crate::lost_rank::column_factors;
 use crate::state_scales::sizes;
 use crate::{Metric, SolveError};
@@ -136,13 +137,10 @@ struct Runner<'a> {
     columns: Vec<f64>,
 }
 
-/// Number of new anchors after which those without a wanted time beside them are dropped.
-const ANCHORS: usize = 10_000;
-
 impl Runner<'_> {
-    /// Drops anchors between which nothing is wanted; the first and the last one stay.
+    /// Drops anchors between which nothing is wanted, where many are new; the first and the last one stay.
     fn thin(&mut self) {
-        let Some(wanted) = self.wanted.as_ref().filter(|_| self.anchors.len() >= self.judged + ANCHORS) else { return };
+        let Some(wanted) = self.wanted.as_ref().filter(|_| self.anchors.len() >= self.judged + CHUNK) else { return };
         let times: Vec<f64> = self.anchors[self.judged - 1..].iter().map(|anchor| anchor.0).collect();
         let is_beside = |around: &[f64]| {
             let [from, to] = [around[0].min(around[2]), around[0].max(around[2])];

@@ -6,17 +6,15 @@ use crate::Metric;
 use crate::band::limits::{CERTAINTY, ROUND_OFF, UNITS};
 use crate::band::ulp_perturbation::signs;
 use crate::metric::subtract;
+use symbolic::limits::NOTHING;
 
 /// Sizes are limited to 1, or to this fraction of the size from the energy if that is larger: runs may be
 /// long. This fraction of the speed that a constant acceleration gives within the run counts as speed.
 const LARGE: f64 = 1e-5;
 /// States are displaced by this fraction of their size to see what depends on them; states without a size, by
-/// `LEAST` and then by larger and larger amounts until something does.
+/// `LEAST` and then by larger and larger amounts, to its inverse, until something does.
 const MOVE: f64 = 1.0 / (1 << 20) as f64;
 const LEAST: f64 = 1e-30;
-const MOVES: usize = 11;
-/// A quantity that changes by less than this fraction of itself does not depend on the displaced state.
-const SEEN: f64 = 1.0 / (1 << 30) as f64;
 
 /// The size of each state at `(t, y)`, by which an absolute tolerance is multiplied: how large it is there,
 /// or becomes by its rate within the length of the run; at most 1, or where numbers are large at most 10⁻⁵
@@ -186,7 +184,7 @@ impl Probe<'_> {
     fn moved(&mut self, j: usize, time: f64, share: &mut dyn FnMut(&mut Self, &[f64]) -> Option<f64>) -> Option<f64> {
         let reach = self.reach(j, time);
         let mut step = if reach > 0.0 && reach.is_finite() { MOVE * reach } else { LEAST };
-        for _ in 0..MOVES {
+        while step < LEAST.recip() {
             let mut y = self.y.to_vec();
             y[j] += step;
             if let Some(part) = share(self, &y) {
@@ -218,7 +216,7 @@ impl Probe<'_> {
 fn seen(there: &[f64], here: &[f64], noise: &[f64]) -> Vec<f64> {
     let difference = |((there, here), noise): ((&f64, &f64), &f64)| {
         let difference = there - here;
-        if difference.abs() > noise.max(SEEN * here.abs()) { difference } else { 0.0 }
+        if difference.abs() > noise.max(NOTHING * here.abs()) { difference } else { 0.0 }
     };
     there.iter().zip(here).zip(noise).map(difference).collect()
 }

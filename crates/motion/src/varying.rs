@@ -1,8 +1,11 @@
 //! Equations derived and compiled once, for other starts, free constants and values of some parameters.
 
+use std::f64::consts::GOLDEN_RATIO;
+
 use equations::{Equations, FreeConstant};
 use mechanics::{ConstantsRule, Parameter, RemovalProgram, State, System};
 use scene::Scene;
+use symbolic::limits::BESIDE;
 use symbolic::{Evaluator, Symbol};
 
 use crate::constants::{chord, resolve};
@@ -38,10 +41,6 @@ pub struct Varying {
     domain_names: Vec<String>,
     settings: Settings,
 }
-
-/// Offset from the scene's values of parameters at which equations are derived, so that nothing cancels by
-/// accident.
-const APART: f64 = 1e-2;
 
 impl Varying {
     /// Derives and compiles in the form chosen at the start of `scene`. The parameters that vary are free
@@ -150,7 +149,7 @@ fn derived(scene: &Scene, choice: &Choice, varied: &[Parameter], form: Form) -> 
     let mut system = scene.system.clone();
     let is_varied = |p: &&mut Parameter| varied.iter().any(|varied| varied.symbol == p.symbol);
     for (p, part) in system.parameters.iter_mut().filter(is_varied).zip(1..) {
-        p.value += APART * (1.0 + p.value.abs()) * (0.5 + (integrate::GOLDEN * f64::from(part)).fract());
+        p.value += BESIDE * (1.0 + p.value.abs()) * (0.5 + (GOLDEN_RATIO * f64::from(part)).fract());
     }
     Ok(derive_in_form(&system, &scene.start, choice, form)?.0)
 }

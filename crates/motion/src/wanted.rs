@@ -1,7 +1,7 @@
 //! The times at which outputs of a motion are wanted, known before the run: a long run is stored around these
 //! only.
 
-use integrate::GOLDEN;
+use std::f64::consts::GOLDEN_RATIO;
 use std::sync::Arc;
 
 use crate::band::limits::{INSTANTS, SAMPLES, STRETCHES};
@@ -12,7 +12,7 @@ pub const HALVES: i32 = 20;
 
 /// Times from `start` to `end` that no period fits: parts of the golden section.
 pub(crate) fn scattered([start, end]: [f64; 2]) -> impl Iterator<Item = f64> {
-    (1..=SAMPLES).map(move |i| start + (end - start) * (i as f64 * GOLDEN).fract())
+    (1..=SAMPLES).map(move |i| start + (end - start) * (i as f64 * GOLDEN_RATIO).fract())
 }
 
 /// The wanted times of a run between these ends, if outputs are asked for at `times`, ascending.

@@ -4,7 +4,7 @@ use integrate::Method;
 use motion::Doubt;
 
 /// Steps of the looser run per stretch, in the search for where a doubt begins.
-const TOGETHER: usize = 20;
+const TOGETHER: usize = 16;
 
 /// Ends of `count` equal steps from 0 to 1, then of `more` times as many from 1 to 2.
 fn steps(count: usize, more: usize) -> Vec<f64> {

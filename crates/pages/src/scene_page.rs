@@ -16,7 +16,7 @@ use crate::table::Table;
 use crate::{DataPackage, membership, tables, tex};
 
 /// Rows of the table of pairs, and equations, that a page shows.
-const PAIRS: usize = 5;
+pub(crate) const PAIRS: usize = 5;
 const EQUATIONS: usize = 3;
 
 /// A formula of more letters than this stands in the file of equations only.

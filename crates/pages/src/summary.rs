@@ -6,6 +6,7 @@ use anyhow::Result;
 use comparison::{Comparison, Pair, Verdict};
 use motion::{CHETAEV, Ending, VAKONOMIC, error_estimate, setting};
 
+use crate::scene_page::PAIRS;
 use crate::tables::{is_seen, largest};
 use comparison::words::{Headline, answer, or_dash, rows, short};
 use picture::{Axis, Curve, Picture, Style};
@@ -13,8 +14,7 @@ use picture::{Axis, Curve, Picture, Style};
 /// Rows of the plot.
 const HEIGHT: usize = 12;
 
-/// Most curves of the plot, and the fewest characters of one that can be seen.
-const CURVES: usize = 5;
+/// The fewest characters of a curve that can be seen.
 const SEEN: usize = 4;
 
 /// What has been compared so far, in lines of at most `width` where they are not sentences.
@@ -103,7 +103,7 @@ fn pairs(comparison: &Comparison, plotted: &[&Pair]) -> String {
 fn plot(comparison: &Comparison, width: usize) -> Result<(String, Vec<&Pair>)> {
     let first = rows(comparison).map(|p| p.first).min();
     let of_first = rows(comparison).filter(|p| p.gap.shows() && Some(p.first) == first);
-    let mut plotted: Vec<&Pair> = of_first.take(CURVES).collect();
+    let mut plotted: Vec<&Pair> = of_first.take(PAIRS).collect();
     while !plotted.is_empty() {
         let text = drawn(comparison, &plotted, width)?;
         let canvas: String =

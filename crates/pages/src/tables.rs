@@ -2,14 +2,11 @@
 
 use anyhow::Result;
 use comparison::{Comparison, Gap, Pair, Verdict};
-use motion::band::BEFORE_THE_END;
+use motion::band::{BEFORE_THE_END, SAMPLES};
 use motion::{ChartChange, Ending};
 
 use crate::table::Table;
 use comparison::words::{at_most, by_half, or_dash, precise, reached, short, unseen};
-
-/// Times at which invariants and residuals are sampled.
-const SAMPLES: usize = 400;
 
 /// The word on a pair, with the time from which it holds.
 pub fn verdict_words(gap: &Gap) -> String {

@@ -3,7 +3,7 @@
 use comparison::words::at_most;
 use comparison::{Comparison, FittedMotion, Gap};
 use indexmap::IndexMap;
-use motion::band::SAME_STOP;
+use motion::TRUSTED;
 use motion::{Ending, Motion, SolveError};
 use schemars::JsonSchema;
 use serde::Serialize;
@@ -189,7 +189,7 @@ fn differ(path: &str, old: &Value, new: &Value) -> Option<String> {
         }
         (Value::Number(a), Value::Number(b)) => {
             let (a, b) = (a.as_f64()?, b.as_f64()?);
-            ((a - b).abs() > SAME_STOP * a.abs().max(b.abs())).then(|| format!("{path}: {a}, now {b}"))
+            ((a - b).abs() > TRUSTED * a.abs().max(b.abs())).then(|| format!("{path}: {a}, now {b}"))
         }
         // the numbers in a cause are those of the last step, and differ from machine to machine
         (Value::String(a), Value::String(b)) if path.ends_with("/cause") => {

@@ -7,6 +7,7 @@
 use std::collections::BTreeMap;
 
 use mechanics::System;
+use symbolic::limits::TERMS;
 use symbolic::{Expr, Function, Graph, Symbol};
 
 use crate::Law;
@@ -54,13 +55,10 @@ impl Called {
     }
 }
 
-/// Terms beyond which expressions are not taken apart: what is printed would help nobody.
-const MOST: usize = 400;
-
 /// The terms of `e` as written and multiplied out, each once.
 pub(crate) fn terms_of(g: &Graph, e: Expr) -> Vec<Expr> {
     let mut terms = g.terms(e);
-    if g.expanded_terms(e) <= MOST {
+    if g.expanded_terms(e) <= TERMS {
         let expanded = g.terms(g.expand(e)).into_iter().filter(|t| !terms.contains(t)).collect::<Vec<Expr>>();
         terms.extend(expanded);
     }

@@ -1,6 +1,7 @@
 //! Their accelerations at several points, held against rows of derivations.
 
 use decision::exact::Exact;
+use symbolic::limits::{ITERATIONS, SHOWN};
 use symbolic::{Evaluator, Symbol};
 
 use crate::atoms::Called;
@@ -8,13 +9,9 @@ use crate::base::{Base, Residuals};
 use crate::frame::{Frame, Point, Trouble};
 use crate::number::{Number, constants, eliminate, values};
 
-/// Draws until as many are found.
-const DRAWS: u64 = 60;
 /// Sizes of the integers that are drawn in a field, as powers of two: exact sines of large ones may not fit.
 /// Beside, at how many points equations are compared.
 const BITS: [(u32, usize); 3] = [(20, 4), (8, 10), (3, 24)];
-/// Explanations of the same equations that are told.
-const TOLD: usize = 6;
 
 pub(crate) struct Case<'f, C> {
     pub(crate) frame: &'f Frame<'f>,
@@ -65,7 +62,7 @@ impl<'f, C: Number> Case<'f, C> {
         let mut trouble = None;
         for &(bits, count) in if C::PROVES { &BITS[..] } else { &BITS[..1] } {
             let mut points = Vec::new();
-            for seed in 1..=DRAWS {
+            for seed in 1..=ITERATIONS as u64 {
                 match frame.draw(seed, bits, own).and_then(|inputs| frame.at(inputs)) {
                     Ok(point) => points.push(point),
                     Err(found @ Trouble::NoPoint(_)) if C::PROVES => {
@@ -177,7 +174,7 @@ impl<'f, C: Number> Case<'f, C> {
             found.extend(explained(&stack, called, pairs));
         }
         found.sort_by_key(|(odd, _)| *odd);
-        found.truncate(TOLD);
+        found.truncate(SHOWN);
         found.into_iter().map(|(_, words)| [&base.words[..], &words].concat()).collect()
     }
 }

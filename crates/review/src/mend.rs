@@ -4,6 +4,7 @@
 use std::ops::Range;
 
 use scene::Scene;
+use symbolic::limits::LONG;
 
 use crate::{Asked, Notation, Verdict};
 
@@ -14,9 +15,6 @@ const CHANGES: [(&str, &str); 4] = [
     ("(1/2)", "is twice as large as it should be"),
     ("2", "is half as large as it should be"),
 ];
-
-/// Texts with more terms are not searched, so that there is an answer within seconds.
-const MOST: usize = 64;
 
 /// A term that alone makes equations wrong.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -53,7 +51,8 @@ pub fn mends(scene: &Scene, text: &str, asked: &Asked) -> Vec<Mend> {
     let lines: Vec<&str> = text.lines().collect();
     let places: Vec<_> =
         (0..lines.len()).flat_map(|i| terms(lines[i]).into_iter().map(move |term| (i, term))).collect();
-    if places.len() > MOST {
+    // so that there is an answer within seconds
+    if places.len() > LONG {
         return Vec::new();
     }
     let mut found: Vec<Mend> = Vec::new();

@@ -2,14 +2,12 @@
 
 use mechanics::System;
 use scene::{Table, TableError};
+use symbolic::limits::POINTS;
 
 use crate::ReviewError;
 use crate::review::Row;
 
-/// Rows that are looked at, spread over the table.
-const MOST: usize = 40;
-
-/// The rows of a table with columns `x`, `x'` and `x''` of each coordinate, and of `t`, or 0.
+/// Some rows, spread over a table with columns `x`, `x'` and `x''` of each coordinate, and of `t`, or 0.
 ///
 /// # Errors
 /// [`ReviewError::Table`] with the place.
@@ -21,7 +19,7 @@ pub(crate) fn rows(system: &System, file: &str, text: &str) -> Result<Vec<Row>, 
     };
     let (q, v, a) = (places("")?, places("'")?, places("''")?);
     let rows = table.rows();
-    let step = rows.len().div_ceil(MOST).max(1);
+    let step = rows.len().div_ceil(POINTS).max(1);
     let row = |row: usize| -> Result<Row, TableError> {
         let of =
             |places: &[usize]| places.iter().map(|&place| table.number(row, place)).collect::<Result<Vec<f64>, _>>();

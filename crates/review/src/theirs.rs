@@ -2,11 +2,9 @@
 
 use mechanics::{Completion, Parameter, State, System};
 use scene::Scene;
+use symbolic::limits::TOO_LONG;
 
 use crate::reading::Reading;
-
-/// Nodes of `L` beyond which it is not multiplied out.
-const MOST: usize = 2_000;
 
 /// The scene in their coordinates and parameters; none where these are not as many, or the same.
 pub(crate) fn in_theirs(scene: &Scene, reading: &Reading) -> Option<Scene> {
@@ -18,7 +16,7 @@ pub(crate) fn in_theirs(scene: &Scene, reading: &Reading) -> Option<Scene> {
     let q: Vec<_> = reading.coordinates.iter().map(|c| c[0]).collect();
     let places = reading.of_scene(g, &g.variables(&own.positions()));
     // squares of sines and cosines add up
-    let lagrangian = g.expand_if_shorter(reading.of_scene(g, &[own.lagrangian])[0], MOST);
+    let lagrangian = g.expand_if_shorter(reading.of_scene(g, &[own.lagrangian])[0], TOO_LONG);
     let constraints = reading.of_scene(g, &own.constraints);
     let forces = g.transpose_vec(&g.jacobian(&places, &q), &reading.of_scene(g, &own.forces));
     let names: Vec<String> = q.iter().map(|&s| g.name(s)).collect();

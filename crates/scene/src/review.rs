@@ -3,15 +3,13 @@
 use std::collections::{HashMap, HashSet};
 
 use mechanics::{Body, Kind, State, System, View};
+use symbolic::limits::SAME;
 use symbolic::{Evaluator, Expr, Graph, SplitMix, Symbol, names_in};
 use toml::de::DeValue;
 
 use super::context::Context;
 use super::section::Section;
 use crate::{Remark, SceneError, SceneErrorKind};
-
-/// Below this, relative to what it is measured by, nothing is remarked.
-const SMALL: f64 = 1e-7;
 
 /// Sections whose formulas make a name one that is used; words of the other keys are not formulas.
 const WORDS: [&str; 11] =
@@ -95,7 +93,7 @@ fn masses(context: &Context) -> Vec<SceneError> {
         let largest = moments.into_iter().fold(0.0, f64::max);
         if let Some(&value) = moments.iter().find(|moment| **moment < 0.0) {
             found.push(entry.error(SceneErrorKind::Remark(Remark::Negative { what: name("a moment"), value })));
-        } else if moments.iter().all(|m| *m > 0.0) && 2.0 * largest > (a + b + c) * (1.0 + SMALL) {
+        } else if moments.iter().all(|m| *m > 0.0) && 2.0 * largest > (a + b + c) * (1.0 + SAME) {
             found.push(entry.error(SceneErrorKind::Remark(Remark::Moments { moments })));
         }
     }
@@ -120,7 +118,7 @@ impl<'c> Reviewer<'c> {
             let row = reviewer.gradient(f, &system.velocities(), &reviewer.values);
             let length = norm(&row);
             let rest = reviewer.admissible(row);
-            if norm(&rest) > SMALL * length {
+            if norm(&rest) > SAME * length {
                 let length = norm(&rest);
                 reviewer.normals.push(rest.into_iter().map(|x| x / length).collect());
             }
@@ -179,8 +177,8 @@ impl<'c> Reviewer<'c> {
             return None;
         }
         let energy = |w: &Vec<f64>| -> f64 { (0..n).map(|i| w[i] * dot(&entries[i * n..(i + 1) * n], w)).sum() };
-        let least = self.directions().iter().map(|w| energy(w) / dot(w, w).max(SMALL)).fold(f64::INFINITY, f64::min);
-        let negative = least < -SMALL * size;
+        let least = self.directions().iter().map(|w| energy(w) / dot(w, w).max(SAME)).fold(f64::INFINITY, f64::min);
+        let negative = least < -SAME * size;
         negative.then(|| self.of_system("lagrangian", Remark::KineticEnergy { value: least }))
     }
 
@@ -246,7 +244,7 @@ impl<'c> Reviewer<'c> {
         };
         let powers: Vec<f64> = self.directions().iter().map(least).collect();
         let value = powers.iter().copied().fold(0.0, f64::max);
-        let drives = value > SMALL && powers.iter().all(|power| *power > -SMALL * value);
+        let drives = value > SAME && powers.iter().all(|power| *power > -SAME * value);
         drives.then(|| self.of_system("forces", Remark::Driving { value }))
     }
 
@@ -281,12 +279,12 @@ impl<'c> Reviewer<'c> {
             let mut values = self.values.clone();
             values.extend(system.velocities().into_iter().zip(v.iter().copied()));
             let size = 1.0 + norm(&v);
-            if system.constraints.iter().any(|&f| self.value(f, &values).abs().total_cmp(&(SMALL * size)).is_ge()) {
+            if system.constraints.iter().any(|&f| self.value(f, &values).abs().total_cmp(&(SAME * size)).is_ge()) {
                 continue;
             }
             let now = program.evaluate(&[&[self.start.t], &self.start.q[..], &v].concat());
             for (slip, (i, on)) in now.chunks(3).map(norm).zip(&contacts) {
-                if slip > 10.0 * SMALL * size && slip > largest[*i].0 {
+                if slip > 10.0 * SAME * size && slip > largest[*i].0 {
                     largest[*i] = (slip, view.bodies[*on].name.clone());
                 }
             }

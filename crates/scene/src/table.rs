@@ -16,7 +16,6 @@ pub const TABLE_SIZE: usize = 400_000_000;
 /// Most rows of a table, and members of an ensemble.
 pub const MOST_ROWS: usize = 1_000_000;
 const MOST_COLUMNS: usize = 10_000;
-const MOST_CELLS: usize = 50_000_000;
 const LONGEST_NAME: usize = 1_000;
 
 /// A table: a header, which is row 0, and rows of as many cells, between commas. Cells may stand in quotation
@@ -134,6 +133,8 @@ impl<'t> Table<'t> {
         if text.len() > TABLE_SIZE {
             return refused(0, too_large(TABLE_SIZE, "bytes"));
         }
+        // as numbers they take as much memory as their text
+        let most_cells = TABLE_SIZE / size_of::<f64>();
         let mut table = Table { columns: Vec::new(), lines: Vec::new(), file, text, cells: Vec::new() };
         let (mut at, mut line, mut width) = (text.len() - text.trim_start_matches('\u{feff}').len(), 1, MOST_COLUMNS);
         while at < text.len() {
@@ -156,7 +157,7 @@ impl<'t> Table<'t> {
                 0 => (width, table.columns) = (found, table.header(found)?),
                 _ if found != width => return refused(cell, TableFault::Ragged { found, expected: width }),
                 rows if rows > MOST_ROWS => return refused(cell, too_large(MOST_ROWS, "rows")),
-                _ if table.cells.len() > MOST_CELLS => return refused(cell, too_large(MOST_CELLS, "cells")),
+                _ if table.cells.len() > most_cells => return refused(cell, too_large(most_cells, "cells")),
                 _ => {}
             }
             table.lines.push(line);

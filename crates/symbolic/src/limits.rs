@@ -38,6 +38,25 @@ pub const SHORT: usize = 8;
 /// Nodes over which an expression is not multiplied out: what cancels does so in shorter ones.
 pub const LONG: usize = 100;
 
+/// Numbers are moved by this part, so that nothing cancels by accident.
+pub const BESIDE: f64 = 1e-2;
+
+/// Points of a finite field at which an identity is tried: one that is none has a chance of its degree over
+/// the field's order at each.
+pub const IN_FIELD: u64 = 2;
+
+/// Points at which an expression is tried where nothing is proved.
+pub const POINTS: usize = 32;
+
+/// Terms over which an expression is not taken apart.
+pub const TERMS: usize = 400;
+
+/// Prime factors under this are looked for under roots of numbers.
+pub const PRIMES: i64 = 4096;
+
+/// Larger numerators and denominators come from measured numbers.
+pub const FRACTION: i64 = 1_000_000;
+
 /// Nodes or terms over which algebra is given up: it would take seconds.
 pub const TOO_LONG: usize = 10_000;
 

@@ -5,6 +5,7 @@ use std::fmt::Write;
 
 use anyhow::Result;
 use integrate::Method;
+use motion::Settings;
 use serde_json::{Value, json};
 
 use crate::{Bench, Entry, Fastest, MEMBERS, Measurements, Series, TARGETS, Throughput, Time};
@@ -14,21 +15,19 @@ use pages::{DataPackage, Table};
 use picture::{Axis, Curve, Panel, Picture, PictureError, Style};
 use program::File;
 
-/// The error at which formulations are compared in the headline.
-const HEADLINE_TARGET: f64 = 1e-10;
-
 /// The first line of the page.
 pub fn bench_headline(benches: &[Bench]) -> String {
     let all: Vec<&Measurements> =
         benches.iter().flat_map(|b| &b.entries).filter_map(|e| e.outcome.as_ref().ok()).collect();
-    let winners: Vec<Fastest> = all.iter().filter_map(|m| m.fastest(HEADLINE_TARGET, None)).collect();
+    let winners: Vec<Fastest> = all.iter().filter_map(|m| m.fastest(Settings::default().tolerance, None)).collect();
     let mut counts: BTreeMap<&str, usize> = BTreeMap::new();
     winners.iter().for_each(|winner| *counts.entry(winner.method.name()).or_default() += 1);
     let mut names: Vec<(&str, usize)> = counts.into_iter().collect();
     names.sort_by_key(|&(_, count)| std::cmp::Reverse(count));
     let words: Vec<String> = names.iter().map(|(name, count)| format!("{name} on {count}")).collect();
     format!(
-        "An error of at most {HEADLINE_TARGET:.0e} is reached on {} of {} motions; fastest there: {}.",
+        "An error of at most {:.0e} is reached on {} of {} motions; fastest there: {}.",
+        Settings::default().tolerance,
         winners.len(),
         all.len(),
         enumerate(&words)
@@ -276,13 +275,16 @@ fn failures(series: &Series) -> Vec<String> {
 /// Which method is fastest on most motions of a scene.
 fn title(bench: &Bench) -> String {
     let measured = bench.entries.iter().filter_map(|entry| entry.outcome.as_ref().ok());
-    let winners: Vec<&str> =
-        measured.filter_map(|m| m.fastest(HEADLINE_TARGET, None)).map(|fastest| fastest.method.name()).collect();
+    let winners: Vec<&str> = measured
+        .filter_map(|m| m.fastest(Settings::default().tolerance, None))
+        .map(|fastest| fastest.method.name())
+        .collect();
     let wins = |name: &str| winners.iter().filter(|other| **other == name).count();
     match winners.iter().max_by_key(|name| wins(name)) {
         Some(first) => format!(
-            "{}: {first} is fastest to {HEADLINE_TARGET:.0e} on {} of {} motions",
+            "{}: {first} is fastest to {:.0e} on {} of {} motions",
             bench.title,
+            Settings::default().tolerance,
             wins(first),
             winners.len()
         ),

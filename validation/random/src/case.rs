@@ -3,6 +3,7 @@
 use comparison::{Gap, Membership, Sampling, Verdict, compare_motions_by, membership};
 use equations::{Equations, Formulation};
 use mechanics::{ConstantsRule, Removal, SingularValues, State, System};
+use motion::band::{BEFORE_THE_END, INSTANTS, SEARCH_STEPS};
 use motion::{
     CHETAEV, Ending, Metric, Motion, REMOVED_CONSTRAINT, Setting, Settings, SolveError, TIGHTER, VAKONOMIC, setting,
 };
@@ -10,6 +11,7 @@ use nalgebra::DMatrix;
 use referees::maggi::{self, MaggiError};
 use scene::Scene;
 use symbolic::Expr;
+use symbolic::limits::SAME;
 
 use super::derived::{equations, free_constants};
 use super::finding::{Finding, Findings, Word};
@@ -21,17 +23,6 @@ use review::substitution::SUBSTITUTION;
 
 /// Tolerances tried one after the other: what round-off does not allow is asked for less sharply.
 const TOLERANCES: [f64; 3] = [1e-11, 1e-9, 1e-7];
-
-/// Steps after which a run is given up.
-pub(crate) const MAX_STEPS: usize = 3_000;
-
-/// The part of a size that can be told: what is less says nothing of a claim.
-pub(crate) const SEEN: f64 = 1e-3;
-/// Instants at which motions are compared and looked at.
-pub(crate) const INSTANTS: usize = 40;
-
-/// Where a motion stops, all are looked at up to this fraction of the time it lasted.
-const BEFORE_A_STOP: f64 = 0.8;
 
 /// How often the run may be shortened.
 const SHORTENED: usize = 6;
@@ -97,7 +88,7 @@ impl Case {
         for _ in 0..SHORTENED {
             let case = Case::with_duration(&recipe, &scene)?;
             let Some((t, cause)) = case.earliest_stop() else { return Ok(Case { shortened, ..case }) };
-            scene.duration = BEFORE_A_STOP * (t - scene.start.t);
+            scene.duration = BEFORE_THE_END * (t - scene.start.t);
             shortened.get_or_insert(cause);
         }
         Case::with_duration(&recipe, &scene).map(|case| Case { shortened, ..case })
@@ -319,9 +310,6 @@ fn some_costates(recipe: &Recipe, equations: &Equations, memory: usize) -> Vec<f
     (0..memory).map(value).collect()
 }
 
-/// The tighter run's tolerance is not under this part of [`Case::floor`].
-const FLOOR: f64 = 1e-6;
-
 /// Solves at the sharpest of [`TOLERANCES`] that `floor` allows and the motion lasts; [`Settings::plain`].
 fn solve(
     setting: Setting,
@@ -333,7 +321,7 @@ fn solve(
     let rule = ConstantsRule::Given(constants.to_vec());
     let mut best: Option<Motion> = None;
     for tolerance in tolerances(floor) {
-        let settings = Settings { tolerance, max_steps: MAX_STEPS, plain, ..Settings::default() };
+        let settings = Settings { tolerance, max_steps: SEARCH_STEPS, plain, ..Settings::default() };
         let motion = motion::solve(setting, equations.clone(), &rule, &settings)?;
         if motion.is_complete() {
             return Ok(motion);
@@ -351,7 +339,7 @@ fn solve(
 /// Tolerances of runs that a floor ([`Case::floor`]) allows, sharp ones first; the last one always.
 pub fn tolerances(floor: f64) -> impl Iterator<Item = f64> {
     let is_allowed =
-        move |tolerance: &f64| tolerance * TIGHTER >= FLOOR * floor || *tolerance == TOLERANCES[TOLERANCES.len() - 1];
+        move |tolerance: &f64| tolerance * TIGHTER >= SAME * floor || *tolerance == TOLERANCES[TOLERANCES.len() - 1];
     TOLERANCES.into_iter().filter(is_allowed)
 }
 

@@ -4,6 +4,7 @@
 use comparison::Gap;
 use motion::{CERTAINTY, Metric, Motion, Setting, SolveError};
 use referees::maggi::{self, Maggi, MaggiError};
+use symbolic::limits::SAME;
 
 use crate::Word;
 
@@ -14,9 +15,8 @@ const PLACES: [f64; 5] = [0.05, 0.2, 0.45, 0.7, 0.95];
 /// a switch, that of far ones.
 const DISTANCES: [f64; 2] = [1e-3, 1e-4];
 
-/// Over `WRONG` of Maggi's residual the control's motion is wrong, under `RIGHT` right. Between them, and of
+/// Over `SAME` of Maggi's residual the control's motion is wrong, under `RIGHT` right. Between them, and of
 /// what is flagged, Maggi's own motion decides.
-const WRONG: f64 = 1e-6;
 const RIGHT: f64 = 1e-12;
 
 /// Tolerances of the two runs of Maggi's equations.
@@ -54,7 +54,7 @@ impl FoundOut {
 
     /// Whether the control is wrong by its residual.
     pub fn is_wrong(&self) -> bool {
-        self.residual > WRONG
+        self.residual > SAME
     }
 }
 

@@ -26,7 +26,8 @@ pub use build::{DURATION, REMOVAL};
 pub use bulk::{Batch, first_failures, shrink};
 pub use case::{Case, NEAREST, Removed, Which};
 pub use claims::{
-    CHECKS, Check, DIVERGES, Divergence, NullTest, broken_null_test, integrals_put_in, make, null_test, theorem_title,
+    CHECKS, Check, DIVERGES, Divergence, NullTest, VISIBLE, broken_null_test, integrals_put_in, make, null_test,
+    theorem_title,
 };
 pub use class::{Classes, Force, Sudden, Surface, Units};
 pub use derived::{equations, free_constants};

@@ -19,6 +19,7 @@ use diffsol_methods::BDF;
 use equations::{Derivation, Equations};
 use integrate::Method;
 use mechanics::{ConstantsRule, Parameter, Removal, State, System, complete_removal_start};
+use motion::band::INSTANTS;
 use motion::{CHETAEV, Metric, Motion, Setting, Settings, SolveError, solve};
 use nalgebra::{DMatrix, DVector};
 use symbolic::limits::ITERATIONS;
@@ -32,9 +33,6 @@ const TOLERANCES: [f64; 2] = [1e-9, 1e-7];
 
 /// Limit on the steps of one run.
 const MAX_STEPS: usize = 20_000;
-
-/// Instants at which distances are taken, in the second half of the run.
-const INSTANTS: usize = 12;
 
 /// What is made of a constraint.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -18,9 +18,6 @@ const DISPUTED: &[Divergence] = DIVERGES.split_at(3).0;
 /// T13 is on systems of its own, on which formulations differ by closed forms.
 const NULL_TESTS: u8 = 13;
 
-/// The last theorem.
-const LAST: u8 = CHECKS[CHECKS.len() - 1].theorem;
-
 /// A claim on one system that does not hold.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Open {
@@ -216,7 +213,7 @@ impl Summary {
                 *summary.features.entry(feature.clone()).or_default() += 1;
             }
             summary.shortened += u64::from(record.shortened.is_some());
-            for theorem in 0..=LAST {
+            for theorem in 0..=CHECKS[CHECKS.len() - 1].theorem {
                 if let Some(word) = record.word(theorem) {
                     summary.theorems.entry(theorem).or_default().add(word, 1);
                     *summary.at_stake.entry(theorem).or_default() +=

@@ -4,12 +4,11 @@ use std::collections::HashMap;
 
 use anyhow::{Context as _, Result};
 use mechanics::ConstantsRule;
+use motion::band::SOME;
 use motion::{REMOVED_CONSTRAINT, Settings, setting, solve};
 
 use super::context::Context;
 use random::equations;
-
-const INSTANTS: usize = 20;
 
 /// Half the distance of the velocities whose difference is an acceleration.
 const STEP: f64 = 2.5e-4;
@@ -33,8 +32,8 @@ pub(super) fn along(context: &Context, scene: &str, lines: &[String]) -> Result<
         values.insert(g.symbol(&scene.system.graph.name(p.symbol)), p.value);
     }
     let (start, end) = (motion.start(), motion.end());
-    for k in 1..INSTANTS {
-        let t = start + (end - start) * k as f64 / INSTANTS as f64;
+    for k in 1..SOME {
+        let t = start + (end - start) * k as f64 / SOME as f64;
         let now = motion.at(t)?;
         let mut around = Vec::new();
         for steps in [-2.0, -1.0, 1.0, 2.0] {

@@ -13,6 +13,7 @@ use std::collections::HashMap;
 use anyhow::{Context as _, Result};
 use equations::Equations;
 use mechanics::{Removal, System};
+use symbolic::limits::SHORT;
 use symbolic::{Expr, Graph, Symbol, Vanishing};
 
 use random::equations;
@@ -29,9 +30,6 @@ pub struct Example {
     /// Each balance and costate equation minus the derived one.
     pub residuals: Vec<Vanishing>,
 }
-
-/// Expressions with more nodes than this get a name where they occur in a balance.
-const SHORT: usize = 6;
 
 /// Example 2. (Example 3 is shorter in quantities of its own, which are among the formulas.)
 ///

@@ -8,7 +8,7 @@ use std::collections::HashMap;
 use anyhow::{Context as _, Result, anyhow};
 use integrate::{DenseOutput, EvaluationError, Options, Problem, Start, integrate};
 use mechanics::{ConstantsRule, State};
-use motion::{REMOVED_CONSTRAINT, Setting, Settings, solve};
+use motion::{REMOVED_CONSTRAINT, Setting, Settings, TIGHTER, solve};
 use scene::Scene;
 use symbolic::{Evaluator, Expr, Symbol};
 
@@ -34,7 +34,6 @@ const SPAN: [f64; 2] = [0.0, 1.0];
 /// `u, u̇, ü, u⃛` and `λ` at `t₁`.
 const END: [f64; 4] = [0.4, 0.7, -0.5, 0.3];
 const LAMBDA: f64 = 0.6;
-const TOLERANCE: f64 = 1e-12;
 
 /// What was found of one reading.
 #[derive(Clone, Debug)]
@@ -132,7 +131,7 @@ impl Law {
     fn integrate(&mut self) -> Result<DenseOutput> {
         let mut y = END[..self.order].to_vec();
         y.extend([LAMBDA, 0.0]);
-        let options = Options::with_tolerance(TOLERANCE);
+        let options = Options::with_tolerance(TIGHTER * Settings::default().tolerance);
         let solution = integrate(self, &Start { t: SPAN[1], y }, SPAN[0], &options).map_err(|e| anyhow!("{e}"))?;
         match solution.status {
             integrate::Status::Stopped { t, cause } => Err(anyhow!("stopped at {t}: {cause}")),

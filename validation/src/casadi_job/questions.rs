@@ -14,6 +14,8 @@ use scene::Scene;
 use serde::Serialize;
 use symbolic::SplitMix;
 
+use crate::benchmark::TRIES;
+
 /// How much is asked of a scene.
 #[derive(Clone, Copy, Debug)]
 pub struct Amount {
@@ -104,9 +106,6 @@ pub(super) struct Transcription {
 
 /// How far random states are from the start: positions, parameters and memory; everything else.
 const SPREAD: (f64, f64) = (0.25, 1.0);
-
-/// States drawn for each one wanted, at most: where our equations cannot be solved another one is drawn.
-const TRIES: usize = 10;
 
 impl Question {
     /// Everything about `scene`, whose file holds `text`.
@@ -299,7 +298,7 @@ fn samples(scene: &Scene, choice: &Choice, equations: &Equations, count: usize) 
     let mut uniform = || 2.0 * random.unit() - 1.0;
     let mut samples = Samples { states: Vec::new(), rates: Vec::new(), multipliers: Vec::new() };
     let mut rates = vec![0.0; base.len()];
-    for _ in 0..TRIES * count {
+    for _ in 0..TRIES as usize * count {
         if samples.states.len() == count {
             break;
         }

@@ -2,11 +2,12 @@
 
 use std::iter::Peekable;
 use std::str::CharIndices;
+
+use motion::CERTAINTY;
 use symbolic::limits::NOTHING;
 
 /// Numbers under [`NOTHING`] in size are round-off wherever they are written with a decimal point or an
 /// exponent: two of them are the same up to this factor, for the last digits of sines differ among machines.
-const POWER: f64 = 10.0;
 /// A number of fewer units of its last digit has none that is not sure: `0.3` is cut from `0.300`, and `1e-8`
 /// is a bound.
 const FEW: f64 = 9.5;
@@ -77,7 +78,7 @@ impl Compared {
             return false;
         } else if ulp(old) == ulp(new) && (a - b).abs() < 1.5 * ulp(old) && a.min(b) > FEW * ulp(old) {
             &mut self.last_digit
-        } else if a.max(b) < NOTHING && a.max(b) <= POWER * a.min(b) {
+        } else if a.max(b) < NOTHING && a.max(b) <= CERTAINTY * a.min(b) {
             &mut self.round_off
         } else {
             return false;

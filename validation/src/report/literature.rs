@@ -4,6 +4,7 @@ use equations::Formulation;
 use std::collections::{BTreeMap, HashMap};
 
 use anyhow::{Context, Result, ensure};
+use motion::band::SAMPLES;
 use motion::{CHETAEV, Settings, choices, formulation, solve_choice};
 use program::parallel;
 use serde::de::Error;
@@ -19,9 +20,6 @@ const DATA: &str = include_str!("../../equivalence/pages/claims.toml");
 
 /// The word for a question, which has no verdict.
 const ANSWERED: &str = "answered";
-
-/// Instants at which a quantity along a motion is looked at.
-const INSTANTS: usize = 400;
 
 #[derive(Deserialize)]
 struct Data {
@@ -116,8 +114,8 @@ impl Case {
         let quantity = g.parse(&along.quantity, &|name| names.get(name).map(|&s| g.variable(s)), &[])?;
         let mut evaluator = system.evaluator::<f64>(&inputs, &[quantity])?;
         let mut inside = motion.is_complete();
-        for i in 0..=INSTANTS {
-            let t = scene.start.t + from + (to - from) * i as f64 / INSTANTS as f64;
+        for i in 0..=SAMPLES {
+            let t = scene.start.t + from + (to - from) * i as f64 / SAMPLES as f64;
             let at = motion.at(t.min(motion.end()))?;
             let value = evaluator.evaluate(&[&[t][..], &at.coordinates, &at.velocities].concat())[0];
             inside &= (along.between[0]..=along.between[1]).contains(&value);
@@ -135,8 +133,8 @@ impl Case {
         let end = scene.start.t + scene.duration;
         ensure!(one.end() >= end && other.end() >= end, "a motion ends before {end}");
         let mut apart = 0.0_f64;
-        for i in 0..=INSTANTS {
-            let t = scene.start.t + scene.duration * i as f64 / INSTANTS as f64;
+        for i in 0..=SAMPLES {
+            let t = scene.start.t + scene.duration * i as f64 / SAMPLES as f64;
             let [one, other] = [one.at(t.min(end))?, other.at(t.min(end))?].map(|at| at.coordinates);
             let size = one.iter().fold(1.0_f64, |a, x| a.max(x.abs()));
             apart = one.iter().zip(&other).fold(apart, |a, (x, y)| a.max((x - y).abs() / size));

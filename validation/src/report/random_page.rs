@@ -14,8 +14,12 @@ const UNDECIDED: f64 = 0.02;
 
 /// Bins of the histogram of exponents, and their width.
 const BINS: usize = 31;
-const LOWEST: f64 = 0.95;
 const WIDTH: f64 = 0.1;
+
+/// Where bin `k` begins: the first is round an exponent of 1.
+fn edge(k: usize) -> f64 {
+    1.0 + WIDTH * (k as f64 - 0.5)
+}
 
 /// A page, its pictures, and the shrunk counterexamples as scene files.
 ///
@@ -257,23 +261,23 @@ fn exponents(summary: &Summary) -> Result<String> {
     let panels = DIVERGES.iter().zip(STYLES).map(|(names, style)| {
         let mut bins = [0_u32; BINS];
         for x in observed(summary, names.grows) {
-            let bin = ((x - LOWEST) / WIDTH).floor();
+            let bin = ((x - edge(0)) / WIDTH).floor();
             if bin >= 0.0 && bin < BINS as f64 {
                 bins[bin as usize] += 1;
             }
         }
-        let mut points = vec![(LOWEST, 0.0)];
+        let mut points = vec![(edge(0), 0.0)];
         for (k, &count) in bins.iter().enumerate() {
-            let left = LOWEST + WIDTH * k as f64;
-            points.extend([(left, f64::from(count)), (left + WIDTH, f64::from(count))]);
+            let left = edge(k);
+            points.extend([(left, f64::from(count)), (edge(k + 1), f64::from(count))]);
         }
-        points.push((LOWEST + WIDTH * BINS as f64, 0.0));
+        points.push((edge(BINS), 0.0));
         let highest = bins.iter().copied().max().unwrap_or(0).max(1);
         let y = Axis { range: Some((0.0, 1.05 * f64::from(highest))), ..Axis::linear("systems") };
         let label = names.grows.trim_start_matches("growth exponent, ").into();
         Panel::new(y, vec![Curve { label, style, points }])
     });
-    let x = Axis { range: Some((LOWEST, LOWEST + WIDTH * BINS as f64)), ..Axis::linear("exponent of t") };
+    let x = Axis { range: Some((edge(0), edge(BINS))), ..Axis::linear("exponent of t") };
     let title = "Gaps begin as t² or t³ (nonholonomic random systems)";
     Ok(Picture::panels(title, x, panels.collect(), 2).to_svg()?)
 }

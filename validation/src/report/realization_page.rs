@@ -17,7 +17,9 @@ use picture::{Axis, Curve, Picture, Style};
 use program::File;
 use program::parallel;
 use random::realization::{Realization, distance, realize, realize_removal, with_kappa};
-use random::{Case, Kind, draw_recipe, equations, free_constants};
+use random::{Case, Kind, VISIBLE, draw_recipe, equations, free_constants};
+
+use crate::casadi_job::RANDOM_SYSTEMS;
 
 /// `N`.
 const STRENGTHS: [f64; 4] = [1e2, 1e3, 1e4, 1e5];
@@ -31,18 +33,14 @@ const MULTIPLIERS: [f64; 2] = [0.4, -0.3];
 /// Friction over mass where both act, in 1/s.
 const KAPPA: f64 = 0.5;
 
-/// Random systems on the page: seed and number.
+/// Seed of the random systems on the page.
 const SEED: u64 = 8;
-const COUNT: u64 = 50;
 
 /// Kinds of them: constrained, linear in the velocities and well conditioned, not integrable.
 const KINDS: [Kind; 4] = [Kind::PartlyIntegrable, Kind::Linear, Kind::Affine, Kind::TimeDependent];
 
 /// Rates that count as 1.
 const RATE: std::ops::RangeInclusive<f64> = 0.95..=1.05;
-
-/// Distances at `N = 10³` above which a rate is measured.
-const VISIBLE: f64 = 1e-6;
 
 /// Words where there is no rate.
 const TOO_CLOSE: &str = "too close to tell";
@@ -110,7 +108,7 @@ impl RealizationReport {
         let scenes = parallel::try_map(&SCENES, quiet, scene, |asked| -> Result<_> {
             Ok((asked.0.to_string(), of_scene(asked.0, asked.1).with_context(|| scene(asked))?))
         })?;
-        let indices: Vec<u64> = (0..COUNT).collect();
+        let indices: Vec<u64> = (0..RANDOM_SYSTEMS as u64).collect();
         let system = |index: &u64| format!("realizations of random system {index}");
         let random =
             parallel::try_map(&indices, quiet, system, |index| of_random(*index).with_context(|| system(index)))?;
@@ -201,7 +199,7 @@ impl RealizationReport {
             include_str!("pages/realization.md"),
             &[
                 ("headline", &self.headline()),
-                ("count", &COUNT),
+                ("count", &RANDOM_SYSTEMS),
                 ("seed", &SEED),
                 ("random", &random),
                 ("data", &data.list(1)),

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use anyhow::Result;
 use comparison::Comparison;
-use motion::band::SAME_ESTIMATE;
+use motion::band::{SAME_ESTIMATE, SAMPLES};
 use motion::{CERTAINTY, CHETAEV, Metric};
 use pages::{DataPackage, Table, fill};
 use program::File;
@@ -14,8 +14,6 @@ use referees::maggi::{Maggi, Motion};
 
 /// Tolerances of the two runs of Maggi's equations; their difference estimates the error of the first.
 const TOLERANCES: [f64; 2] = [1e-11, 1e-13];
-/// Equidistant times at which the motions are compared, besides the start.
-const TIMES: usize = 100;
 
 /// The page.
 pub const CASADI: &str = "evidence/referees.md";
@@ -71,7 +69,7 @@ fn maggi(comparison: &mut Comparison) -> Result<Option<Row>> {
         scene: scene.name.clone(),
         who: "Maggi's equations".into(),
         what,
-        count: TIMES + 1,
+        count: SAMPLES + 1,
         largest: None,
         tolerance: SAME_ESTIMATE,
         verdict: Word::Failed,
@@ -91,8 +89,8 @@ fn maggi(comparison: &mut Comparison) -> Result<Option<Row>> {
     let (mut apart, mut estimate, mut way) = (0.0_f64, 0.0_f64, 0.0_f64);
     let first = motion.at(motion.start())?.coordinates;
     let end = runs.iter().map(Motion::end).fold(motion.end(), f64::min);
-    for i in 0..=TIMES {
-        let t = motion.start() + (end - motion.start()) * i as f64 / TIMES as f64;
+    for i in 0..=SAMPLES {
+        let t = motion.start() + (end - motion.start()) * i as f64 / SAMPLES as f64;
         let (ours, looser) = motion.at_in_both_runs(t)?;
         let [one, two] = [runs[0].state(t)?.q, runs[1].state(t)?.q];
         let mut length = |a: &[f64], b: &[f64]| {

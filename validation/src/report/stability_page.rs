@@ -250,7 +250,7 @@ impl StabilityReport {
         let error = |cell: &Cell| match cell.verdict {
             Verdict::Accurate { error, .. } | Verdict::Admitted { error, .. } | Verdict::Wrong { error, .. } => {
                 // what is under round-off stands on the axis
-                Some((cell.point, error.max(LEAST)))
+                Some((cell.point, error.max(f64::EPSILON)))
             }
             Verdict::Refused { .. } => None,
         };
@@ -275,9 +275,6 @@ impl StabilityReport {
         Ok(Picture::new(self.title(name), x, y, curves).to_svg()?)
     }
 }
-
-/// Errors below are drawn here.
-const LEAST: f64 = 1e-16;
 
 fn picture_name(case: &str) -> String {
     format!("stability-{case}.svg")

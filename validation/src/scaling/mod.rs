@@ -11,6 +11,7 @@ use anyhow::{Context, Result};
 use bench::{Exponent, exponent};
 use equations::{Compiled, Derivation, Formulation};
 use mechanics::{ConstantsRule, Removal, System};
+use motion::band::SEARCH_STEPS;
 use motion::{
     CHETAEV, Prepared, REDUCED_CHETAEV, REDUCED_VAKONOMIC, REMOVED_CONSTRAINT, Setting, Settings, VAKONOMIC,
     VAKONOMIC_COSTATE, default_constants, prepare, setting, solve,
@@ -36,9 +37,6 @@ pub const FORMULATIONS: [(&Formulation, Coordinates); 7] = [
     (REMOVED_CONSTRAINT, Coordinates::Maximal),
     (REMOVED_CONSTRAINT, Coordinates::Minimal),
 ];
-
-/// Limit on the steps of one run: a motion that runs into a singularity ends there.
-const STEPS: usize = 20_000;
 
 /// Limits of the measurements.
 #[derive(Clone, Copy, Debug)]
@@ -226,7 +224,7 @@ fn point(
     if evaluations.is_none_or(|count| 2.0 * seconds * count as f64 > limits.seconds) {
         return Ok(point);
     }
-    let settings = Settings { max_steps: STEPS, ..Settings::default() };
+    let settings = Settings { max_steps: SEARCH_STEPS, ..Settings::default() };
     for _ in 0..limits.repeats {
         let motion = solve(Setting { system: &system, ..setting(&scene) }, equations.clone(), &constants, &settings)?;
         let seconds = motion.seconds.integrate;

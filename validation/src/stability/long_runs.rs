@@ -16,14 +16,11 @@ use symbolic::Evaluator;
 use super::cases::{choice, sledge_reference};
 use super::judge::{Allowance, FLOOR, Verdict, judge};
 use super::question::tolerance;
-use super::reference::Reference;
+use super::reference::{MILLION, Reference};
 use program::parallel;
 
 /// What the long runs are called, on the command line and in reports.
 pub const LONG_RUNS: &str = "million-steps";
-
-/// Steps of equal length, and the limit on those of the adaptive methods.
-pub const MILLION: usize = 1_000_000;
 
 /// Number of times at which energy and constraints are evaluated, less one: every 50th node of a million.
 const SAMPLES: usize = 20_000;

@@ -29,6 +29,6 @@ mod reference;
 
 pub use cases::CASES;
 pub use judge::{Allowance, FLOOR, Verdict, judge};
-pub use long_runs::{COMPARED, LONG, LONG_RUNS, Long, LongRun, MILLION, long_runs};
+pub use long_runs::{COMPARED, LONG, LONG_RUNS, Long, LongRun, long_runs};
 pub use question::{Answering, Case, Cell, MAX_STEPS, Question, Stepped, Subject, Texts, run, tolerance};
-pub use reference::{Known, Reference};
+pub use reference::{Known, MILLION, Reference};

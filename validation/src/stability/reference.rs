@@ -3,7 +3,7 @@
 use equations::Formulation;
 use integrate::{DenseOutput, EvaluationError, Options, Problem, Start, Status, integrate};
 use mechanics::{ConstantsRule, State, System};
-use motion::band::SAME_STOP;
+use motion::TRUSTED;
 use motion::{Choice, Ending, Motion, Setting, Settings, derive_at, solve};
 use referees::maggi::{self, Maggi};
 
@@ -44,9 +44,11 @@ pub enum Reference {
     },
 }
 
-/// Tolerances of the two runs of an [`Reference::Ode`], and the limit on their steps.
+/// Steps of equal length of a long run, and the limit on those of the adaptive methods.
+pub const MILLION: usize = 1_000_000;
+
+/// Tolerances of the two runs of an [`Reference::Ode`].
 const TOLERANCES: [f64; 2] = [1e-11, 1e-13];
-const STEPS: usize = 2_000_000;
 
 /// Tolerances of the runs of [`Reference::Maggi`] and [`Reference::Equivalent`]: their solves round off more.
 const MAGGI: [f64; 2] = [1e-10, 1e-12];
@@ -66,7 +68,7 @@ impl Reference {
     pub fn up_to(&self, start: f64, end: f64) -> Result<Known<'_>, String> {
         // an end is needed even where nothing is to be compared but the start
         let later = if end == start { start + SHORTEST } else { end };
-        let same_stop = |t: f64| (later - t).abs() <= SAME_STOP * (later - start).abs();
+        let same_stop = |t: f64| (later - t).abs() <= TRUSTED * (later - start).abs();
         match self {
             Reference::Closed(road) => Ok(Box::new(move |t| Some((road(t), road(t))))),
             Reference::Maggi(posed) => {
@@ -109,7 +111,7 @@ impl Reference {
             Reference::Ode { y, rates, read } => {
                 let run = |tolerance: f64| {
                     let mut field = Field { dimension: y.len(), rates };
-                    let options = Options { max_steps: STEPS, ..Options::with_tolerance(tolerance) };
+                    let options = Options { max_steps: 2 * MILLION, ..Options::with_tolerance(tolerance) };
                     let start = Start { t: start, y: y.clone() };
                     let solution = integrate(&mut field, &start, end, &options).map_err(|e| e.to_string())?;
                     match solution.status {
@@ -139,7 +141,7 @@ fn derived(
 ) -> Result<Motion, motion::SolveError> {
     let constants = ConstantsRule::Zero;
     let choice = Choice { label: formulation.title.into(), formulation, removal: None, constants: constants.clone() };
-    let settings = Settings { tolerance: MAGGI[0], max_steps: STEPS, ..Settings::default() };
+    let settings = Settings { tolerance: MAGGI[0], max_steps: 2 * MILLION, ..Settings::default() };
     solve(Setting { system, start, end }, derive_at(system, start, &choice)?, &constants, &settings)
 }
 

@@ -11,12 +11,11 @@
 //! where that comes to another gap, the number of starts matters.
 
 use equations::Equations;
-use motion::band::COARSEST;
-use motion::shooting::{Minimum, least_from, spread};
+use motion::shooting::{BEGINNING, Minimum, least_from, spread};
 use motion::{Metric, Motion, Setting, Settings, SolveError};
 
 use super::squares::Power;
-use super::{COARSE, Differences, FINE, LOOKED_AT};
+use super::{COARSE, Differences, INSTANTS};
 
 /// Number of starts: as many as this work allows (steps times operations times runs), within these bounds.
 const WORK: usize = 1_300_000;
@@ -26,10 +25,9 @@ const STARTS: [usize; 2] = [24, 96];
 const GUESSES: usize = 3;
 
 /// Guesses are compared after this part of the motion, and the better half of them is followed. The first
-/// part that one is fitted to is at least that long; the next ones are longer by a factor between these.
-const BEGINNING: f64 = 0.4;
-const EARLIEST: f64 = 0.05;
-const LONGER: [f64; 2] = [1.2, 2.0];
+/// part that one is fitted to is no longer; the next ones are longer by a factor between these.
+const COMPARED: f64 = 0.4;
+const FACTORS: [f64; 2] = [1.2, 2.0];
 
 /// Drawn starts are followed whose gap is at most this many times that of the best guess.
 const DRAWN: f64 = 1.2;
@@ -82,8 +80,7 @@ pub(crate) fn search(
     metric: &mut Metric,
     settings: &Settings,
 ) -> Result<Option<Found>, SolveError> {
-    let mut differences = Differences::new(setting, equations, target, LOOKED_AT, metric, settings)?;
-    differences.tolerance = COARSEST;
+    let mut differences = Differences::new(setting, equations, target, metric, settings)?;
     let Some(first) = differences.closest(aim.guesses) else { return Ok(None) };
     let work = differences.limit_steps(&first) * (1 + first.len());
     let mut count = (WORK / work.max(1)).clamp(STARTS[0], STARTS[1]);
@@ -101,16 +98,16 @@ pub(crate) fn search(
             drawn.extend((value <= limit).then(|| Minimum { value, ..Minimum::start(number, constants) }));
             continue;
         };
-        let constants = differences.grown(&constants, part, longer, BEGINNING);
-        if aim.may_vanish && differences.is_close(&constants, BEGINNING) {
-            let whole = differences.grown(&constants, BEGINNING * longer, longer, 1.0);
+        let constants = differences.grown(&constants, part, longer, COMPARED);
+        if aim.may_vanish && differences.is_close(&constants, COMPARED) {
+            let whole = differences.grown(&constants, COMPARED * longer, longer, 1.0);
             if differences.is_close(&whole, 1.0) {
                 let constants = differences.squares(&whole, settings).unwrap_or(whole);
                 let starts = aim.guesses.len().max(number + 1);
                 return Ok(Some(Found { starts, ..Found::given(constants) }));
             }
         }
-        let value = differences.largest(&constants, BEGINNING, FINE);
+        let value = differences.largest(&constants, COMPARED, 1);
         guessed.push(Minimum { value, ..Minimum::start(number, constants) });
     }
     let half = guessed.partition_point(|guess| guess.first < count / 2);
@@ -118,17 +115,17 @@ pub(crate) fn search(
     guessed.retain(|guess| better.iter().any(|better| better.contains(&guess.first)));
     let mut ends: Vec<Minimum> = guessed.into_iter().chain(drawn).collect();
     for end in &mut ends {
-        let [part, longer] = starts.at(end.first).growth.map_or([1.0, 1.0], |[_, longer]| [BEGINNING * longer, longer]);
+        let [part, longer] = starts.at(end.first).growth.map_or([1.0, 1.0], |[_, longer]| [COMPARED * longer, longer]);
         end.unknowns = differences.grown(&end.unknowns, part, longer, 1.0);
-        end.value = differences.largest(&end.unknowns, 1.0, FINE);
+        end.value = differences.largest(&end.unknowns, 1.0, 1);
     }
     for power in POWERS {
-        let beyond = ((LOOKED_AT / FINE) as f64).powf(1.0 / power);
+        let beyond = (INSTANTS as f64).powf(1.0 / power);
         let limit = beyond * least_from(count, &ends);
         for end in ends.iter_mut().filter(|end| end.value <= limit) {
-            let sum = Power { power, scale: end.value, stride: FINE, part: 1.0 };
+            let sum = Power { power, scale: end.value, stride: 1, part: 1.0 };
             let unknowns = differences.minimum(&end.unknowns, &sum);
-            let value = differences.largest(&unknowns, 1.0, FINE);
+            let value = differences.largest(&unknowns, 1.0, 1);
             if value < end.value {
                 (end.unknowns, end.value) = (unknowns, value);
             }
@@ -156,7 +153,7 @@ impl Differences {
     fn grown(&mut self, constants: &[f64], mut part: f64, longer: f64, to: f64) -> Vec<f64> {
         let mut constants = constants.to_vec();
         loop {
-            let sum = Power { power: 2.0, scale: 1.0, stride: FINE, part: part.min(to) };
+            let sum = Power { power: 2.0, scale: 1.0, stride: 1, part: part.min(to) };
             constants = self.minimum(&constants, &sum);
             if part >= to {
                 return constants;
@@ -203,7 +200,7 @@ impl<'a> Starts<'a> {
         let by = spread(number, n + 2);
         if number < self.guesses.len() || number.is_multiple_of(GUESSES) {
             let guess = if number < self.guesses.len() { number } else { number / GUESSES };
-            let growth = [geometric([EARLIEST, BEGINNING], by[n + 1]), geometric(LONGER, by[n])];
+            let growth = [geometric([BEGINNING, COMPARED], by[n + 1]), geometric(FACTORS, by[n])];
             return Start { constants: self.guesses[guess % self.guesses.len()].clone(), growth: Some(growth) };
         }
         let radius = geometric(REACH, by[n]);

@@ -3,16 +3,12 @@
 use integrate::{BoundaryError, Options, Residuals, ShootOptions, Shot, Status, fit};
 use nalgebra::DVector;
 
-use super::{CLOSE, Differences, INSTANTS};
+use super::{CLOSE, COARSE, Differences};
 use motion::{Settings, TIGHTER};
 use motion::{VariationalRun, Which};
 
-/// Limit on the search.
-const ITERATIONS: usize = 30;
 /// The coarse search is done where an iteration brings less than this part.
-const GAIN: f64 = 1e-4;
-/// The same for one minimum of many.
-const ROUGH: f64 = 1e-2;
+const GAIN: f64 = 1e-2;
 
 /// Which sum is minimized: `Σ |r_k|^p`, `r_k` at every `stride`-th instant, by the squares of `w_k r_k` with
 /// `w_k = (|r_k|/s)^(p/2 − 1)`.
@@ -39,7 +35,7 @@ impl Differences {
     /// The constants of a minimum of the sum of squares over 40 instants near `guess`.
     pub(super) fn squares(&mut self, guess: &[f64], settings: &Settings) -> Option<Vec<f64>> {
         let coarse = self.coarse.clone();
-        let squares = Power { power: 2.0, scale: 1.0, stride: self.goal.len() / INSTANTS, part: 1.0 };
+        let squares = Power { power: 2.0, scale: 1.0, stride: COARSE, part: 1.0 };
         let found = self.least((self.tolerance, GAIN), &coarse, guess, &squares)?;
         let close = found.residual < CLOSE * self.way(1.0, squares.stride);
         let fine = (settings.tolerance * TIGHTER, 0.0);
@@ -50,7 +46,7 @@ impl Differences {
     /// The constants of a minimum of such a sum near `guess`; these where nothing is found.
     pub(super) fn minimum(&mut self, guess: &[f64], power: &Power) -> Vec<f64> {
         let coarse = self.coarse.clone();
-        self.least((self.tolerance, ROUGH), &coarse, guess, power).map_or(guess.to_vec(), |found| found.unknowns)
+        self.least((self.tolerance, GAIN), &coarse, guess, power).map_or(guess.to_vec(), |found| found.unknowns)
     }
 
     /// The minimum at this tolerance.
@@ -63,7 +59,7 @@ impl Differences {
     ) -> Option<Shot> {
         let full = ShootOptions::with_tolerance(tolerance * self.way(power.part, power.stride));
         let least_gain = f64::max(least_gain, full.least_gain);
-        let options = ShootOptions { max_iterations: ITERATIONS, least_gain, ..full };
+        let options = ShootOptions { least_gain, ..full };
         let count = self.instants(power.part, power.stride) * self.dimension();
         fit(&mut Weighted { differences: self, tolerance, limits, power }, count, guess, &options).ok()
     }

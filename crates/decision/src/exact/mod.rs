@@ -19,7 +19,6 @@ pub use jet::{Jet, ORDERS};
 pub use linear::{Echelon, inverse, nullspace};
 pub(crate) use linear::{solve, subtract_product};
 pub use mechanics::elimination::Entry;
-pub(crate) use modular::TRIED;
 pub use rational::{Exact, PARTS};
 
 /// Why a number has no image in the finite field.

@@ -13,6 +13,7 @@
 use std::sync::LazyLock;
 
 use symbolic::Fraction;
+use symbolic::limits::PRIMES;
 
 use super::Flaw;
 use super::element::Modular;
@@ -23,8 +24,6 @@ use super::rational::{Exact, PARTS, inverse};
 const TWOS: u32 = 5;
 /// Primes whose roots are sums of roots of unity.
 const CYCLOTOMIC: [i128; 6] = [2, 3, 5, 7, 11, 13];
-/// Prime factors under this are looked for under roots.
-pub(crate) const TRIED: i128 = 4096;
 
 /// The image of `e` is this power of that of `e^i`.
 const NEPER: u64 = 271_828_182_845;
@@ -227,7 +226,7 @@ impl Modular {
         }
         let of_prime = |prime: i128| Self::root_of_prime(prime).ok_or(Flaw::Root);
         // what is no prime does not divide what is left
-        for prime in 2..TRIED {
+        for prime in 2..i128::from(PRIMES) {
             if prime * prime > square_free {
                 break;
             }
@@ -243,7 +242,7 @@ impl Modular {
         let whole = (square_free as f64).sqrt().round() as i128;
         if whole.checked_mul(whole) == Some(square_free) {
             outside = Exact::ratio(whole, 1).and_then(|w| outside.checked_mul(w)).ok_or(Flaw::Root)?;
-        } else if square_free < TRIED * TRIED {
+        } else if square_free < i128::from(PRIMES * PRIMES) {
             roots = roots * of_prime(square_free)?;
         } else {
             return Err(Flaw::Root);

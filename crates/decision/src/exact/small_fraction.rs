@@ -1,12 +1,11 @@
 //! Reconstruction of short fractions from their images in a field.
 
 use symbolic::Fraction;
+use symbolic::limits::FRACTION;
 
 use super::element::Modular;
 use super::rational::Exact;
 
-/// Numerators and denominators of small fractions are at most this.
-const SMALL: i64 = 1_000_000;
 /// And powers of ten beside them.
 const MOST_TENS: i32 = 60;
 
@@ -21,7 +20,11 @@ impl Modular {
     pub fn small_fraction_near(self, size: f64) -> Option<Exact> {
         let tens = size.abs().log10().round();
         // a fraction of few digits is at most this many powers of ten from 1
-        if tens.abs() <= f64::from(MOST_TENS) { self.fraction_about(tens as i32, SMALL.ilog10() as i32) } else { None }
+        if tens.abs() <= f64::from(MOST_TENS) {
+            self.fraction_about(tens as i32, FRACTION.ilog10() as i32)
+        } else {
+            None
+        }
     }
 
     /// A fraction of few digits times `10^k`, `|k − tens| ≤ most`, the nearest `k` first.
@@ -44,12 +47,12 @@ impl Modular {
 
     fn fraction_of_few_digits(self) -> Option<Exact> {
         let (mut r, mut s) = ((Self::prime() as i64, self.value() as i64), (0_i64, 1_i64));
-        while r.1 > SMALL {
+        while r.1 > FRACTION {
             let quotient = r.0 / r.1;
             r = (r.1, r.0 - quotient * r.1);
             s = (s.1, s.0 - quotient * s.1);
         }
-        let found = (s.1.abs() <= SMALL).then(|| Exact::ratio(r.1.into(), s.1.into()))??;
+        let found = (s.1.abs() <= FRACTION).then(|| Exact::ratio(r.1.into(), s.1.into()))??;
         (Self::fraction(found) == Some(self)).then_some(found)
     }
 }

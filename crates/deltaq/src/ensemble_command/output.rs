@@ -7,14 +7,12 @@ use motion::{Choice, ErrorEstimate, MemberMotion};
 use scene::Scene;
 use schemars::JsonSchema;
 use serde::Serialize;
+use symbolic::limits::SHOWN;
 
 use super::members::Members;
 use crate::cli::Format;
 use crate::columns::{Columns, Numbers, Table, header, named, print, quoted, row};
 use program::typed;
-
-/// Members that a complaint describes.
-const DESCRIBED: usize = 3;
 
 /// Wall-clock seconds spent.
 #[derive(Default, Serialize, JsonSchema)]
@@ -145,7 +143,7 @@ impl<'a> Answers<'a> {
         for (count, known) in self.statuses.iter_mut().zip(STATUSES) {
             *count += usize::from(status == known);
         }
-        if let Some(cause) = cause.filter(|_| self.described.len() < DESCRIBED) {
+        if let Some(cause) = cause.filter(|_| self.described.len() < SHOWN) {
             let row = self.members.row(self.done);
             let names = self.members.names.iter().zip(row);
             let values: Vec<String> = names.map(|(name, value)| format!("{name} = {value}")).collect();

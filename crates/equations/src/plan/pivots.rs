@@ -13,12 +13,10 @@ pub(crate) const NEAR: usize = 2;
 /// A pivot is not smaller than this part of the largest entry under it, …
 const THRESHOLD: f64 = 0.1;
 
-/// Extra cost of a pivot that is not a number: a division and the check of its size.
-const MOVING: usize = 4;
-
-/// Extra cost of a pivot that is small at a point far from the start. (On the diagonal of a mass matrix, a
-/// pivot that is small compared with its column does no harm.)
-const SMALL: usize = 4;
+/// Extra cost of a pivot that is not a number, a division and the check of its size; and of one that is small
+/// at a point far from the start. (On the diagonal of a mass matrix, a pivot that is small compared with its
+/// column does no harm.)
+const EXTRA: usize = 4;
 
 /// An entry in numbers.
 #[derive(Clone, Copy, Debug)]
@@ -103,7 +101,7 @@ impl Pattern {
                         continue;
                     }
                     let far = (NEAR..POINTS).filter(|&point| strategy != Strategy::Symmetric && small(j, e, point));
-                    let score = (late, score.1 + SMALL * far.count());
+                    let score = (late, score.1 + EXTRA * far.count());
                     if best.is_none_or(|(least, _)| score < least) {
                         best = Some((score, (i, j)));
                     }
@@ -146,7 +144,7 @@ fn scale(rows: &mut [BTreeMap<usize, Entry>], point: usize) -> Option<Vec<f64>> 
 /// Multiplications for a pivot, from the numbers of entries of its row and column.
 fn cost(strategy: Strategy, row: usize, column: usize, constant: bool) -> usize {
     let updates = if strategy == Strategy::Symmetric { (column - 1) * column / 2 } else { (row - 1) * (column - 1) };
-    updates + 2 * (column - 1) + row + if constant { 0 } else { MOVING }
+    updates + 2 * (column - 1) + row + if constant { 0 } else { EXTRA }
 }
 
 /// Takes row `p` and column `c` out, in numbers.

@@ -2,6 +2,7 @@
 
 use std::collections::HashSet;
 
+use symbolic::limits::{self, TOO_LONG};
 use symbolic::{CompileError, Evaluator, Expr, Symbol};
 
 use super::chosen::Plan;
@@ -17,17 +18,13 @@ use crate::equations::{Block, Equations};
 const LONG_PARTS: usize = 12;
 const SHORT_PARTS: usize = 3;
 
-/// Multiplications over which a block is left to the LU: the code would be too long.
-const MOST: usize = 20_000;
-
 /// Multiplications over which only one way is tried.
 const LONG: usize = 400;
 
 /// A full block of this size takes as much eliminated as factorized.
 const FULL: usize = 5;
 
-/// Points around the start at which a plan's condition is tried, and that over which a point counts as bad.
-const AROUND: usize = 32;
+/// A condition of a plan, at one of the points around the start, over which that counts as bad.
 const BAD: f64 = 1e3;
 
 /// What LU factorization takes, in the multiplications of an elimination, which are products of series: for
@@ -142,7 +139,7 @@ fn around(first: &[f64]) -> Vec<Vec<f64>> {
     let shifted = |k: usize| {
         move |(i, x): (usize, &f64)| x + 1.5 * (1.0 + x.abs()) * (2.0 * golden((i + 1) * (k + 1) * (k + 3)) - 1.0)
     };
-    (0..AROUND).map(|k| first.iter().enumerate().map(shifted(k)).collect()).collect()
+    (0..limits::POINTS).map(|k| first.iter().enumerate().map(shifted(k)).collect()).collect()
 }
 
 /// Ways to eliminate a block, the best so far with its price.
@@ -181,7 +178,7 @@ impl Trial<'_> {
             way_taken.evaluate(point).last().is_none_or(|&condition| condition.is_nan() || condition > BAD)
         };
         let bad = self.around.iter().filter(|point| is_bad(point)).count();
-        let price = way_taken.tape().len() * (AROUND + 4 * bad);
+        let price = way_taken.tape().len() * (limits::POINTS + 4 * bad);
         if self.best.as_ref().is_none_or(|best| price < best.price) {
             self.best = Some(Best { price, definitions: found, way, clean: bad == 0 });
         }
@@ -221,7 +218,8 @@ fn eliminated(
     if unneeded.contains(&true) {
         ways.push(Strategy::UnneededFirst);
     }
-    let mut orders: Vec<_> = ways.into_iter().filter_map(|w| Some((w, pattern.order(w, &unneeded, MOST)?))).collect();
+    let mut orders: Vec<_> =
+        ways.into_iter().filter_map(|w| Some((w, pattern.order(w, &unneeded, TOO_LONG)?))).collect();
     orders.sort_by_key(|(_, order)| order.operations);
     if orders.first().is_some_and(|(_, order)| order.operations > LONG) {
         orders.truncate(1);

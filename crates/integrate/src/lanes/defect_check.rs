@@ -3,8 +3,8 @@
 use std::array::from_fn;
 
 use super::{LANES, Lane, LaneProblem, Lanes};
-use crate::root::GOLDEN;
 use crate::taylor_step::{DEFECT, LEAST_RELATIVE, MANY, UNLIMITED};
+use std::f64::consts::GOLDEN_RATIO;
 
 impl<P: LaneProblem> Lanes<'_, P> {
     /// As for a single motion: at many places where terms do not limit the step, which depend on the motion's
@@ -14,7 +14,7 @@ impl<P: LaneProblem> Lanes<'_, P> {
         let free: [bool; LANES] = from_fn(|l| under_way[l] && UNLIMITED * self.taken[l].abs() < self.step[l]);
         let mut place: Lane = from_fn(|l| {
             let work = self.riders[l].as_ref().map(|rider| rider.run.work);
-            work.map_or(0.0, |work| GOLDEN * (work.steps + work.rejected) as f64)
+            work.map_or(0.0, |work| GOLDEN_RATIO * (work.steps + work.rejected) as f64)
         });
         let relative = self.options.relative_tolerance.max(LEAST_RELATIVE);
         let mut forgiven = [1.0_f64; LANES];
@@ -24,7 +24,7 @@ impl<P: LaneProblem> Lanes<'_, P> {
         }
         let count = if free.contains(&true) { MANY } else { 0 };
         for _ in 0..count {
-            place = place.map(|place| (place + GOLDEN).fract());
+            place = place.map(|place| (place + GOLDEN_RATIO).fract());
             let t: Lane = from_fn(|l| self.t[l] + place[l] * self.taken[l]);
             let theta: Lane = from_fn(|l| self.taken[l] / self.unit[l]);
             let share: Lane = from_fn(|l| (t[l] - self.t[l]) / self.unit[l]);

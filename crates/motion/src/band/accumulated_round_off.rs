@@ -9,8 +9,9 @@
 use equations::Compiled;
 
 use super::estimate_failure::Doubt;
-use super::limits::{CERTAINTY, ROUND_OFF, ROUNDED, TOLD, UNITS};
+use super::limits::{CERTAINTY, ROUND_OFF, UNITS};
 use crate::numbers::precise;
+use symbolic::limits::SAME;
 
 /// Time, states, and what is added up to their rates.
 pub type Looked = (f64, Vec<f64>, Vec<f64>);
@@ -118,8 +119,9 @@ pub fn is_small(looked: &[Looked], looser: &[Vec<f64>], sizes: &[f64], between: 
 }
 
 /// Round-off that rates accumulate between instants of the kept run, from the states of the looser run there
-/// and the names and sizes of states. A doubt begins where it exceeds `TOLD` of a state and ten times the
-/// difference of the runs. Rates that cannot be evaluated end the search.
+/// and the names and sizes of states. A doubt begins where it exceeds `SAME` of a state and ten times the
+/// difference of the runs: less can be put into a run, which shows how it grows; more would make another
+/// motion. Rates that cannot be evaluated end the search.
 pub fn accumulated(
     rates: &mut Rates,
     names: &dyn Fn() -> Vec<String>,
@@ -138,7 +140,7 @@ pub fn accumulated(
         for i in sums.over(sizes) {
             over[i] = true;
             let (sum, difference) = (sums.sums[i], sums.differences[i]);
-            if sum > TOLD * sizes[i] && sum > CERTAINTY * difference {
+            if sum > SAME * sizes[i] && sum > CERTAINTY * difference {
                 let (state, from, t) = (&names()[i], precise(*before), precise(second.0));
                 let because = format!(
                     "the error estimate is not to be trusted from t = {from} on: the rate of {state} is a \
@@ -177,11 +179,11 @@ fn offsets_of(rates_at: &mut Rates, looked: &[Looked], looser: &[Vec<f64>], coun
         }
     }
     let time = looked.last().map_or(0.0, |last| last.0 - looked[0].0);
-    let offset = |i: usize| if counts[i] { (ROUNDED * means[i]).copysign(time * farthest[i]) } else { 0.0 };
+    let offset = |i: usize| if counts[i] { (0.5 * f64::EPSILON * means[i]).copysign(time * farthest[i]) } else { 0.0 };
     let offsets: Vec<f64> = (0..counts.len()).map(offset).collect();
     // how much of what is apart the offsets would make alone
     let likeness = |i: usize| if offsets[i] == 0.0 { 0.0 } else { apart[i] / (offsets[i] * time) };
     let sign = 1.0_f64.copysign((0..counts.len()).map(likeness).sum());
-    let part = |i: usize| if offsets[i] == 0.0 { 0.0 } else { (offsets[i] / largest[i]).abs().min(TOLD) };
+    let part = |i: usize| if offsets[i] == 0.0 { 0.0 } else { (offsets[i] / largest[i]).abs().min(SAME) };
     offsets.iter().map(|d| sign * d).chain((0..counts.len()).map(|i| sign * part(i))).collect()
 }

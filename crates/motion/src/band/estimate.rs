@@ -1,6 +1,6 @@
 //! The error estimate of a motion up to an instant: what its band says, for its user.
 
-use super::limits::{SAMPLES, SUMS, TRUSTED};
+use super::limits::{SAMPLES, SOME, TRUSTED};
 use super::{Band, Known, NoInformation};
 use crate::wanted::scattered;
 use crate::{Metric, Motion, Setting, SolveError};
@@ -116,7 +116,7 @@ pub fn error_estimates(
     let mut instants: Vec<(f64, Option<usize>)> = motion.grid(SAMPLES).into_iter().map(|t| (t, None)).collect();
     instants.extend(asked);
     instants.sort_by(|a, b| (direction * a.0).total_cmp(&(direction * b.0)));
-    let every = (instants.len() / SUMS).max(1);
+    let every = (instants.len() / SOME).max(1);
     let mut so_far = vec![ErrorEstimate::default(); times.len()];
     let mut read = None;
     for (place, (t, asked)) in instants.into_iter().enumerate() {

@@ -2,7 +2,7 @@
 
 use integrate::Method;
 
-use super::limits::{BEFORE_THE_END, FEW_STEPS, MORE_STEPS, TOGETHER, TOO_MANY};
+use super::limits::{BEFORE_THE_END, CERTAINTY, FEW_STEPS, MORE_STEPS, SOME};
 use crate::TIGHTER;
 use crate::numbers::precise;
 
@@ -33,7 +33,7 @@ impl Doubt {
             expected.is_some_and(|expected| (tight as f64) < loose as f64 * expected.powf(MORE_STEPS))
         };
         let too_many =
-            |loose: usize, tight: usize| tight as f64 > TOO_MANY * loose.max(1) as f64 * expected.unwrap_or(1.0);
+            |loose: usize, tight: usize| tight as f64 > CERTAINTY * loose.max(1) as f64 * expected.unwrap_or(1.0);
         let (off, what): (&dyn Fn(usize, usize) -> bool, _) = if loose >= FEW_STEPS && too_few(loose, tight) {
             (&too_few, too_few_words(method))
         } else if tight >= FEW_STEPS && too_many(loose, tight) {
@@ -41,7 +41,7 @@ impl Doubt {
         } else {
             return None;
         };
-        let marks: Vec<usize> = (0..loose).step_by(TOGETHER).chain([loose.saturating_sub(1)]).collect();
+        let marks: Vec<usize> = (0..loose).step_by(SOME).chain([loose.saturating_sub(1)]).collect();
         let stretch = marks.windows(2).find(|ends| {
             let [from, to] = [ends[0], ends[1]].map(|i| until(kept, looser[i]));
             off(ends[1] - ends[0], to - from)

@@ -55,11 +55,11 @@ pub use estimate_failure::Doubt;
 pub use invariant_monitor::Breach;
 pub use known::{Answer, Known, NoInformation, ask, ask_alone};
 pub use limits::{
-    BEFORE_THE_END, CERTAINTY, CHUNK, COARSEST, INSTANTS, SAME_ESTIMATE, SAME_STOP, SAMPLES, SEARCH_STEPS, TRUSTED,
+    BEFORE_THE_END, CERTAINTY, CHUNK, INSTANTS, LOOKS, RESIDUAL, SAME_ESTIMATE, SAMPLES, SEARCH_STEPS, SOME, TRUSTED,
 };
 pub(crate) use runs::TwoRuns;
 
-use self::limits::{ROUND_OFF, ROUNDED};
+use self::limits::ROUND_OFF;
 use crate::metric::{larger, subtract};
 use crate::{Metric, SolveError};
 
@@ -196,7 +196,8 @@ impl Band {
     }
 
     /// What is added up behind each multiplier: along the way, or in its evaluation at an instant, by
-    /// adjoints where magnitudes along paths are more than its last digits.
+    /// adjoints where magnitudes along paths are more than its last digits. Sums are rounded to the nearest
+    /// number, so they are off by `ε/2` of that.
     fn add_sums(&mut self, runs: &mut dyn TwoRuns, t: f64, y: &[f64], [along, here]: [bool; 2]) {
         let compiled = runs.compiled();
         if along && let Ok(terms) = compiled.terms_of_multipliers(self.begin, t, y) {
@@ -205,10 +206,10 @@ impl Band {
         if here {
             let mut terms = compiled.terms_of_multipliers(t, t, y).ok();
             let mut each = terms.iter().flatten().zip(&self.sizes.multipliers);
-            if each.any(|(term, size)| ROUNDED * term > ROUND_OFF * size) {
+            if each.any(|(term, size)| f64::EPSILON * term > 2.0 * ROUND_OFF * size) {
                 terms = compiled.adjoint_terms_of_multipliers(t, y).ok();
             }
-            raise(&mut self.round_off, terms.into_iter().flatten().map(|term| ROUNDED * term));
+            raise(&mut self.round_off, terms.into_iter().flatten().map(|term| 0.5 * f64::EPSILON * term));
         }
     }
 

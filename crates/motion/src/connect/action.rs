@@ -2,10 +2,9 @@
 
 use mechanics::System;
 
+use crate::band::INSTANTS;
 use crate::{Motion, SolveError};
 
-/// Panels of the coarser quadrature.
-pub(super) const PANELS: usize = 48;
 /// Nodes and weights of Gauss and Legendre on [−1, 1], four points; both signs.
 const NODES: [[f64; 2]; 2] =
     [[0.339_981_043_584_856_3, 0.652_145_154_862_546_1], [0.861_136_311_594_052_6, 0.347_854_845_137_453_9]];
@@ -19,7 +18,7 @@ pub(super) fn action(system: &System, motion: &mut Motion) -> Result<[f64; 2], S
         let at = motion.at(t)?;
         Ok(lagrangian.evaluate(&[&at.coordinates[..], &at.velocities, &[t]].concat())[0])
     };
-    let (coarse, fine) = (integral(ends, PANELS, &mut at)?, integral(ends, 2 * PANELS, &mut at)?);
+    let (coarse, fine) = (integral(ends, INSTANTS, &mut at)?, integral(ends, 2 * INSTANTS, &mut at)?);
     Ok([fine, (fine - coarse).abs()])
 }
 

@@ -3,11 +3,13 @@
 //! Rows and columns are in units of the problem. All columns are dependent at first, by a power of `t − t₀`:
 //! nothing is looked for before they are independent as far as round-off tells.
 
+use integrate::PARTS;
 use nalgebra::DMatrix;
 use symbolic::limits::{HALF_THE_DIGITS, ITERATIONS};
 
 use crate::SolveError;
 use crate::band::SAMPLES;
+use crate::band::limits::NEARLY_ZERO;
 
 /// A time conjugate to the start of a motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -20,11 +22,6 @@ pub struct ConjugateTime {
     pub multiplicity: usize,
 }
 
-/// A singular value vanishes where it is this part of what it is beside.
-const VANISHES: f64 = 1e-3;
-/// Samples to a step.
-const TO_A_STEP: usize = 6;
-
 /// `∂q(t)/∂x`.
 pub type Matrix<'a> = dyn FnMut(f64) -> Result<DMatrix<f64>, SolveError> + 'a;
 
@@ -32,7 +29,7 @@ pub type Matrix<'a> = dyn FnMut(f64) -> Result<DMatrix<f64>, SolveError> + 'a;
 pub fn samples(start: f64, end: f64, steps: &[f64]) -> Vec<f64> {
     let mut all: Vec<f64> = (1..=SAMPLES).map(|i| start + (end - start) * i as f64 / SAMPLES as f64).collect();
     for step in steps.windows(2).filter(|step| step[1] > step[0]) {
-        all.extend((1..TO_A_STEP).map(|i| step[0] + (step[1] - step[0]) * i as f64 / TO_A_STEP as f64));
+        all.extend((1..PARTS).map(|i| step[0] + (step[1] - step[0]) * i as f64 / PARTS as f64));
     }
     all.sort_by(f64::total_cmp);
     let shortest = 1e-9 * (end - start);
@@ -156,7 +153,7 @@ fn touching(matrix: &mut Matrix, [a, b]: [&Look; 2]) -> Result<Vec<(f64, usize)>
 fn multiplicity(matrix: &mut Matrix, times: [f64; 3]) -> Result<usize, SolveError> {
     let [before, at, after] = times.map(|t| matrix(t).map(|matrix| singular_values(&matrix)));
     let (before, at, after) = (before?, at?, after?);
-    let vanishes = |i: &usize| at[*i] < VANISHES * before[*i].min(after[*i]);
+    let vanishes = |i: &usize| at[*i] < NEARLY_ZERO * before[*i].min(after[*i]);
     Ok((0..at.len()).filter(vanishes).count())
 }
 

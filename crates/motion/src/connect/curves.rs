@@ -1,14 +1,13 @@
 //! Motions that are one curve.
 
+use crate::band::{CERTAINTY, SOME};
 use crate::connect::two_point::TwoPoint;
 use crate::shooting::Minimum;
-use symbolic::limits;
+use symbolic::limits::SAME;
 
-/// Instants at which curves are compared, and how much more constants differ than curves where they do.
-const COMPARED: usize = 16;
-/// Curves are one where they differ by less, in units of the problem.
-const SAME: f64 = 1e-4;
-const MORE: f64 = 100.0;
+/// Two results of searches, or curves, and two final results are one where unknowns differ by less, in units of
+/// the problem.
+pub(super) const ONE: [f64; 2] = [1e-4, SAME];
 
 /// Motions that are one curve, once, with the least constants: one for several constants has an abnormal
 /// lift, and is marked.
@@ -19,12 +18,12 @@ pub(super) fn one_per_curve(exact: Vec<Minimum>, problem: &mut TwoPoint) -> Vec<
     let mut kept: Vec<((Minimum, bool), Vec<f64>)> = Vec::new();
     for found in exact {
         let x = &found.unknowns;
-        let curve = problem.curve(x, COMPARED).unwrap_or_default();
+        let curve = problem.curve(x, SOME).unwrap_or_default();
         let is_same = |((other, _), known): &&mut ((Minimum, bool), Vec<f64>)| {
             let apart = largest(&curve, known);
             !curve.is_empty()
-                && apart <= SAME
-                && largest(&x[free..], &other.unknowns[free..]) > MORE * apart.max(limits::SAME)
+                && apart <= ONE[0]
+                && largest(&x[free..], &other.unknowns[free..]) > CERTAINTY * apart.max(SAME)
         };
         match kept.iter_mut().find(is_same) {
             None => kept.push(((found, false), curve)),

@@ -1,7 +1,7 @@
 //! Where searches start, and the units of the problem.
 
 use crate::connect::two_point::TwoPoint;
-use crate::shooting::spread;
+use crate::shooting::{BEGINNING, spread};
 use crate::variational::{VariationalRun, Which};
 use crate::{Metric, SolveError};
 
@@ -17,8 +17,6 @@ pub(super) struct Guesses {
 
 /// Half widths of the boxes that guesses are spread over in turn, in units of the problem.
 const BOXES: [f64; 4] = [0.5, 1.0, 2.0, 4.0];
-/// The part of the time within which constants are seen to bend a motion.
-const EARLY: f64 = 1.0 / 64.0;
 
 /// The first guess goes straight at the goal, the second is the scene's own start; the others are the
 /// additive recurrence of Roberts about the first, over boxes of four sizes. One unit of a velocity is what
@@ -60,9 +58,9 @@ pub(super) fn guesses(problem: &TwoPoint, count: usize) -> Result<Guesses, Solve
         .collect();
     // what constants do to a motion that goes nowhere in particular
     let generic = shifted(&first, &units, &spread(1, first.len()), 1.0, free.len());
-    let bends = bends(&mut problem, &generic, time * EARLY)?;
+    let bends = bends(&mut problem, &generic, time * BEGINNING)?;
     for (dq, constant) in bends.iter().zip(&constants) {
-        let acceleration = 2.0 * metric.length(start.t, &start.q, &start.v, dq) / (time * EARLY).powi(2);
+        let acceleration = 2.0 * metric.length(start.t, &start.q, &start.v, dq) / (time * BEGINNING).powi(2);
         let turns_once = std::f64::consts::TAU * or_one(speed) / time;
         units.push(or_one(turns_once / acceleration).max(1e-12 * constant.abs()));
     }

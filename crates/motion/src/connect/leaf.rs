@@ -4,7 +4,8 @@ use mechanics::{State, System};
 use symbolic::limits::SAME;
 
 use crate::SolveError;
-use crate::connect::action::{PANELS, integral};
+use crate::band::INSTANTS;
+use crate::connect::action::integral;
 
 /// Why no motion leads from `start` to the coordinates `end`: a constraint that is the rate of a function of
 /// the position, `A_i·v = dh_i/dt` with `∂A_ij/∂q_k = ∂A_ik/∂q_j` identically, and h_i has another value
@@ -27,7 +28,7 @@ pub(super) fn other_leaf(system: &System, start: &State, end: &[f64]) -> Result<
     for i in (0..system.constraints.len()).filter(|&i| is_rate(i)) {
         let mut row = system.evaluator::<f64>(&inputs, &entries[i * n..(i + 1) * n])?;
         let mut sum = |of: fn(f64) -> f64| {
-            integral([0.0, 1.0], 2 * PANELS, &mut |part| {
+            integral([0.0, 1.0], 2 * INSTANTS, &mut |part| {
                 let q = start.q.iter().zip(end).map(|(a, b)| a + part * (b - a));
                 let at: Vec<f64> = q.chain([start.t]).collect();
                 let terms = row.evaluate(&at).iter().zip(start.q.iter().zip(end)).map(|(a, (p, q))| a * (q - p));

@@ -3,14 +3,11 @@
 use mechanics::{SingularValues, System, fresh_symbol};
 use nalgebra::DMatrix;
 use symbolic::Symbol;
-use symbolic::limits::NOTHING;
+use symbolic::limits::{NOTHING, SAME};
 
 use crate::band::limits::INSTANTS;
 use crate::connect::conjugate::ConjugateTime;
 use crate::{Metric, Motion, SolveError};
-
-/// A conjugate time this part of the whole before the end is at the end.
-const AT_THE_END: f64 = 1e-7;
 
 /// The answer. With `W = ∂²(L + μ·f)/∂v²` on the velocities that the constraints leave, `A w = 0`, along the
 /// motion:
@@ -78,8 +75,7 @@ pub(super) fn second_variation(
         return Ok(SecondVariation::Unknown);
     }
     let (start, end) = (motion.start(), motion.end());
-    let near =
-        |time: &ConjugateTime| (AT_THE_END * (end - start)).max(if time.error.is_finite() { time.error } else { 0.0 });
+    let near = |time: &ConjugateTime| (SAME * (end - start)).max(if time.error.is_finite() { time.error } else { 0.0 });
     let before = times.iter().any(|time| end - time.t > near(time));
     Ok(match (before, times.is_empty() && is_isolated) {
         (true, _) => SecondVariation::Conjugate,

@@ -5,18 +5,13 @@ use integrate::{AT_ONCE, BoundaryError, Dense, Interrupt, Options, Residuals, Sh
 
 use nalgebra::{DMatrix, DVector};
 
+use crate::band::{CERTAINTY, RESIDUAL};
 use crate::charts::{self, Course};
 use crate::direction::Chord;
 use crate::numbers::precise;
+use crate::shooting::{CHORDS, LONGER};
 use crate::variational::{PLAIN_RUNS, VariationalRun, Which};
 use crate::{Ending, Prepared, Setting, Settings, SolveError, TIGHTER};
-
-/// Residual at the horizon that is accepted, over the tolerance of the integration and the costate's size.
-const RESIDUAL: f64 = 1e3;
-
-/// Steps that a run of the search may take on average, over those of the run from the guess: beside a
-/// singularity a run may take a thousand times more, and the search does not get past it.
-const LONGER: usize = 4;
 
 /// Finds the constants `C` that make every [`equations::FreeConstant::natural`] vanish at `horizon`.
 ///
@@ -45,10 +40,6 @@ pub(super) fn natural_constants(
     let shot = search.shoot()?;
     Ok(search.in_units(&shot.unknowns))
 }
-
-/// Steps by the same Jacobian; each has to lessen the residual to this part.
-const CHORDS: usize = 5;
-const LESS: f64 = 0.1;
 
 /// The chord of this motion; `None` where its constants are not found, or derivatives are not carried.
 pub(crate) fn chord(prepared: &mut Prepared, horizon: f64, settings: &Settings) -> Option<Chord> {
@@ -140,7 +131,8 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// Constants in their own units, found by steps of the chord method; `None` where these do not end.
+    /// Constants in their own units, found by steps of the chord method, each of which has to lessen the
+    /// residual; `None` where these do not end.
     fn by_chord(&mut self, chord: &Chord) -> Option<Vec<f64>> {
         let (mut at, mut before) = (self.guess.clone(), f64::INFINITY);
         let mut best = None;
@@ -153,7 +145,7 @@ impl<'a> Search<'a> {
             if norm <= self.options.tolerance && norm < before {
                 best = Some(self.in_units(&at));
             }
-            if norm <= AT_ONCE * self.options.tolerance || norm.is_nan() || norm > LESS * before {
+            if norm <= AT_ONCE * self.options.tolerance || norm.is_nan() || CERTAINTY * norm > before {
                 break;
             }
             before = norm;

@@ -6,7 +6,7 @@ use integrate::DenseError;
 use super::{Ensemble, EnsembleMember, EnsembleOptions, MemberRun};
 use crate::band::accumulated_round_off::RoundOff;
 use crate::band::invariant_monitor::{Breach, InvariantMonitor};
-use crate::band::limits::{BEFORE_THE_END, SUMS};
+use crate::band::limits::{BEFORE_THE_END, SOME};
 use crate::band::{Band, TwoRuns, round_off};
 use crate::metric::subtract;
 use crate::single_run::outputs;
@@ -68,7 +68,7 @@ impl Reader<'_> {
         let mut band = Band::from(member.t, &start.coordinates);
         let mut kept = vec![(member.t, start)];
         let mut read = Vec::with_capacity(run.states.len());
-        let every = (run.states.len() / SUMS).max(1);
+        let every = (run.states.len() / SOME).max(1);
         for (i, &(t, asked)) in instants.iter().enumerate().take(run.states.len()) {
             let now = match asked && options.estimate {
                 true => band.look(&mut runs, metric, t, i % every == 0),
@@ -192,7 +192,7 @@ impl TwoRuns for Runs<'_> {
     fn equidistant(&self, _: usize) -> Vec<f64> {
         let within = self.instants.iter().take_while(|(t, _)| self.is_judged(*t));
         let (start, count) = (self.member.t, within.count().min(self.run.states.len()));
-        let mut places: Vec<usize> = (1..=SUMS).map(|k| k * count / SUMS).filter(|&i| i > 0).collect();
+        let mut places: Vec<usize> = (1..=SOME).map(|k| k * count / SOME).filter(|&i| i > 0).collect();
         places.dedup();
         std::iter::once(start).chain(places.into_iter().map(|i| self.instants[i - 1].0)).collect()
     }

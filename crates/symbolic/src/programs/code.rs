@@ -5,7 +5,7 @@ use crate::limits::LINE;
 use crate::programs::program::{Id, Value};
 use crate::programs::tape::order_of_need;
 use crate::store::number::Number;
-use crate::text::print::{ATOM, PRODUCT, SUM};
+use crate::text::print::Binds::{self, Atom, Product, Sum};
 use crate::text::print_plain::number_text;
 use crate::{CompileError, Expr, Function, Graph, Symbol};
 
@@ -83,7 +83,7 @@ impl Graph {
             }
         }
         results.iter().for_each(|&id| uses[id as usize] += 1);
-        let mut texts = vec![(String::new(), ATOM); program.len()];
+        let mut texts = vec![(String::new(), Atom); program.len()];
         let (mut code, mut number) = (Code::default(), 0);
         for id in order {
             let value = match program.value(id) {
@@ -93,7 +93,7 @@ impl Graph {
             let mut written = match value {
                 Value::Input(i) => {
                     code.inputs.push(symbols[i as usize]);
-                    (inputs[i as usize].1.clone(), ATOM)
+                    (inputs[i as usize].1.clone(), Atom)
                 }
                 Value::Constant(n) => language.number(n),
                 _ => language.operation(value, &texts),
@@ -108,7 +108,7 @@ impl Graph {
                     }
                 };
                 code.lines.push((name.clone(), written.0));
-                written = (name, ATOM);
+                written = (name, Atom);
             }
             texts[id as usize] = written;
         }
@@ -121,30 +121,30 @@ impl Graph {
 impl Language {
     /// An operation on what is written already, with how tightly it binds. Nothing is associated anew, so
     /// that the result is rounded as ours is.
-    fn operation(self, value: Value, texts: &[(String, u8)]) -> (String, u8) {
-        let at = |id: Id, level: u8| {
+    fn operation(self, value: Value, texts: &[(String, Binds)]) -> (String, Binds) {
+        let at = |id: Id, level: Binds| {
             let (text, binds) = &texts[id as usize];
             if *binds < level { format!("({text})") } else { text.clone() }
         };
         let call = |name: &str, arguments: &[Id]| {
-            let arguments: Vec<String> = arguments.iter().map(|&a| at(a, 0)).collect();
-            (format!("{}({})", self.function(name), arguments.join(", ")), ATOM)
+            let arguments: Vec<String> = arguments.iter().map(|&a| at(a, Sum)).collect();
+            (format!("{}({})", self.function(name), arguments.join(", ")), Atom)
         };
         match value {
-            Value::Neg(a) => (format!("-{}", at(a, ATOM)), SUM),
-            Value::Square(a) => (format!("{0}*{0}", at(a, ATOM)), PRODUCT),
-            Value::Recip(a) => (format!("{}/{}", self.number(Number::ONE).0, at(a, ATOM)), PRODUCT),
-            Value::Add(a, b) => (format!("{} + {}", at(a, SUM), at(b, PRODUCT)), SUM),
-            Value::Sub(a, b) => (format!("{} - {}", at(a, SUM), at(b, PRODUCT)), SUM),
-            Value::Mul(a, b) => (format!("{}*{}", at(a, PRODUCT), at(b, ATOM)), PRODUCT),
-            Value::Div(a, b) => (format!("{}/{}", at(a, PRODUCT), at(b, ATOM)), PRODUCT),
+            Value::Neg(a) => (format!("-{}", at(a, Atom)), Sum),
+            Value::Square(a) => (format!("{0}*{0}", at(a, Atom)), Product),
+            Value::Recip(a) => (format!("{}/{}", self.number(Number::ONE).0, at(a, Atom)), Product),
+            Value::Add(a, b) => (format!("{} + {}", at(a, Sum), at(b, Product)), Sum),
+            Value::Sub(a, b) => (format!("{} - {}", at(a, Sum), at(b, Product)), Sum),
+            Value::Mul(a, b) => (format!("{}*{}", at(a, Product), at(b, Atom)), Product),
+            Value::Div(a, b) => (format!("{}/{}", at(a, Product), at(b, Atom)), Product),
             Value::Sqrt(a) => call("sqrt", &[a]),
             Value::Call(function, a) => call(function.name(), &[a]),
             Value::Logistic(a) => {
                 let one = self.number(Number::ONE).0;
-                (format!("{one}/({one} + {}(-{}))", self.function("exp"), at(a, ATOM)), PRODUCT)
+                (format!("{one}/({one} + {}(-{}))", self.function("exp"), at(a, Atom)), Product)
             }
-            Value::Sech(a) => (format!("{}/{}", self.number(Number::ONE).0, call("cosh", &[a]).0), PRODUCT),
+            Value::Sech(a) => (format!("{}/{}", self.number(Number::ONE).0, call("cosh", &[a]).0), Product),
             Value::Pow(a, b) => call("pow", &[a, b]),
             Value::Atan2(a, b) => call("atan2", &[a, b]),
             Value::Input(_) | Value::Constant(_) => unreachable!("these are written where they stand"),
@@ -168,25 +168,25 @@ impl Language {
     }
 
     /// A number; as exact as the language has it.
-    fn number(self, n: Number) -> (String, u8) {
+    fn number(self, n: Number) -> (String, Binds) {
         if n.is_negative() {
-            return (format!("-{}", self.number(n.neg()).0), SUM);
+            return (format!("-{}", self.number(n.neg()).0), Sum);
         }
         let (above, below) = number_text(n);
         let decimal = format!("{:?}", n.to_f64());
         match (self, above.strip_suffix("pi"), n) {
             (Language::Sympy, Some(factor), _) => {
-                (format!("{factor}sp.pi{}", below.map_or(String::new(), |d| format!("/{d}"))), PRODUCT)
+                (format!("{factor}sp.pi{}", below.map_or(String::new(), |d| format!("/{d}"))), Product)
             }
-            (_, _, Number::Exact(r)) if self != Language::C && r.denominator() == 1 => (above, ATOM),
+            (_, _, Number::Exact(r)) if self != Language::C && r.denominator() == 1 => (above, Atom),
             (Language::Sympy, _, Number::Exact(r)) => {
-                (format!("sp.Rational({}, {})", r.numerator(), r.denominator()), ATOM)
+                (format!("sp.Rational({}, {})", r.numerator(), r.denominator()), Atom)
             }
             (_, None, Number::Exact(r)) if r.denominator() != 1 && Number::from_decimal(&decimal) != Some(n) => {
                 let part = |n: i64| self.number(Number::integer(n)).0;
-                (format!("{}/{}", part(r.numerator()), part(r.denominator())), PRODUCT)
+                (format!("{}/{}", part(r.numerator()), part(r.denominator())), Product)
             }
-            _ => (decimal, ATOM),
+            _ => (decimal, Atom),
         }
     }
 }

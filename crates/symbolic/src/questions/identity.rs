@@ -1,13 +1,10 @@
 //! Is an expression identically zero?
 
+use crate::limits::{POINTS, TERMS};
 use crate::store::arena::Arena;
 use crate::{Bounded, Evaluator, Expr, Graph, Scalar, SplitMix, Symbol, faults};
 use std::collections::HashMap;
 
-/// Terms beyond which the exact test gives up.
-const TERM_LIMIT: usize = 400;
-/// Finite values that the numerical test asks for.
-const POINTS: usize = 32;
 /// Points tried, at most, to find those where the value is finite.
 const TRIES: usize = 20 * POINTS;
 /// The answer to the question whether an expression is identically zero.
@@ -117,7 +114,7 @@ impl Graph {
             return sampled;
         }
         let mut arena = self.arena.borrow_mut();
-        let by_normal_form = |arena: &mut Arena| arena.normal_numerator(e, TERM_LIMIT) == Some(Arena::ZERO);
+        let by_normal_form = |arena: &mut Arena| arena.normal_numerator(e, TERMS) == Some(Arena::ZERO);
         let zero = arena.is_zero_split(e).unwrap_or_else(|| by_normal_form(&mut arena));
         if zero { Vanishing::Exactly } else { sampled }
     }

@@ -1,6 +1,6 @@
 //! Normal forms in which an identity becomes the number zero.
 
-use crate::limits::LONG;
+use crate::limits::{LONG, PRIMES};
 use crate::store::arena::{Arena, Node};
 use crate::store::number::{Number, Rational};
 use crate::{Expr, Function, Graph};
@@ -8,8 +8,6 @@ use rustc_hash::FxHashMap;
 
 /// sin(n u) is taken apart up to this n.
 const MULTIPLE_LIMIT: i64 = 8;
-/// Prime factors under this are looked for under roots of numbers.
-const TRIED: i64 = 4096;
 /// Rounds of clearing denominators.
 const ROUNDS: usize = 4;
 
@@ -86,7 +84,7 @@ impl Arena {
                 all.push((base, exponent));
                 continue;
             };
-            for prime in 2..TRIED {
+            for prime in 2..PRIMES {
                 while rest % prime == 0 && rest != 0 {
                     rest /= prime;
                     all.push((self.number(Number::integer(prime)), exponent));

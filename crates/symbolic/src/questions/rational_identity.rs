@@ -7,27 +7,26 @@
 
 use rustc_hash::FxHashMap;
 
+use crate::limits::IN_FIELD;
 use crate::store::arena::{Arena, Node};
 use crate::store::number::{Number, Rational};
 use crate::{Expr, Function, SplitMix};
 
 /// A prime.
 const P: u64 = (1 << 61) - 1;
-/// Points at which it has to be zero.
-const POINTS: u64 = 2;
 
 impl Arena {
     /// Whether `e` is zero as a rational function of its symbols, roots and functions; `false` where this is
     /// undecided.
     pub(crate) fn is_zero_rational(&self, e: Expr) -> bool {
-        e == Arena::ZERO || (1..=POINTS).all(|seed| self.in_field(e, seed) == Some(0))
+        e == Arena::ZERO || (1..=IN_FIELD).all(|seed| self.in_field(e, seed) == Some(0))
     }
 
     /// Whether `e` is zero, sines and cosines of sums taken apart; `None` where it is not as a rational
     /// function, and has roots, other functions or rounded numbers that may obey more.
     pub(crate) fn is_zero_split(&mut self, e: Expr) -> Option<bool> {
         let e = self.with_split_angles(e);
-        let zero = (1..=POINTS).try_fold(true, |zero, seed| Some(zero && self.in_field(e, seed)? == 0))?;
+        let zero = (1..=IN_FIELD).try_fold(true, |zero, seed| Some(zero && self.in_field(e, seed)? == 0))?;
         (zero || self.is_free(e)).then_some(zero)
     }
 

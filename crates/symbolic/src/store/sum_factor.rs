@@ -1,5 +1,6 @@
 //! Signs and common factors of sums.
 
+use crate::limits::FRACTION;
 use crate::store::number::{Number, Rational};
 use crate::{Expr, Fraction};
 
@@ -26,9 +27,6 @@ pub(crate) fn sign_is_negative(terms: &[(Expr, Number)]) -> bool {
     }
 }
 
-/// Larger denominators come from measured numbers and stay where they are.
-const DENOMINATOR_LIMIT: i64 = 1_000_000;
-
 /// The number to take out of a sum: the greatest common divisor of its coefficients, with its sign;
 /// the coefficient itself for a single term.
 pub(crate) fn content(constant: Number, terms: &[(Expr, Number)]) -> Number {
@@ -54,7 +52,7 @@ pub(crate) fn content(constant: Number, terms: &[(Expr, Number)]) -> Number {
         numerator = greatest_common_divisor(numerator, r.numerator());
         let shared = greatest_common_divisor(denominator, r.denominator());
         match (denominator / shared).checked_mul(r.denominator()) {
-            Some(multiple) if multiple <= DENOMINATOR_LIMIT => denominator = multiple,
+            Some(multiple) if multiple <= FRACTION => denominator = multiple,
             _ => return sign,
         }
     }

@@ -5,22 +5,25 @@ use crate::store::arena::{Arena, Node};
 use crate::store::number::{Number, Rational};
 
 /// How tightly what is printed binds.
-pub(crate) const SUM: u8 = 1;
-pub(crate) const PRODUCT: u8 = 2;
-pub(crate) const POWER: u8 = 3;
-pub(crate) const ATOM: u8 = 4;
+#[derive(Clone, Copy, PartialEq, PartialOrd)]
+pub(crate) enum Binds {
+    Sum,
+    Product,
+    Power,
+    Atom,
+}
 
 /// A piece of output that is still to be written.
 pub(crate) enum Piece {
     Text(String),
     /// The expression, in parentheses if it binds more loosely than the level.
-    Node(Expr, u8),
+    Node(Expr, Binds),
     /// The negative of a sum, in the same way.
-    Negated(Expr, u8),
+    Negated(Expr, Binds),
 }
 
 /// The pieces of something, and how tightly it binds.
-pub(crate) type Printed = (Vec<Piece>, u8);
+pub(crate) type Printed = (Vec<Piece>, Binds);
 
 pub(crate) fn text(s: impl Into<String>) -> Piece {
     Piece::Text(s.into())
@@ -29,7 +32,7 @@ pub(crate) fn text(s: impl Into<String>) -> Piece {
 /// Writes `e`, given how a node (to be negated or not) falls into pieces.
 pub(crate) fn write(e: Expr, parentheses: (&str, &str), pieces: impl Fn(Expr, bool) -> Printed) -> String {
     let mut output = String::new();
-    let mut stack = vec![Piece::Node(e, 0)];
+    let mut stack = vec![Piece::Node(e, Binds::Sum)];
     while let Some(piece) = stack.pop() {
         let (e, level, negated) = match piece {
             Piece::Text(s) => {
@@ -59,7 +62,7 @@ pub(crate) struct Factor {
 
 impl Factor {
     /// The base where nothing, or `level`, needs no parentheses.
-    pub(crate) fn piece(self, level: u8) -> Piece {
+    pub(crate) fn piece(self, level: Binds) -> Piece {
         if self.negated { Piece::Negated(self.base, level) } else { Piece::Node(self.base, level) }
     }
 }
@@ -139,7 +142,7 @@ impl Arena {
 /// Terms with their signs between them, each printed by `term`.
 pub(crate) fn signed(terms: &[Term], term: impl Fn(&Term) -> Printed) -> Printed {
     let mut pieces = Vec::new();
-    let mut binds = SUM;
+    let mut binds = Binds::Sum;
     for (i, t) in terms.iter().enumerate() {
         let sign = match (i, t.negative) {
             (0, false) => "",

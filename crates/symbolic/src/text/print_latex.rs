@@ -3,7 +3,8 @@
 use crate::store::arena::{Arena, Node};
 use crate::store::number::Number;
 use crate::text::latex_names::latex_name;
-use crate::text::print::{ATOM, Factor, POWER, PRODUCT, Piece, Printed, signed, text, write};
+use crate::text::print::Binds::{self, Atom, Power, Product, Sum};
+use crate::text::print::{Factor, Piece, Printed, signed, text, write};
 use crate::text::print_plain::number_text;
 use crate::{Expr, Function, Graph, Symbol};
 
@@ -37,26 +38,26 @@ impl Arena {
             Node::Number(_) | Node::Product(_) | Node::Sum(..) => {
                 signed(&self.printed_terms(e, negated), |t| self.latex_term(t.number, t.factors.clone()))
             }
-            Node::Symbol(s) => (vec![text(latex_name(self.name(*s)))], ATOM),
+            Node::Symbol(s) => (vec![text(latex_name(self.name(*s)))], Atom),
             Node::Power(base, exponent) => {
-                let base = Piece::Node(*base, ATOM);
-                (vec![base, text("^{"), Piece::Node(*exponent, 0), text("}")], POWER)
+                let base = Piece::Node(*base, Atom);
+                (vec![base, text("^{"), Piece::Node(*exponent, Sum), text("}")], Power)
             }
             Node::Call(Function::Exp, argument) => {
-                (vec![text(r"\mathrm{e}^{"), Piece::Node(*argument, 0), text("}")], POWER)
+                (vec![text(r"\mathrm{e}^{"), Piece::Node(*argument, Sum), text("}")], Power)
             }
-            Node::Call(function, argument) => (self.latex_call(*function, *argument, negated, ""), POWER),
+            Node::Call(function, argument) => (self.latex_call(*function, *argument, negated, ""), Power),
             Node::Atan2(y, x) => {
-                let (y, x) = (Piece::Node(*y, 0), Piece::Node(*x, 0));
+                let (y, x) = (Piece::Node(*y, Sum), Piece::Node(*x, Sum));
                 let open = text(r"\operatorname{atan2}\left(");
-                (vec![open, y, text(", "), x, text(r"\right)")], ATOM)
+                (vec![open, y, text(", "), x, text(r"\right)")], Atom)
             }
         }
     }
 
     fn latex_call(&self, function: Function, argument: Expr, negated: bool, exponent: &str) -> Vec<Piece> {
         let name = format!("{}{exponent}", NAMES[function as usize]);
-        let inner = if negated { Piece::Negated(argument, 0) } else { Piece::Node(argument, 0) };
+        let inner = if negated { Piece::Negated(argument, Sum) } else { Piece::Node(argument, Sum) };
         match self.node(argument) {
             Node::Symbol(_) => vec![text(name + " "), inner],
             _ => vec![text(name + r"\left("), inner, text(r"\right)")],
@@ -73,17 +74,17 @@ impl Arena {
         let (numerator, denominator) = latex_number(number);
         if above.is_empty() && below.is_empty() {
             return match denominator {
-                None => (vec![text(numerator)], ATOM),
-                Some(d) => (vec![text(fraction(&numerator, &d))], PRODUCT),
+                None => (vec![text(numerator)], Atom),
+                Some(d) => (vec![text(fraction(&numerator, &d))], Product),
             };
         }
         if below.is_empty() {
             return match denominator {
-                Some(d) => (self.latex_product(&fraction(&numerator, &d), &above), PRODUCT),
-                None if numerator != "1" => (self.latex_product(&numerator, &above), PRODUCT),
+                Some(d) => (self.latex_product(&fraction(&numerator, &d), &above), Product),
+                None if numerator != "1" => (self.latex_product(&numerator, &above), Product),
                 None => match above[..] {
-                    [factor] => self.latex_factor(factor, 0),
-                    _ => (self.latex_product("", &above), PRODUCT),
+                    [factor] => self.latex_factor(factor, Sum),
+                    _ => (self.latex_product("", &above), Product),
                 },
             };
         }
@@ -93,7 +94,7 @@ impl Arena {
         pieces.push(text("}{"));
         pieces.extend(self.latex_product(denominator.as_deref().unwrap_or(""), &below));
         pieces.push(text("}"));
-        (pieces, PRODUCT)
+        (pieces, Product)
     }
 
     /// A number (or nothing) and factors side by side
@@ -105,7 +106,7 @@ impl Arena {
             if i > 0 || !front.is_empty() {
                 pieces.push(text(if digits { r" \cdot " } else { " " }));
             }
-            pieces.extend(self.latex_factor(*factor, if alone { 0 } else { POWER }).0);
+            pieces.extend(self.latex_factor(*factor, if alone { Sum } else { Power }).0);
         }
         pieces
     }
@@ -120,18 +121,18 @@ impl Arena {
     }
 
     /// base^exponent for a positive exponent, where what binds as tightly as `level` can stand
-    fn latex_factor(&self, factor: Factor, level: u8) -> Printed {
+    fn latex_factor(&self, factor: Factor, level: Binds) -> Printed {
         match (factor.exponent.numerator(), factor.exponent.denominator()) {
-            (1, 1) => (vec![factor.piece(level)], POWER),
-            (1, 2) => (vec![text(r"\sqrt{"), factor.piece(0), text("}")], ATOM),
+            (1, 1) => (vec![factor.piece(level)], Power),
+            (1, 2) => (vec![text(r"\sqrt{"), factor.piece(Sum), text("}")], Atom),
             (n, 1) => match self.node(factor.base) {
                 Node::Call(function, argument) if raised_at_name(*function) => {
                     let exponent = format!("^{{{n}}}");
-                    (self.latex_call(*function, *argument, factor.negated, &exponent), POWER)
+                    (self.latex_call(*function, *argument, factor.negated, &exponent), Power)
                 }
-                _ => (vec![factor.piece(ATOM), text(format!("^{{{n}}}"))], POWER),
+                _ => (vec![factor.piece(Atom), text(format!("^{{{n}}}"))], Power),
             },
-            (n, d) => (vec![factor.piece(ATOM), text(format!("^{{{n}/{d}}}"))], POWER),
+            (n, d) => (vec![factor.piece(Atom), text(format!("^{{{n}/{d}}}"))], Power),
         }
     }
 }

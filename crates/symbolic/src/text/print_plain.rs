@@ -2,7 +2,8 @@
 
 use crate::store::arena::{Arena, Node};
 use crate::store::number::{Number, Rational};
-use crate::text::print::{ATOM, Factor, POWER, PRODUCT, Piece, Printed, signed, text, write};
+use crate::text::print::Binds::{Atom, Power, Product, Sum};
+use crate::text::print::{Factor, Piece, Printed, signed, text, write};
 use crate::{Expr, Graph};
 
 impl Graph {
@@ -25,21 +26,21 @@ impl Arena {
             Node::Number(_) | Node::Product(_) | Node::Sum(..) => {
                 signed(&self.printed_terms(e, negated), |t| self.plain_term(t.number, &t.factors))
             }
-            Node::Symbol(s) => (vec![text(self.name(*s))], ATOM),
+            Node::Symbol(s) => (vec![text(self.name(*s))], Atom),
             Node::Power(base, exponent) => {
-                let (base, exponent) = (Piece::Node(*base, ATOM), Piece::Node(*exponent, ATOM));
-                (vec![base, text("^"), exponent], POWER)
+                let (base, exponent) = (Piece::Node(*base, Atom), Piece::Node(*exponent, Atom));
+                (vec![base, text("^"), exponent], Power)
             }
             Node::Call(function, argument) => {
                 let argument = match negated {
-                    true => Piece::Negated(*argument, 0),
-                    false => Piece::Node(*argument, 0),
+                    true => Piece::Negated(*argument, Sum),
+                    false => Piece::Node(*argument, Sum),
                 };
-                (vec![text(function.name()), text("("), argument, text(")")], ATOM)
+                (vec![text(function.name()), text("("), argument, text(")")], Atom)
             }
             Node::Atan2(y, x) => {
-                let (y, x) = (Piece::Node(*y, 0), Piece::Node(*x, 0));
-                (vec![text("atan2("), y, text(", "), x, text(")")], ATOM)
+                let (y, x) = (Piece::Node(*y, Sum), Piece::Node(*x, Sum));
+                (vec![text("atan2("), y, text(", "), x, text(")")], Atom)
             }
         }
     }
@@ -48,7 +49,7 @@ impl Arena {
     fn plain_term(&self, number: Number, factors: &[Factor]) -> Printed {
         let (numerator, denominator) = number_text(number);
         let mut above: Vec<Printed> = Vec::new();
-        let mut below: Vec<Printed> = denominator.map(|d| (vec![text(d)], ATOM)).into_iter().collect();
+        let mut below: Vec<Printed> = denominator.map(|d| (vec![text(d)], Atom)).into_iter().collect();
         for factor in factors {
             if factor.exponent.is_negative() {
                 below.push(plain_factor(Factor { exponent: factor.exponent.neg(), ..*factor }));
@@ -57,10 +58,10 @@ impl Arena {
             }
         }
         if above.is_empty() || numerator != "1" {
-            let binds = if numerator.contains('*') { PRODUCT } else { ATOM };
+            let binds = if numerator.contains('*') { Product } else { Atom };
             above.insert(0, (vec![text(numerator)], binds));
         }
-        let binds = if above.len() == 1 && below.is_empty() { above[0].1 } else { PRODUCT };
+        let binds = if above.len() == 1 && below.is_empty() { above[0].1 } else { Product };
         let mut pieces = joined(above);
         if below.len() > 1 && !self.scales_exactly(factors, number) {
             // 1/d/(sum), where d*(sum) would not give back d and the sum
@@ -107,10 +108,10 @@ fn joined(factors: Vec<Printed>) -> Vec<Piece> {
 /// base^exponent for a positive exponent, ready to stand in a product
 fn plain_factor(factor: Factor) -> Printed {
     match (factor.exponent.numerator(), factor.exponent.denominator()) {
-        (1, 1) => (vec![factor.piece(POWER)], POWER),
-        (1, 2) => (vec![text("sqrt("), factor.piece(0), text(")")], ATOM),
-        (n, 1) => (vec![factor.piece(ATOM), text(format!("^{n}"))], POWER),
-        (n, d) => (vec![factor.piece(ATOM), text(format!("^({n}/{d})"))], POWER),
+        (1, 1) => (vec![factor.piece(Power)], Power),
+        (1, 2) => (vec![text("sqrt("), factor.piece(Sum), text(")")], Atom),
+        (n, 1) => (vec![factor.piece(Atom), text(format!("^{n}"))], Power),
+        (n, d) => (vec![factor.piece(Atom), text(format!("^({n}/{d})"))], Power),
     }
 }
 

@@ -1,5 +1,6 @@
 //! Vectors, matrices and rotations in formulas.
 
+use crate::limits::LONG;
 use crate::store::arena::Node;
 use crate::{Expr, Graph, Matrix};
 
@@ -140,7 +141,6 @@ impl Graph {
 
     /// A sum, multiplied out where that is shorter: what turns and turns back cancels.
     fn short(&self, e: Expr) -> Expr {
-        const LONG: usize = 300;
         let is_sum = matches!(self.arena.borrow().node(e), Node::Sum(_, terms) if terms.len() > 1);
         if is_sum { self.expand_if_shorter(e, LONG) } else { e }
     }

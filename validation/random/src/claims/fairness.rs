@@ -2,10 +2,10 @@
 
 use comparison::{Answer, Gap, Membership, Pairing, best_fit};
 use decision::{Finding, Verdict};
-use motion::{Settings, VAKONOMIC, choices, setting};
+use motion::{Settings, TRUSTED, VAKONOMIC, choices, setting};
 
 use super::CheckError;
-use crate::case::{SEEN, Which};
+use crate::case::Which;
 use crate::derived::equations;
 use crate::{Case, Findings, Kind};
 
@@ -155,7 +155,7 @@ pub(super) fn fit(case: &mut Case) -> Result<(), CheckError> {
 
 /// The gap, over this duration, from which on the mismatch `least` has to be seen.
 pub fn visible(least: f64, duration: f64) -> f64 {
-    SEEN * least * duration.powf(1.5)
+    TRUSTED * least * duration.powf(1.5)
 }
 
 /// A fit has to leave a gap, where one that is `visible` would be seen.

@@ -22,10 +22,6 @@ const UNCERTAIN: f64 = 0.1;
 /// A predicted gap that does not reach this over the run says nothing: its growth cannot be measured.
 const VISIBLE: f64 = 1e-5;
 
-/// The growth is measured within this part of the time after which another term is the larger one, and after
-/// as many times that up to which one is.
-const WITHIN: f64 = 0.5;
-
 /// `q_vak − q_chet = y_k t^{k+2}/((k+1)(k+2))`, `y_k ≠ 0` first in the mismatch, for every `f`, `μ₀`.
 pub(super) fn check(case: &mut Case) -> Result<(), CheckError> {
     let (scene, multipliers) = (&case.scene, &case.scene.multipliers);
@@ -58,7 +54,7 @@ pub fn judge(found: &mut Findings, measured: Option<&Growth>, predicted: &Leadin
     let Some(measured) = measured else {
         return found.undecided(5, claim, "the gap does not stand out from the errors near the start");
     };
-    if measured.to > WITHIN * predicted.reach || predicted.from > WITHIN * measured.from {
+    if !predicted.leads(measured.from, measured.to) {
         let leading = format!("leading from {:.1e} until {:.1e}", predicted.from, predicted.reach);
         return found.undecided(5, claim, format!("seen from t = {:.1e}, and {leading}", measured.from));
     }

@@ -8,7 +8,7 @@ use symbolic::{Bounded, Expr, Scalar, Symbol};
 
 use super::CheckError;
 use crate::Case;
-use crate::case::INSTANTS;
+use motion::band::INSTANTS;
 
 /// A quantity along a motion, with its error estimate.
 struct Drift {

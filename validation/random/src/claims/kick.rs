@@ -1,19 +1,16 @@
 //! T18: the multiplier of the start acts on the law of first order as a kick.
 
 use mechanics::{Parameter, State, System};
-use motion::{CERTAINTY, FIRST_ORDER, KAPPA};
+use motion::{CERTAINTY, FIRST_ORDER, KAPPA, TRUSTED};
 use nalgebra::{DMatrix, DVector};
 
 use super::CheckError;
 use super::invariance::values;
-use super::realization::own_error;
-use crate::case::SEEN;
+use super::realization::{STRENGTH, own_error};
 use crate::derived::equations;
 use crate::realization::{constraint_jacobian, distance, numbers, with_kappa};
 use crate::{Case, Kind};
 
-/// The first `κ` in 1/s; each further one is ten times the one before.
-const KAPPA_FROM: f64 = 1e2;
 /// How many pairs of `κ` and `10 κ` are tried until the distance falls as it should.
 const PAIRS: i32 = 2;
 /// What lies between `O(1/κ)`, a tenth, and `O(1/κ²)`, a hundredth.
@@ -31,9 +28,9 @@ pub(super) fn check(case: &mut Case) -> Result<(), CheckError> {
         return Ok(());
     }
     let kick = kick(&system, case)?;
-    let mut before = apart(case, &system, &kick, KAPPA_FROM)?;
+    let mut before = apart(case, &system, &kick, STRENGTH)?;
     for power in 1..=PAIRS {
-        let after = apart(case, &system, &kick, KAPPA_FROM * 10_f64.powi(power))?;
+        let after = apart(case, &system, &kick, STRENGTH * 10_f64.powi(power))?;
         let ([with, without, _], [next, next_without, own]) = (before, after);
         let note = format!("distances {with:.1e}, {next:.1e}; without the kick {without:.1e}, {next_without:.1e}");
         if !(with + next).is_finite() || with <= CERTAINTY * RATE * own {
@@ -42,7 +39,7 @@ pub(super) fn check(case: &mut Case) -> Result<(), CheckError> {
         }
         if with >= RATE * next || power == PAIRS {
             case.found.require(18, CLAIM, with >= RATE * (next - CERTAINTY * own), note);
-            if kick.iter().any(|x| x.abs() > SEEN) {
+            if kick.iter().any(|x| x.abs() > TRUSTED) {
                 case.found.count(18, WITHOUT, without < RATE * next_without);
             }
             return Ok(());

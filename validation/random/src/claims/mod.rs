@@ -24,7 +24,7 @@ pub use agreement::{DIVERGES, Divergence, integrals_put_in, solution};
 pub use fairness::{denied, visible};
 pub use growth::judge as judge_growth;
 pub use null_tests::{NullTest, broken_null_test, null_test};
-pub use realization::{judge as judge_rate, shows_two_terms};
+pub use realization::{VISIBLE, judge as judge_rate, shows_two_terms};
 
 /// Why a check could not be made.
 #[derive(Debug, thiserror::Error)]

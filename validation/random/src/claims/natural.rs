@@ -1,6 +1,7 @@
 //! Constants that are natural at a horizon: costates vanish there, in whatever units.
 
 use mechanics::{ConstantsRule, Removal};
+use motion::band::{INSTANTS, RESIDUAL, SEARCH_STEPS};
 use motion::{CERTAINTY, Motion, REMOVED_CONSTRAINT, Setting, Settings, SolveError, TIGHTER, solve};
 use nalgebra::{DMatrix, DVector};
 use symbolic::Expr;
@@ -8,15 +9,8 @@ use symbolic::limits::{OF_TERMS, SAME};
 
 use super::CheckError;
 use crate::Case;
-use crate::case::{INSTANTS, MAX_STEPS};
 use crate::derived::{equations, free_constants};
 use crate::realization::numbers;
-
-/// Tolerance of the looser run.
-const TOLERANCE: f64 = 1e-9;
-
-/// What the search may leave of a costate, over its size: a thousand times the tolerance of the kept run.
-const LEFT: f64 = 1e3 * TOLERANCE * TIGHTER;
 
 const CLAIM: &str = "natural costates vanish at the horizon";
 const FOUND: &str = "constants natural at the end of the run are found";
@@ -51,7 +45,7 @@ fn judged(case: &mut Case, setting: Setting, removal: &Removal, planted: bool) -
         return Ok(None);
     }
     let run = |rule: ConstantsRule| {
-        let settings = Settings { tolerance: TOLERANCE, max_steps: MAX_STEPS, ..Settings::default() };
+        let settings = Settings { max_steps: SEARCH_STEPS, ..Settings::default() };
         solve(setting, equations.clone(), &rule, &settings)
     };
     let found = match case.natural.clone().filter(|_| planted) {
@@ -111,5 +105,7 @@ fn left(
         left = left.max(own.abs() / size);
         apart = apart.max((own - other).abs() / size);
     }
-    Ok((left, CERTAINTY * (LEFT + apart)))
+    // what the search may leave of a costate, over its size
+    let may_leave = RESIDUAL * TIGHTER * Settings::default().tolerance;
+    Ok((left, CERTAINTY * (may_leave + apart)))
 }

@@ -9,10 +9,10 @@ use scene::Scene;
 use symbolic::limits::NOTHING;
 
 use crate::Fault;
-use crate::case::INSTANTS;
 use crate::derived::equations;
 use crate::finding::{Finding, Findings};
 use crate::recipe::tree;
+use motion::band::INSTANTS;
 
 /// Numbers for the three null tests.
 #[derive(Clone, Debug)]

@@ -7,9 +7,10 @@ use symbolic::limits::OF_TERMS;
 
 use super::CheckError;
 use crate::Case;
-use crate::case::{INSTANTS, SEEN, Which};
+use crate::case::Which;
 use crate::derived::equations;
 use crate::realization::constraint_jacobian;
+use motion::band::INSTANTS;
 
 /// Maggi's equations give Chetaev's motion, the costate form the vakonomic one; all keep the constraint.
 pub(super) fn check(case: &mut Case) -> Result<(), CheckError> {
@@ -48,7 +49,7 @@ fn compared(
     let rank = |t: f64, q: &[f64], v: &[f64]| rank(&system, &State { t, q: q.to_vec(), v: v.to_vec() });
     let linear = system.constraints_linear_in_velocity();
     let first = &case.scene.start;
-    let least = if linear { 0.0 } else { SEEN * rank(first.t, &first.q, &first.v)? };
+    let least = if linear { 0.0 } else { motion::TRUSTED * rank(first.t, &first.q, &first.v)? };
     let motion = case.motion(which);
     for t in motion.grid(INSTANTS).into_iter().filter(|&t| t <= last) {
         let (own, other) = motion.at_in_both_runs(t)?;

@@ -16,7 +16,7 @@ use scene::Scene;
 use serde_json::{Value, json};
 
 use crate::cli::{Cli, JobArguments, Section};
-use crate::sections::{JOBS, Part};
+use crate::sections::{JOBS, Part, rank};
 use bench::{Effort, bench_all, bench_files, bench_headline, references};
 use pages::{Headline, scene_files, verdicts};
 use program::{Answer, File, TextOrJson, parallel, pretty, write_all, write_own};
@@ -43,12 +43,6 @@ fn compared(scene: Scene, settings: &Settings) -> Result<Comparison> {
 /// Repeats of every way to integrate the ensembles of the main job.
 const ENSEMBLE_REPEATS: usize = 2;
 
-/// The rank of the scenes among [`JOBS`]: they are first to answer.
-const SCENES_FIRST: usize = 0;
-
-/// The rank of the references that errors are taken against.
-const REFERENCES_THEN: usize = 1;
-
 fn finished<T>(job: ScopedJoinHandle<'_, T>) -> T {
     job.join().unwrap_or_else(|panic| resume_unwind(panic))
 }
@@ -72,13 +66,14 @@ impl Results {
         let (scenes, prepared, parts, casadi) = std::thread::scope(|scope| {
             // mostly another process
             let referee = asked(&Section::Casadi).then(|| scope.spawn(|| casadi_job::section(names)));
-            let scenes = || parallel::in_turn(SCENES_FIRST, || compare_all(names, quiet));
+            let scenes = || parallel::in_turn(rank(&Section::Scenes), || compare_all(names, quiet));
             let scenes = asked(&Section::Scenes).then(|| scope.spawn(scenes));
-            let prepared = || parallel::in_turn(REFERENCES_THEN, || references(names, &kept_references()?, quiet));
+            let prepared =
+                || parallel::in_turn(rank(&Section::ErrorVsTime), || references(names, &kept_references()?, quiet));
             let prepared = (timed.is_some() && asked(&Section::ErrorVsTime)).then(|| scope.spawn(prepared));
             let jobs = JOBS.iter().filter(|(section, ..)| asked(section));
             let jobs: Vec<_> =
-                jobs.map(|(_, rank, job)| scope.spawn(|| parallel::in_turn(*rank, || job(quiet)))).collect();
+                jobs.map(|(section, job)| scope.spawn(|| parallel::in_turn(rank(section), || job(quiet)))).collect();
             let scenes = scenes.map(finished).transpose()?.unwrap_or_default();
             let prepared = prepared.map(finished).transpose()?;
             let mut parts = Vec::new();

@@ -24,19 +24,34 @@ pub(crate) struct Part {
     pub(crate) files: Vec<File>,
 }
 
-/// A section, its weight, and what makes its parts.
-type Job = (Section, usize, fn(bool) -> Result<Vec<Part>>);
+/// A section, and what makes its parts.
+type Job = (Section, fn(bool) -> Result<Vec<Part>>);
 
-/// Sections besides scenes, referee and times, in the order of the overview; with their rank, the longer
-/// their pieces the earlier.
+/// Sections besides scenes, referee and times, in the order of the overview.
 pub(crate) const JOBS: [Job; 6] = [
-    (Section::Random, 7, random_systems),
-    (Section::Realization, 5, realization),
-    (Section::PaperAudit, 4, paper_audit),
-    (Section::Equivalence, 6, equivalence),
-    (Section::Bicycle, 3, bicycle),
-    (Section::Stability, 2, stability),
+    (Section::Random, random_systems),
+    (Section::Realization, realization),
+    (Section::PaperAudit, paper_audit),
+    (Section::Equivalence, equivalence),
+    (Section::Bicycle, bicycle),
+    (Section::Stability, stability),
 ];
+
+/// The rank of a section among those that work at the same time: scenes are first to answer, then come the
+/// references that errors are taken against, and of the others the longer their pieces the earlier.
+pub(crate) fn rank(section: &Section) -> usize {
+    let order = [
+        Section::Scenes,
+        Section::ErrorVsTime,
+        Section::Stability,
+        Section::Bicycle,
+        Section::PaperAudit,
+        Section::Realization,
+        Section::Equivalence,
+        Section::Random,
+    ];
+    order.iter().position(|other| other == section).unwrap_or(order.len())
+}
 
 fn random_systems(quiet: bool) -> Result<Vec<Part>> {
     let batch = Batch { seed: 1, kinds: Kind::ALL.to_vec() };

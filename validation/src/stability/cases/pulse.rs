@@ -5,9 +5,9 @@ use symbolic::SplitMix;
 use super::FORMULATIONS;
 use super::disc::{Disc, HEADING, INERTIA};
 use super::integral::Integral;
+use super::wall::DURATION;
 use crate::stability::question::Question;
 
-const DURATION: f64 = 6.0;
 const ROLL: f64 = 0.3;
 
 /// A function of time in widths from its middle, as text in `U` and in numbers; both depend on the width.
@@ -57,7 +57,7 @@ impl Pulse {
     /// Place and strength are random.
     fn new(shape: &'static Shape, width: f64, seed: u64) -> Pulse {
         let mut random = SplitMix::new(seed ^ width.to_bits());
-        let at = 1.0 + (DURATION - 2.0) * random.unit();
+        let at = 1.0 + (2.0 * DURATION - 2.0) * random.unit();
         Pulse { shape, at, width, strength: 0.5 + 1.5 * random.unit() }
     }
 
@@ -91,7 +91,7 @@ pub(super) fn forces(width: f64, speeds: [f64; 2]) -> Vec<Question> {
             forces: [on.clone(), format!("0.1*{on}")],
             roll: ROLL,
             speeds,
-            duration: DURATION,
+            duration: 2.0 * DURATION,
         };
         let way = pulse.way();
         disc.turning(width, shape.name, move |t| {
@@ -120,6 +120,6 @@ fn along(width: f64, speed: f64) -> (Disc, impl Fn(f64) -> f64 + Send + Sync) {
     let pulse = Pulse::new(shape, width, 7);
     let (term, forces) = (format!("a*{}", pulse.text()), ["0".into(), "0".into()]);
     let way = pulse.way();
-    let disc = Disc { term, forces, roll: ROLL, speeds: [speed, 0.0], duration: DURATION };
+    let disc = Disc { term, forces, roll: ROLL, speeds: [speed, 0.0], duration: 2.0 * DURATION };
     (disc, move |t| ROLL + speed * t + way(t) / INERTIA[0])
 }

@@ -5,6 +5,7 @@ use motion::{CHETAEV, REMOVED_CONSTRAINT};
 use referees::closed_forms;
 use scene::{Scene, SceneError};
 
+use super::disc::HEADING;
 use super::{FORMULATIONS, GRAVITY};
 use crate::stability::question::Question;
 use crate::stability::reference::Reference;
@@ -31,19 +32,18 @@ pub(super) struct Sledge {
 /// Radius of gyration of the scene.
 pub(super) const RADIUS: f64 = 0.7;
 const SLOPE: f64 = 0.4;
-const PHI: f64 = 0.3;
 const OMEGA: f64 = 1.1;
 const SPEED: f64 = 0.5;
 
 impl Sledge {
     /// Chetaev; vakonomic with `μ₀ = 0`; removed constraint by arc length with `P(t₀) = 0`.
     pub(super) fn reference(&self, formulation: &Formulation) -> Reference {
-        let (sin, cos) = PHI.sin_cos();
+        let (sin, cos) = HEADING.sin_cos();
         match formulation {
             own if own == CHETAEV => {
                 let gravity_along = GRAVITY * SLOPE.sin();
                 let sledge =
-                    closed_forms::Sledge { gravity_along, x: 0.0, y: 0.0, phi: PHI, speed: SPEED, omega: OMEGA };
+                    closed_forms::Sledge { gravity_along, x: 0.0, y: 0.0, phi: HEADING, speed: SPEED, omega: OMEGA };
                 Reference::Closed(Box::new(move |t| {
                     let state = sledge.at(t);
                     vec![state.x, state.y, state.phi]
@@ -64,9 +64,9 @@ impl Sledge {
     fn by_heading(&self, momentum: [f64; 2]) -> Reference {
         let square = self.k * self.k;
         let push = GRAVITY * SLOPE.sin();
-        let rest = SPEED - momentum[0] * PHI.cos() - momentum[1] * PHI.sin();
+        let rest = SPEED - momentum[0] * HEADING.cos() - momentum[1] * HEADING.sin();
         Reference::Ode {
-            y: vec![PHI, OMEGA, 0.0, 0.0],
+            y: vec![HEADING, OMEGA, 0.0, 0.0],
             rates: Box::new(move |t, y, rates| {
                 let (sin, cos) = y[0].sin_cos();
                 let (px, py) = (momentum[0] + push * t, momentum[1]);

@@ -7,8 +7,7 @@ use crate::stability::question::Question;
 /// From here, at this speed, where it does not start at rest.
 const START: f64 = -1.0;
 const SPEED: f64 = 1.0;
-const DURATION: f64 = 3.0;
-const MASS: f64 = INERTIA[0];
+pub(super) const DURATION: f64 = 3.0;
 
 /// The disc in a potential `V(a)`, as text, rolling from `roll` at `speed`.
 fn disc(potential: &str, roll: f64, speed: f64) -> Disc {
@@ -18,10 +17,10 @@ fn disc(potential: &str, roll: f64, speed: f64) -> Disc {
 
 /// Over a hill or a well of this width around 0: `t = ∫ da/√(2(E − V)/M)`.
 fn across(width: f64, text: &str, potential: impl Fn(f64) -> f64 + Send + Sync + 'static) -> Vec<Question> {
-    let energy = MASS * SPEED * SPEED / 2.0 + potential(START);
+    let energy = INERTIA[0] * SPEED * SPEED / 2.0 + potential(START);
     let mut points: Vec<f64> = distances(width, -START).iter().rev().map(|d| -d).collect();
     points.extend(distances(width, 10.0).into_iter().skip(1));
-    let time = Integral::new(move |a| (MASS / 2.0 / (energy - potential(a))).sqrt(), points);
+    let time = Integral::new(move |a| (INERTIA[0] / 2.0 / (energy - potential(a))).sqrt(), points);
     disc(text, START, SPEED).straight(width, move |t| time.inverse(t))
 }
 
@@ -46,7 +45,8 @@ fn back(
     [width, turn, from]: [f64; 3],
     kinetic: impl Fn(f64) -> f64 + Send + Sync,
 ) -> impl Fn(f64) -> f64 + Send + Sync {
-    let time = Integral::new(move |q| 2.0 * q * (MASS / 2.0 / kinetic(q * q)).sqrt(), distances(width.sqrt(), 4.0));
+    let time =
+        Integral::new(move |q| 2.0 * q * (INERTIA[0] / 2.0 / kinetic(q * q)).sqrt(), distances(width.sqrt(), 4.0));
     let turned = time.at((turn - from).sqrt());
     move |t| turn - time.inverse((t - turned).abs()).powi(2)
 }
@@ -54,7 +54,7 @@ fn back(
 /// A wall `1.5 (1 + tanh(a/width))/2`, twice as high as the disc comes.
 pub(super) fn tanh(width: f64) -> Vec<Question> {
     let potential = move |a: f64| 0.75 * (1.0 + (a / width).tanh());
-    let energy = MASS * SPEED * SPEED / 2.0 + potential(START);
+    let energy = INERTIA[0] * SPEED * SPEED / 2.0 + potential(START);
     let turn = width * (energy / 0.75 - 1.0).atanh();
     // tanh x − tanh (x − y) = sinh y/(cosh x cosh (x − y))
     let kinetic = move |d: f64| {
@@ -68,7 +68,7 @@ pub(super) fn tanh(width: f64) -> Vec<Question> {
 
 /// A wall `e^(a/width)`.
 pub(super) fn exponential(width: f64) -> Vec<Question> {
-    let energy = MASS * SPEED * SPEED / 2.0 + (START / width).exp();
+    let energy = INERTIA[0] * SPEED * SPEED / 2.0 + (START / width).exp();
     let roll = back([width, width * energy.ln(), START], move |d| -energy * (-d / width).exp_m1());
     disc(&format!("exp(a/{width:?})"), START, SPEED).straight(width, roll)
 }
@@ -86,7 +86,7 @@ pub(super) fn valley(width: f64) -> Vec<Question> {
     let kinetic = move |d: f64| d * (2.0 * TOP - d) / (TOP.hypot(width) + (TOP - d).hypot(width));
     let bottom = TOP.sqrt();
     let points = distances(width / 2.0 / bottom, bottom).iter().rev().map(|d| bottom - d).collect();
-    let time = Integral::new(move |q: f64| 2.0 * q * (MASS / 2.0 / kinetic(q * q)).sqrt(), points);
+    let time = Integral::new(move |q: f64| 2.0 * q * (INERTIA[0] / 2.0 / kinetic(q * q)).sqrt(), points);
     let quarter = time.at(bottom);
     disc(&format!("sqrt(a^2 + {width:?}^2)"), TOP, 0.0).straight(width, move |t| {
         let quarters = (t / quarter).floor();
@@ -115,7 +115,7 @@ pub(super) fn kinks(width: f64) -> Vec<Question> {
         disc.turning(width, kind, move |t| {
             let [u, first] = [HEADING + RATE * t - 1.0, HEADING - 1.0];
             let way = twice[1](u, width) - twice[1](first, width) - twice[0](first, width) * (u - first);
-            [START + SPEED * t + way / RATE.powi(2) / MASS, HEADING + RATE * t]
+            [START + SPEED * t + way / RATE.powi(2) / INERTIA[0], HEADING + RATE * t]
         })
     };
     let root = format!("sqrt((b - 1)^2 + {width:?}^2)");
