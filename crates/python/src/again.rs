@@ -3,6 +3,7 @@
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyString};
+use stubs::stubbed;
 
 use crate::comparison::{Comparison, Growth, LeadingTerm, Pair, Run};
 use crate::connect::{Connection, Connections};
@@ -24,7 +25,7 @@ fn equations_again<'py>(state: &Bound<'py, PyDict>) -> PyResult<Bound<'py, PyAny
 }
 
 /// What a pickled or copied result is made from.
-#[pyfunction]
+#[stubbed]
 pub(crate) fn _again<'py>(name: &Bound<'py, PyString>, state: &Bound<'py, PyDict>) -> PyResult<Bound<'py, PyAny>> {
     macro_rules! among {
         ($($class:ident)*) => {

@@ -3,32 +3,20 @@
 use integrate::Interrupt;
 use mechanics::ConstantsRule;
 use motion::{Aim, Choice, Connections as Found, Settings, SolveError};
-use numpy::PyArrayDyn;
 use pyo3::prelude::*;
-use pyo3::types::{IntoPyDict, PyDict};
+use pyo3::types::IntoPyDict;
 use scene::Scene;
+use stubs::{answer, stubbed};
 
 use crate::arguments::Numbers;
 use crate::arrays::{Floats, fixed};
-use crate::pickled::answer;
 use crate::system::{Overrides, System};
 use crate::{arguments, background, errors};
 
-answer! {
-    Connections {
-        formulation: String,
-        unknowns: Vec<String>,
-        motions: Vec<Py<Connection>>,
-        starts: usize,
-        failures: Py<PyDict>,
-        runs: usize,
-        with_derivatives: usize,
-        every_constant: bool,
-        none: Option<String>,
-    }
-}
+#[answer]
+pub(crate) struct Connections;
 
-#[pymethods]
+#[stubbed]
 impl Connections {
     fn __len__(&self) -> usize {
         self.motions.len()
@@ -39,43 +27,18 @@ impl Connections {
     }
 }
 
-answer! {
-    Connection {
-        system: Py<System>,
-        unknowns: Py<PyDict>,
-        errors: Py<PyDict>,
-        constants: Py<PyArrayDyn<f64>>,
-        velocities: Py<PyArrayDyn<f64>>,
-        action: f64,
-        action_error: f64,
-        residuals: Py<PyDict>,
-        condition: f64,
-        is_isolated: bool,
-        conjugate_times: Option<Py<PyArrayDyn<f64>>>,
-        conjugate_errors: Option<Py<PyArrayDyn<f64>>>,
-        multiplicities: Option<Vec<usize>>,
-        is_minimum: Option<bool>,
-        second_variation: String,
-        starts: usize,
-        by_half: bool,
-    }
-}
+#[answer]
+pub(crate) struct Connection;
 
-#[pymethods]
+#[stubbed]
 impl Connection {
     fn __repr__(&self) -> String {
         format!("<deltaq.Connection, action {}>", self.action)
     }
 }
 
-#[pymethods]
+#[stubbed]
 impl System {
-    #[doc = doc!("System.connect")]
-    #[expect(clippy::too_many_arguments, reason = "named in Python, and most of them left out")]
-    #[pyo3(signature = (
-        to, at=None, formulation="vakonomic", *, removal=None, mu0=None, constants=None, starts=60, tolerance=1e-11,
-        threads=0
-    ))]
     fn connect(
         &self,
         py: Python<'_>,

@@ -5,13 +5,6 @@
 // `>>>` begins an example of Python
 #![allow(clippy::doc_lazy_continuation)]
 
-/// The docstring of a class, method or function, as the stubs have it.
-macro_rules! doc {
-    ($item:literal) => {
-        include_str!(concat!(env!("OUT_DIR"), "/", $item, ".txt"))
-    };
-}
-
 mod again;
 mod answer;
 mod arguments;

@@ -3,35 +3,18 @@
 use integrate::Interrupt;
 use linear::{LinearError, Part, find_steady, linearize, linearize_at};
 use motion::{Choice, Settings, setting};
-use numpy::{Complex64, PyArray1, PyArrayDyn};
+use numpy::{Complex64, PyArray1, PyArrayMethods};
 use pyo3::prelude::*;
-use pyo3::types::{IntoPyDict, PyDict};
+use pyo3::types::IntoPyDict;
 use scene::Scene;
+use stubs::{answer, stubbed};
 
 use crate::arrays::{fixed, read_only};
-use crate::pickled::answer;
 use crate::system::System;
 use crate::{arguments, background, errors};
 
-answer! {
-    Linearization {
-        form: String,
-        t: f64,
-        is_steady: bool,
-        states: Vec<String>,
-        values: Py<PyArrayDyn<f64>>,
-        carried: Py<PyDict>,
-        matrix: Py<PyArrayDyn<f64>>,
-        of: Vec<String>,
-        eigenvalues: Py<PyArray1<Complex64>>,
-        errors: Py<PyArrayDyn<f64>>,
-        zeros: usize,
-        zero_vectors: usize,
-        zero_error: f64,
-        unstable: usize,
-        growing: String,
-    }
-}
+#[answer]
+pub(crate) struct Linearization;
 
 fn linearized(
     mut scene: Scene,
@@ -90,7 +73,7 @@ impl Linearization {
             carried: found.carried.into_iter().map(|c| (c.name, c.rate)).into_py_dict(py)?.unbind(),
             matrix: fixed(py, found.matrix.transpose().as_slice().to_vec(), None, &[n, n])?.unbind(),
             states: found.states,
-            eigenvalues: read_only(PyArray1::from_vec(py, eigenvalues)).unbind(),
+            eigenvalues: read_only(PyArray1::from_vec(py, eigenvalues)).to_dyn().clone().unbind(),
             errors: fixed(py, moved, None, &[count])?.unbind(),
             zeros: part.zeros,
             zero_vectors: found.spectrum.zero_vectors,
@@ -101,7 +84,7 @@ impl Linearization {
     }
 }
 
-#[pymethods]
+#[stubbed]
 impl Linearization {
     fn __repr__(&self) -> String {
         let Linearization { form, t, of, zeros, growing, .. } = self;
@@ -109,36 +92,20 @@ impl Linearization {
     }
 }
 
-answer! {
-    LinearizationSweep {
-        system: Py<System>,
-        name: String,
-        values: Py<PyArrayDyn<f64>>,
-        asked: Py<PyArrayDyn<f64>>,
-        points: Vec<Py<Linearization>>,
-        changes: Vec<Py<StabilityChange>>,
-    }
-}
+#[answer]
+pub(crate) struct LinearizationSweep;
 
-answer! {
-    StabilityChange {
-        value: f64,
-        width: f64,
-        asked: f64,
-        below: usize,
-        above: usize,
-        frequency: f64,
-    }
-}
+#[answer]
+pub(crate) struct StabilityChange;
 
-#[pymethods]
+#[stubbed]
 impl StabilityChange {
     fn __repr__(&self) -> String {
         format!("<deltaq.StabilityChange at {}, unstable: {} to {}>", self.value, self.below, self.above)
     }
 }
 
-#[pymethods]
+#[stubbed]
 impl LinearizationSweep {
     fn __len__(&self) -> usize {
         self.points.len()

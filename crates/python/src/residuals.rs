@@ -7,6 +7,7 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 use scene::Scene;
+use stubs::stubbed;
 
 use crate::arguments::{Numbers, Table, unknown};
 use crate::arrays::{Array, Floats, array, finite, list};
@@ -15,17 +16,13 @@ use crate::shared::Shared;
 use crate::system::System;
 use crate::{arguments, errors};
 
-#[doc = doc!("Residuals")]
-#[pyclass(frozen, module = "deltaq")]
+#[stubbed]
 pub(crate) struct Residuals {
     model: Shared<Model>,
-    /// Names of the numbers p, length P.
     #[pyo3(get)]
     names: Vec<String>,
-    /// Names of the columns: coordinates ("x"), velocities ("x'"), multipliers and costates.
     #[pyo3(get)]
     columns: Vec<String>,
-    /// Residuals at times that a motion does not reach.
     #[pyo3(get)]
     penalty: f64,
     places: Vec<Place>,
@@ -136,10 +133,9 @@ impl Residuals {
     }
 }
 
-#[pymethods]
+#[stubbed]
 impl Residuals {
     /// The residuals for numbers p of shape (P,): shape (columns times k,), finite whatever p is.
-    #[pyo3(signature = (p))]
     fn __call__<'py>(&self, py: Python<'py>, p: Floats<'py>) -> Array<'py> {
         let reading = self.read(py, &p, |model, p| model.outputs(p))?;
         let mut values = Vec::with_capacity(self.count());
@@ -153,8 +149,6 @@ impl Residuals {
         array(py, values, None, &[count])
     }
 
-    #[doc = doc!("Residuals.jac")]
-    #[pyo3(signature = (p))]
     fn jac<'py>(&self, py: Python<'py>, p: Floats<'py>) -> Array<'py> {
         let reading = self.read(py, &p, |model, p| model.derivatives(p))?;
         let mut values = Vec::with_capacity(self.count() * self.names.len());
@@ -170,7 +164,6 @@ impl Residuals {
         array(py, values, None, &[count, width])
     }
 
-    /// Why the motion of the last call ended before the last time; None where it did not.
     #[getter]
     fn ended(&self) -> PyResult<Option<String>> {
         self.ended.copy()
@@ -190,14 +183,9 @@ impl Residuals {
     }
 }
 
-#[pymethods]
+#[stubbed]
 impl System {
     /// `residuals` of columns by name.
-    #[expect(clippy::too_many_arguments, reason = "named in Python, and most of them left out")]
-    #[pyo3(signature = (
-        names, times, data, formulation, *, sigma=None, removal=None, mu0=None, constants=None, method="auto",
-        tolerance=1e-11, max_steps=100_000, penalty=1e6
-    ))]
     fn _residuals(
         slf: &Bound<'_, Self>,
         names: Vec<String>,

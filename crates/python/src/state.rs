@@ -1,19 +1,11 @@
 //! A point of a motion.
 
-use numpy::PyArrayDyn;
-use pyo3::prelude::*;
+use stubs::{answer, stubbed};
 
-use crate::pickled::answer;
+#[answer]
+pub(crate) struct State;
 
-answer! {
-    State {
-        t: f64,
-        q: Py<PyArrayDyn<f64>>,
-        v: Py<PyArrayDyn<f64>>,
-    }
-}
-
-#[pymethods]
+#[stubbed]
 impl State {
     fn __repr__(&self) -> String {
         format!("<deltaq.State t={}, q={}, v={}>", self.t, self.q, self.v)

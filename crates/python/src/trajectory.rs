@@ -4,32 +4,21 @@ use std::time::Instant;
 
 use integrate::{Dense, Options, Status};
 use motion::{Prepared, SolveError};
-use numpy::PyArrayDyn;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
+use stubs::{answer, stubbed};
 
 use crate::arguments::Numbers;
 use crate::arrays::{Floats, fixed, list, times, within};
 use crate::ensemble::Instants;
 use crate::equations::Equations;
 use crate::motion::work;
-use crate::pickled::answer;
 use crate::{arguments, background, errors};
 
-answer! {
-    Trajectory {
-        times: Py<PyArrayDyn<f64>>,
-        states: Py<PyArrayDyn<f64>>,
-        reached: usize,
-        status: String,
-        cause: Option<String>,
-        work: Py<PyDict>,
-        seconds: f64,
-    }
-}
+#[answer]
+pub(crate) struct Trajectory;
 
-#[pymethods]
+#[stubbed]
 impl Trajectory {
     fn __repr__(&self) -> String {
         format!("<deltaq.Trajectory {}, {} s>", self.status, self.seconds)
@@ -67,11 +56,8 @@ fn started_from<T>(
     result
 }
 
-#[pymethods]
+#[stubbed]
 impl Equations {
-    #[doc = doc!("Equations.integrate")]
-    #[expect(clippy::too_many_arguments, reason = "named in Python, and most of them left out")]
-    #[pyo3(signature = (times, *, y0=None, t0=None, parameters=None, constants=None, mu0=None, method="auto", tolerance=1e-11, project=true, max_steps=1_000_000, max_step=None, time_limit=None))]
     fn integrate(
         &self,
         py: Python<'_>,
