@@ -97,7 +97,7 @@ mod sizes;
 mod start;
 mod transport;
 
-pub use certificate::{Certificate, Images};
+pub use certificate::{Certificate, Images, ImagesOfExponents};
 pub use curve::{Curve, Dynamics, Flow, Known, Point};
 pub use decide::{AffineSet, Decision, DecisionSettings, Verdict, decide, decide_flow};
 pub use error::DecisionError;
@@ -105,7 +105,7 @@ pub use exact::Flaw;
 pub use family::Family;
 pub use leading::LeadingDifference;
 pub use order_by_order::NoSeries;
-pub use plain_scene::PlainScene;
+pub use plain_scene::{Formulas, PlainScene};
 pub use proof::{Finding, NoConstants, Proof, Question};
 pub use random_start::at_random;
 pub use section::Section;

@@ -17,7 +17,7 @@ use crate::arrays::{Array, Floats, States, array, list};
 use crate::at_run_time::AtRunTime;
 use crate::background::apart;
 use crate::outputs::{Names, Outputs, observed};
-use crate::pickled::Reduced;
+use crate::pickled::partial;
 use crate::shared::Shared;
 use crate::system::System;
 use crate::{arguments, background, errors};
@@ -266,15 +266,15 @@ impl Equations {
         array(py, places.into_iter().map(|i| rates[i]).collect(), None, &[self.dimension])
     }
 
-    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Reduced<'py>> {
+    /// They are derived again.
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<(Bound<'py, PyAny>, ())> {
         let (py, Equations { system, formulation, removal, .. }) = (slf.py(), slf.get());
         let given = slf.get().at_run_time.scene_and_choice()?.1.constants;
-        let state = PyDict::new(py);
-        state.set_item("system", system)?;
-        state.set_item("formulation", formulation)?;
-        state.set_item("removal", removal)?;
-        state.set_item("constants", arguments::rule_value(py, &given)?)?;
-        Ok((py.import("deltaq")?.getattr("_again")?, ("Equations", state)))
+        let options = PyDict::new(py);
+        options.set_item("formulation", formulation)?;
+        options.set_item("removal", removal)?;
+        options.set_item("constants", arguments::rule_value(py, &given)?)?;
+        Ok((partial(system.bind(py).getattr("equations")?, &options)?, ()))
     }
 
     fn _repr_latex_(&self) -> PyResult<String> {

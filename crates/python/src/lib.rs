@@ -5,7 +5,6 @@
 // `>>>` begins an example of Python
 #![allow(clippy::doc_lazy_continuation)]
 
-mod again;
 mod answer;
 mod arguments;
 mod arrays;
@@ -38,7 +37,6 @@ mod trajectory;
 mod _native {
     #[pymodule_export]
     use crate::{
-        again::_again,
         comparison::{Comparison, Growth, LeadingTerm, Pair, Run},
         connect::{Connection, Connections},
         ensemble::Ensemble,

@@ -16,7 +16,6 @@ use crate::arguments::rule_value;
 use crate::arrays::{Floats, columns, fixed, times, within};
 use crate::ensemble::Instants;
 use crate::outputs::{Names, Outputs, Row, observed};
-use crate::pickled::Pickled;
 use crate::shared::Shared;
 use crate::system::System;
 use crate::{errors, sensitivities};
@@ -227,7 +226,7 @@ impl Motion {
 
     /// The motion with these fields, read off as this one is.
     fn _with(&self, state: &Bound<'_, PyDict>) -> PyResult<Motion> {
-        Ok(Motion { motion: self.motion.clone(), ..Motion::again(state)? })
+        Ok(Motion { motion: self.motion.clone(), ..Motion::_again(&state.py().get_type::<Motion>(), state)? })
     }
 
     fn __repr__(&self) -> String {

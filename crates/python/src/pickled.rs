@@ -6,18 +6,18 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 /// What `__reduce__` gives: a function and its arguments.
-pub(crate) type Reduced<'py> = (Bound<'py, PyAny>, (&'static str, Bound<'py, PyDict>));
+pub(crate) type Reduced<'py> = (Bound<'py, PyAny>, (Bound<'py, PyDict>,));
 
 /// A result by its fields, as Python reads them.
-pub(crate) fn reduced<'py>(of: &Bound<'py, PyAny>, class: &'static str, fields: &[&str]) -> PyResult<Reduced<'py>> {
+pub(crate) fn reduced<'py>(of: &Bound<'py, PyAny>, fields: &[&str]) -> PyResult<Reduced<'py>> {
     let state = PyDict::new(of.py());
     fields.iter().try_for_each(|field| state.set_item(field, of.getattr(*field)?))?;
-    Ok((of.py().import("deltaq")?.getattr("_again")?, (class, state)))
+    Ok((of.get_type().getattr("_again")?, (state,)))
 }
 
-/// A class that is read again from its fields.
-pub(crate) trait Pickled: Sized {
-    fn again(state: &Bound<'_, PyDict>) -> PyResult<Self>;
+/// `call(*arguments, **options)` without the arguments.
+pub(crate) fn partial<'py>(call: Bound<'py, PyAny>, options: &Bound<'py, PyDict>) -> PyResult<Bound<'py, PyAny>> {
+    call.py().import("functools")?.getattr("partial")?.call((call,), Some(options))
 }
 
 /// The field of that name.

@@ -12,6 +12,7 @@ use stubs::stubbed;
 use crate::arguments::{Numbers, Table, unknown};
 use crate::arrays::{Array, Floats, array, finite, list};
 use crate::background::whole;
+use crate::pickled::partial;
 use crate::shared::Shared;
 use crate::system::System;
 use crate::{arguments, errors};
@@ -227,9 +228,4 @@ impl System {
         let asked = (names, &times[..], data);
         Residuals::new((&scene, &choice), asked, sigma, penalty, &settings, (call, positional.unbind()))
     }
-}
-
-/// `call(*arguments, **options)` without the arguments.
-fn partial<'py>(method: Bound<'py, PyAny>, options: &Bound<'py, PyDict>) -> PyResult<Bound<'py, PyAny>> {
-    method.py().import("functools")?.getattr("partial")?.call((method,), Some(options))
 }

@@ -99,6 +99,36 @@ impl System {
     }
 }
 
+/// What Python reads off the scene.
+macro_rules! read_off {
+    ($scene:ident: $($name:ident: $kind:ty = $value:expr;)*) => {
+        #[stubbed]
+        impl System {
+            $(
+                #[getter]
+                pub(crate) fn $name(&self) -> PyResult<$kind> {
+                    self.scene.with(|$scene| $value)
+                }
+            )*
+        }
+    };
+}
+
+read_off! { scene:
+    name: String = scene.name.clone();
+    title: String = scene.title.clone();
+    source: String = scene.source.clone();
+    notes: String = scene.notes.clone();
+    coordinates: Vec<String> = scene.system.coordinates.iter().map(|c| c.name.clone()).collect();
+    dimension: usize = scene.system.dimension();
+    lagrangian: String = scene.system.graph.plain(scene.system.lagrangian);
+    constraints: Vec<String> = scene.system.constraints.iter().map(|&f| scene.system.graph.plain(f)).collect();
+    r#virtual: Vec<String> = scene.system.virtual_conditions.iter().map(|&w| scene.system.graph.plain(w)).collect();
+    multipliers: Vec<f64> = scene.multipliers.clone();
+    duration: f64 = scene.duration;
+    breakpoints: Vec<f64> = scene.system.breakpoints.clone();
+}
+
 #[stubbed]
 impl System {
     #[new]
@@ -160,60 +190,14 @@ impl System {
     }
 
     #[getter]
-    pub(crate) fn name(&self) -> PyResult<String> {
-        self.scene.with(|scene| scene.name.clone())
-    }
-
-    #[getter]
-    fn title(&self) -> PyResult<String> {
-        self.scene.with(|scene| scene.title.clone())
-    }
-
-    #[getter]
-    fn source(&self) -> PyResult<String> {
-        self.scene.with(|scene| scene.source.clone())
-    }
-
-    #[getter]
-    fn notes(&self) -> PyResult<String> {
-        self.scene.with(|scene| scene.notes.clone())
-    }
-
-    #[getter]
-    fn coordinates(&self) -> PyResult<Vec<String>> {
-        self.scene.with(|scene| scene.system.coordinates.iter().map(|c| c.name.clone()).collect())
-    }
-
-    #[getter]
     fn units<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         self.scene()?.system.coordinates.iter().map(|c| (&c.name, &c.unit)).into_py_dict(py)
-    }
-
-    #[getter]
-    fn dimension(&self) -> PyResult<usize> {
-        self.scene.with(|scene| scene.system.dimension())
     }
 
     #[getter]
     pub(crate) fn parameters<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let scene = self.scene()?;
         scene.system.parameters.iter().map(|p| (scene.system.graph.name(p.symbol), p.value)).into_py_dict(py)
-    }
-
-    #[getter]
-    fn lagrangian(&self) -> PyResult<String> {
-        self.scene.with(|scene| scene.system.graph.plain(scene.system.lagrangian))
-    }
-
-    #[getter]
-    fn constraints(&self) -> PyResult<Vec<String>> {
-        self.scene.with(|Scene { system, .. }| system.constraints.iter().map(|&f| system.graph.plain(f)).collect())
-    }
-
-    #[getter]
-    fn r#virtual(&self) -> PyResult<Vec<String>> {
-        self.scene
-            .with(|Scene { system, .. }| system.virtual_conditions.iter().map(|&w| system.graph.plain(w)).collect())
     }
 
     #[getter]
@@ -255,21 +239,6 @@ impl System {
         let mechanics::State { t, q, v } = self.scene.with(|scene| scene.start.clone())?;
         let n = q.len();
         Ok(State { t, q: fixed(py, q, None, &[n])?.unbind(), v: fixed(py, v, None, &[n])?.unbind() })
-    }
-
-    #[getter]
-    fn multipliers(&self) -> PyResult<Vec<f64>> {
-        self.scene.with(|scene| scene.multipliers.clone())
-    }
-
-    #[getter]
-    fn duration(&self) -> PyResult<f64> {
-        self.scene.with(|scene| scene.duration)
-    }
-
-    #[getter]
-    fn breakpoints(&self) -> PyResult<Vec<f64>> {
-        self.scene.with(|scene| scene.system.breakpoints.clone())
     }
 
     #[getter]

@@ -115,12 +115,14 @@ fn filled(mut class: ItemStruct, stub: &Stub) -> Result<Tokens> {
         #[pyo3::pymethods]
         impl #ident {
             fn __reduce__<'py>(slf: &pyo3::Bound<'py, Self>) -> pyo3::PyResult<crate::pickled::Reduced<'py>> {
-                crate::pickled::reduced(slf.as_any(), #name, &[#(#names),*])
+                crate::pickled::reduced(slf.as_any(), &[#(#names),*])
             }
-        }
 
-        impl crate::pickled::Pickled for #ident {
-            fn again(state: &pyo3::Bound<'_, pyo3::types::PyDict>) -> pyo3::PyResult<Self> {
+            #[classmethod]
+            fn _again(
+                _class: &pyo3::Bound<'_, pyo3::types::PyType>,
+                state: &pyo3::Bound<'_, pyo3::types::PyDict>,
+            ) -> pyo3::PyResult<Self> {
                 Ok(#ident { #(#fields: crate::pickled::field(state, #names)?,)* #(#own: Default::default(),)* })
             }
         }

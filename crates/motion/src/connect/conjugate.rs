@@ -10,11 +10,12 @@ use crate::SolveError;
 use crate::band::SAMPLES;
 
 /// A time conjugate to the start of a motion.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, schemars::JsonSchema)]
 pub struct ConjugateTime {
     /// When.
     pub t: f64,
     /// What two runs differ by; infinite where the looser one has it not.
+    #[schemars(with = "Option<f64>")]
     pub error: f64,
     /// By how much the rank of `∂q(t)/∂x` falls.
     pub multiplicity: usize,
