@@ -8,22 +8,14 @@ use pyo3::types::PyDict;
 use scene::Scene;
 use stubs::{answer, stubbed};
 
-use crate::arrays::fixed;
+use crate::arrays::vector;
 use crate::errors;
 use crate::families::{Decided, Fit};
 use crate::motion::{Asked, Motion, Sampled};
 use crate::system::System;
 
-#[answer]
+#[answer("<deltaq.Growth {length:.3e} t^{exponent:.2}, exponent within {uncertainty:.0e}>")]
 pub(crate) struct Growth;
-
-#[stubbed]
-impl Growth {
-    fn __repr__(&self) -> String {
-        let Growth { exponent, uncertainty, length, .. } = self;
-        format!("<deltaq.Growth {length:.3e} t^{exponent:.2}, exponent within {uncertainty:.0e}>")
-    }
-}
 
 #[answer]
 pub(crate) struct LeadingTerm;
@@ -36,16 +28,8 @@ impl LeadingTerm {
     }
 }
 
-#[answer]
+#[answer("<deltaq.Pair {first} - {second}: {verdict}, largest gap {largest_gap:.3e}>")]
 pub(crate) struct Pair;
-
-#[stubbed]
-impl Pair {
-    fn __repr__(&self) -> String {
-        let Pair { first, second, verdict, largest_gap, .. } = self;
-        format!("<deltaq.Pair {first} - {second}: {verdict}, largest gap {largest_gap:.3e}>")
-    }
-}
 
 #[answer]
 pub(crate) struct Run;
@@ -92,10 +76,6 @@ impl Comparison {
         let Compared { scene, settings, integrability, runs, pairs, fits, decided, contradictions } = compared;
         let labels: Vec<String> = runs.iter().map(|r| identifier(&r.0)).collect();
         let names: Vec<&str> = scene.system.coordinates.iter().map(|c| c.name.as_str()).collect();
-        let vector = |values: Vec<f64>| {
-            let count = Some(values.len());
-            fixed(py, values, count, &[]).map(Bound::unbind)
-        };
         let pair = |p: comparison::Pair| -> PyResult<Py<Pair>> {
             let (verdict, because) = words(&p.gap);
             let (tau, by_coordinate) = (PyDict::new(py), PyDict::new(py));
@@ -107,13 +87,13 @@ impl Comparison {
             }
             let growth = p.growth.map(|g| -> PyResult<Py<Growth>> {
                 let (exponent, uncertainty, length) = (g.exponent, g.uncertainty, g.length);
-                Py::new(py, Growth { exponent, uncertainty, length, coefficient: vector(g.coefficient)? })
+                Py::new(py, Growth { exponent, uncertainty, length, coefficient: vector(py, g.coefficient)? })
             });
             let predicted = p.predicted.map(|term| -> PyResult<Py<LeadingTerm>> {
                 let (exponent, length, proved) = (term.exponent as usize, term.length, term.proved);
-                Py::new(py, LeadingTerm { exponent, length, proved, coefficient: vector(term.coefficient)? })
+                Py::new(py, LeadingTerm { exponent, length, proved, coefficient: vector(py, term.coefficient)? })
             });
-            let samples = |pick: fn(&comparison::GapPoint) -> f64| vector(p.gap.points.iter().map(pick).collect());
+            let samples = |pick: fn(&comparison::GapPoint) -> f64| vector(py, p.gap.points.iter().map(pick).collect());
             let pair = Pair {
                 first: labels[p.first].clone(),
                 second: labels[p.second].clone(),

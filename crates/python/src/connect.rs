@@ -9,7 +9,7 @@ use scene::Scene;
 use stubs::{answer, stubbed};
 
 use crate::arguments::Numbers;
-use crate::arrays::{Floats, fixed};
+use crate::arrays::{Floats, vector};
 use crate::system::{Overrides, System};
 use crate::{arguments, background, errors};
 
@@ -27,15 +27,8 @@ impl Connections {
     }
 }
 
-#[answer]
+#[answer("<deltaq.Connection, action {action}>")]
 pub(crate) struct Connection;
-
-#[stubbed]
-impl Connection {
-    fn __repr__(&self) -> String {
-        format!("<deltaq.Connection, action {}>", self.action)
-    }
-}
 
 #[stubbed]
 impl System {
@@ -99,10 +92,6 @@ fn one(
     motion: motion::Connection,
 ) -> PyResult<Connection> {
     let named = |values: &[f64]| unknowns.iter().zip(values.iter().copied()).into_py_dict(py).map(Bound::unbind);
-    let vector = |values: Vec<f64>| {
-        let count = values.len();
-        fixed(py, values, None, &[count]).map(Bound::unbind)
-    };
     let mut own = Scene { start: motion.start.clone(), duration: aim.t - scene.start.t, ..scene.clone() };
     let constants = motion.motion.constants.clone();
     if constants.len() == own.multipliers.len() {
@@ -114,7 +103,7 @@ fn one(
     let system = System::read(py, (&scene.name, None), own.to_toml(), Overrides::new())?;
     let times = motion.conjugate.as_ref();
     let column = |pick: fn(&motion::ConjugateTime) -> f64| {
-        times.map(|times| vector(times.iter().map(pick).collect())).transpose()
+        times.map(|times| vector(py, times.iter().map(pick).collect())).transpose()
     };
     Ok(Connection {
         system: Py::new(py, system)?,
@@ -124,8 +113,8 @@ fn one(
         conjugate_errors: column(|time| time.error)?,
         multiplicities: times.map(|times| times.iter().map(|time| time.multiplicity).collect()),
         is_isolated: motion.is_isolated(),
-        constants: vector(constants)?,
-        velocities: vector(motion.start.v)?,
+        constants: vector(py, constants)?,
+        velocities: vector(py, motion.start.v)?,
         action: motion.action[0],
         action_error: motion.action[1],
         residuals: aim.to.iter().map(|(name, _)| name).zip(motion.residuals).into_py_dict(py)?.unbind(),

@@ -11,7 +11,7 @@ use pyo3::types::PyDict;
 use scene::Scene;
 use stubs::{answer, stubbed};
 
-use crate::arrays::{Floats, fixed, list, times, within};
+use crate::arrays::{Floats, fixed, list, times, vector, within};
 use crate::system::System;
 
 /// What varies over the members of an ensemble: names, each with as many values as there are members.
@@ -215,7 +215,7 @@ impl Ensemble {
         let cube = |cube: Cube| fixed(py, cube.values, Some(m), &tail(cube.width)).map(Bound::unbind);
         let varied = PyDict::new(py);
         for (name, values) in values {
-            varied.set_item(name, fixed(py, values, Some(m), &[])?)?;
+            varied.set_item(name, vector(py, values)?)?;
         }
         Ok(Ensemble {
             system: system.clone().unbind(),
@@ -228,8 +228,8 @@ impl Ensemble {
             velocities: cube(done.velocities)?,
             multipliers: done.multipliers.1.columns(py, &done.multipliers.0, k)?.unbind(),
             invariants: done.invariants.1.columns(py, &done.invariants.0, k)?.unbind(),
-            error_estimate: fixed(py, done.error_estimate, Some(m), &[])?.unbind(),
-            relative_error_estimate: fixed(py, done.relative_error_estimate, Some(m), &[])?.unbind(),
+            error_estimate: vector(py, done.error_estimate)?,
+            relative_error_estimate: vector(py, done.relative_error_estimate)?,
             status: done.status,
             cause: done.cause,
             reached: done.reached,

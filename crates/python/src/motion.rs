@@ -104,7 +104,7 @@ impl Asked<'_> {
     }
 }
 
-#[answer]
+#[answer("<deltaq.Motion {formulation}, t = {start} to {end}, {status}, error estimate {error_estimate:.1e}>")]
 pub(crate) struct Motion {
     /// None of one that was pickled, until it is read off.
     motion: OnceLock<Arc<Integrated>>,
@@ -227,10 +227,5 @@ impl Motion {
     /// The motion with these fields, read off as this one is.
     fn _with(&self, state: &Bound<'_, PyDict>) -> PyResult<Motion> {
         Ok(Motion { motion: self.motion.clone(), ..Motion::_again(&state.py().get_type::<Motion>(), state)? })
-    }
-
-    fn __repr__(&self) -> String {
-        let Motion { formulation, start, end, status, error_estimate, .. } = self;
-        format!("<deltaq.Motion {formulation}, t = {start} to {end}, {status}, error estimate {error_estimate:.1e}>")
     }
 }

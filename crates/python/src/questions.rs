@@ -170,8 +170,8 @@ impl System {
         let py = slf.py();
         let named = |names: Vec<String>| names.iter().map(|name| arguments::formulation(name)).collect();
         let only: Option<Vec<&Formulation>> = formulations.map(named).transpose()?;
-        let extent = arguments::extent(extent)?;
-        let fits = match arguments::fits(fits)? {
+        let extent = arguments::among("extent", extent, &arguments::EXTENTS)?;
+        let fits = match arguments::among("fits", fits, &arguments::FITS)? {
             // what is not decided on is not searched for
             Fits::Undecided if !decision || extent == Extent::Gaps => Fits::None,
             fits => fits,

@@ -1,13 +1,6 @@
 //! A point of a motion.
 
-use stubs::{answer, stubbed};
+use stubs::answer;
 
-#[answer]
+#[answer("<deltaq.State t={t}, q={q}, v={v}>")]
 pub(crate) struct State;
-
-#[stubbed]
-impl State {
-    fn __repr__(&self) -> String {
-        format!("<deltaq.State t={}, q={}, v={}>", self.t, self.q, self.v)
-    }
-}

@@ -14,7 +14,7 @@ use stubs::stubbed;
 use symbolic::{work_on, worked_on};
 
 use crate::arguments::{Numbers, Table, unknown};
-use crate::arrays::{Array, Floats, Points, array, fixed};
+use crate::arrays::{Array, Floats, Points, array, vector};
 use crate::background::apart;
 use crate::scene_text::{Arguments, Formula, Formulas, write};
 use crate::shared::Shared;
@@ -237,8 +237,7 @@ impl System {
     #[getter]
     fn start(&self, py: Python<'_>) -> PyResult<State> {
         let mechanics::State { t, q, v } = self.scene.with(|scene| scene.start.clone())?;
-        let n = q.len();
-        Ok(State { t, q: fixed(py, q, None, &[n])?.unbind(), v: fixed(py, v, None, &[n])?.unbind() })
+        Ok(State { t, q: vector(py, q)?, v: vector(py, v)? })
     }
 
     #[getter]

@@ -15,15 +15,8 @@ use crate::equations::Equations;
 use crate::motion::work;
 use crate::{arguments, background, errors};
 
-#[answer]
+#[answer("<deltaq.Trajectory {status}, {seconds} s>")]
 pub(crate) struct Trajectory;
-
-#[stubbed]
-impl Trajectory {
-    fn __repr__(&self) -> String {
-        format!("<deltaq.Trajectory {}, {} s>", self.status, self.seconds)
-    }
-}
 
 /// The time of y0: `t0` or the first of `instants`, which then must not be all there is.
 fn start_of(instants: &Floats<'_>, t0: Option<f64>) -> PyResult<f64> {

@@ -8,7 +8,9 @@ use proc_macro::TokenStream;
 use proc_macro2::TokenStream as Tokens;
 use quote::{ToTokens, format_ident, quote};
 use syn::spanned::Spanned;
-use syn::{Attribute, Error, Fields, ImplItem, ImplItemFn, Item, ItemStruct, Result, Type, parse_quote, parse_str};
+use syn::{
+    Attribute, Error, Fields, ImplItem, ImplItemFn, Item, ItemStruct, LitStr, Result, Type, parse_quote, parse_str,
+};
 
 use stub::{Stub, rust, signature};
 
@@ -20,10 +22,12 @@ pub fn stubbed(_: TokenStream, item: TokenStream) -> TokenStream {
 }
 
 /// A class of fields that Python reads, those of the stubs, by which it is pickled: `#[answer] struct State;`.
-/// What Rust adds as a field has its default value when it is read again.
+/// What Rust adds as a field has its default value when it is read again. `#[answer("<deltaq.State t={t}>")]`
+/// says how it is printed.
 #[proc_macro_attribute]
-pub fn answer(_: TokenStream, item: TokenStream) -> TokenStream {
-    made(syn::parse(item).and_then(|item| with_stub(|stub| filled(item, stub))))
+pub fn answer(printed: TokenStream, item: TokenStream) -> TokenStream {
+    let printed = syn::parse::<Option<LitStr>>(printed);
+    made(printed.and_then(|printed| with_stub(|stub| filled(syn::parse(item)?, printed, stub))))
 }
 
 fn made(item: Result<Tokens>) -> TokenStream {
@@ -95,7 +99,7 @@ fn described(item: Item, stub: &Stub) -> Result<Tokens> {
     }
 }
 
-fn filled(mut class: ItemStruct, stub: &Stub) -> Result<Tokens> {
+fn filled(mut class: ItemStruct, printed: Option<LitStr>, stub: &Stub) -> Result<Tokens> {
     let (ident, name) = (class.ident.clone(), class.ident.to_string());
     let own: Vec<_> = class.fields.iter().map(|field| field.ident.clone()).collect();
     let (names, kinds): (Vec<&str>, Vec<&str>) = stub.fields(&name).unzip();
@@ -105,6 +109,15 @@ fn filled(mut class: ItemStruct, stub: &Stub) -> Result<Tokens> {
     class.fields = Fields::Named(parse_quote!({ #(#[pyo3(get)] pub(crate) #fields: #kinds,)* #(#more,)* }));
     class.semi_token = None;
     let class = described(Item::Struct(class), stub)?;
+    let printed = printed.map(|text| {
+        let all = text.value();
+        let is_shown = |name: &&&str| all.contains(&format!("{{{name}}}")) || all.contains(&format!("{{{name}:"));
+        let shown = names.iter().filter(is_shown).map(|name| format_ident!("{name}"));
+        quote!(fn __repr__(&self) -> String {
+            let #ident { #(#shown,)* .. } = self;
+            format!(#text)
+        })
+    });
     // the module is compiled again where the stubs change
     let file = stub.file.to_string_lossy();
     Ok(quote! {
@@ -117,6 +130,8 @@ fn filled(mut class: ItemStruct, stub: &Stub) -> Result<Tokens> {
             fn __reduce__<'py>(slf: &pyo3::Bound<'py, Self>) -> pyo3::PyResult<crate::pickled::Reduced<'py>> {
                 crate::pickled::reduced(slf.as_any(), &[#(#names),*])
             }
+
+            #printed
 
             #[classmethod]
             fn _again(
