@@ -107,7 +107,7 @@ pub use leading::LeadingDifference;
 pub use order_by_order::NoSeries;
 pub use plain_scene::{Formulas, PlainScene};
 pub use proof::{Finding, NoConstants, Proof, Question};
-pub use random_start::at_random;
+pub use random_start::{at_random, random_integer};
 pub use section::Section;
 pub use series::{CurveSeries, SeriesStart};
 pub use sizes::CERTAINTY;
