@@ -30,6 +30,19 @@ pub fn answer(printed: TokenStream, item: TokenStream) -> TokenStream {
     made(printed.and_then(|printed| with_stub(|stub| filled(syn::parse(item)?, printed, stub))))
 }
 
+/// The exceptions of the stubs, those with two bases left out.
+#[proc_macro]
+pub fn exceptions(_: TokenStream) -> TokenStream {
+    made(with_stub(|stub| {
+        let one = |(name, base, doc): (&str, &str, &str)| {
+            let base = if base == "Exception" { "PyException" } else { base };
+            let (name, base) = (format_ident!("{name}"), format_ident!("{base}"));
+            quote!(pyo3::create_exception!(deltaq, #name, #base, #doc);)
+        };
+        Ok(stub.exceptions().map(one).collect())
+    }))
+}
+
 fn made(item: Result<Tokens>) -> TokenStream {
     item.unwrap_or_else(|error| error.to_compile_error()).into()
 }

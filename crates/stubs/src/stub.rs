@@ -13,7 +13,7 @@ pub(crate) struct Entry {
     pub(crate) name: String,
     /// Its docstring, or what stands below an attribute; empty where there is none.
     pub(crate) doc: String,
-    /// Parameters of a function with types and defaults; the type of an attribute.
+    /// Parameters of a function with types and defaults; the type of an attribute; `(BASE):` of a class.
     pub(crate) said: String,
 }
 
@@ -34,6 +34,14 @@ impl Stub {
 
     pub(crate) fn entry(&self, name: &str) -> Option<&Entry> {
         self.entries.iter().find(|entry| entry.name == name)
+    }
+
+    /// Exceptions that have one base: name, base and docstring.
+    pub(crate) fn exceptions(&self) -> impl Iterator<Item = (&str, &str, &str)> {
+        self.entries.iter().filter_map(|Entry { name, doc, said }| {
+            let base = said.strip_prefix('(')?.strip_suffix("):")?;
+            (!base.contains(',')).then_some((name.as_str(), base, doc.as_str()))
+        })
     }
 
     /// Attributes of a class that can only be read, and their types.
@@ -72,7 +80,7 @@ fn entries(text: &str) -> Vec<Entry> {
         let (name, rest) = named.split_at(end);
         let said = match function {
             Some(_) => rest.rsplit_once(" -> ").map_or(rest, |(arguments, _)| arguments),
-            None => rest.strip_prefix(": ").unwrap_or_default(),
+            None => rest.strip_prefix(": ").unwrap_or(rest),
         };
         let name = match (name, indent) {
             ("", _) => continue,
