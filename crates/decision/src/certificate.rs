@@ -1,7 +1,9 @@
 //! Certificates: proofs that others can check.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
+use schemars::JsonSchema;
+use serde::Serialize;
 use symbolic::Evaluator;
 use symbolic::limits::PRIMES;
 
@@ -20,42 +22,53 @@ use crate::start::ExactStart;
 /// With `μ = μ₀ + μ₁ s + …` the powers `s⁰ … s^K` of `Aᵀ μ̇ + (Ȧᵀ − f_qᵀ) μ = −E` are linear equations
 /// `S x = b` for `x = (μ₀, …, μ_{K+1})`. Some of their rows make `[S | −b]` a square matrix whose determinant
 /// modulo `p` is not zero. Numbers are in `0..p`.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, JsonSchema)]
 pub struct Certificate {
     /// The system and the start.
+    #[serde(skip)]
     pub scene: PlainScene,
-    /// Whether it is any start, and none but those of the scene are claimed of almost every one.
-    pub almost_every_start: bool,
     /// What numbers go to.
+    #[serde(skip)]
     pub images: Images,
+    /// Whether the start stands for almost every one; it is then not the scene file's.
+    pub almost_every_start: bool,
     /// `K`.
     pub order: usize,
-    /// Rows of `[S | −b]`, each as a power of `s` and the number of a coordinate, from 0.
+    /// Order and coordinate of each row of `[S | −b]`, from 0.
     pub rows: Vec<(usize, usize)>,
     /// Their determinant, not zero.
     pub minor: u64,
     /// What was divided by, with its image, not zero.
-    pub divided_by: Vec<(String, u64)>,
+    pub divided_by: BTreeMap<String, u64>,
     /// Given velocities that are solved from the constraints, which their decimals miss by round-off.
     pub completed: Vec<String>,
-    /// Coefficients `0 … K + 2` of every coordinate along the motion.
-    pub motion: Vec<(String, Vec<u64>)>,
+    /// Taylor coefficients `0 … K + 2` by coordinate, along the motion.
+    pub motion: BTreeMap<String, Vec<u64>>,
     /// Coefficients `0 … K` of the h reactions `λ`.
     pub reactions: Vec<Vec<u64>>,
 }
 
 /// What numbers go to in the field of a certificate.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, JsonSchema)]
 pub struct Images {
     /// `p`.
     pub prime: u64,
     /// `M` and the image of `e^{2πi/M}`.
     pub unity: (u64, u64),
-    /// A prime `r`, and images of `e^i` and `e` of this order: those of `e^{ia}` and `e^a` for a fraction
-    /// `a`.
-    pub exponents: (u64, u64, u64),
+    /// Of `e^{ia}` and `e^a` for a fraction `a`.
+    pub exponents: ImagesOfExponents,
     /// Images of the roots of primes that are used.
-    pub roots: Vec<(String, u64)>,
+    pub roots: BTreeMap<String, u64>,
+}
+
+/// Images of `e^i` and `e`, and a prime `r`, the power of both that is 1.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, JsonSchema)]
+#[expect(missing_docs, reason = "said above")]
+pub struct ImagesOfExponents {
+    pub order: u64,
+    #[serde(rename = "e^i")]
+    pub circle: u64,
+    pub e: u64,
 }
 
 impl Images {
@@ -72,10 +85,11 @@ impl Images {
         let rest = vec![Jet::constant(Modular::ZERO, None); n];
         let numbers = [&point.parameters[..], &[point.time], &point.positions, &point.velocities, &rest].concat();
         let mut evaluator = Evaluator::<Jet<Modular>>::new(program.clone());
+        let (order, circle, e) = Modular::exponents();
         Ok(Images {
             prime: Modular::prime(),
             unity: (2 * PARTS as u64, Modular::root_of_unity(1).value()),
-            exponents: Modular::exponents(),
+            exponents: ImagesOfExponents { order, circle, e },
             roots: roots(evaluator.evaluate(&numbers).iter().filter_map(Jet::exact)),
         })
     }
@@ -85,7 +99,7 @@ impl Images {
 const SEED: u64 = 0x5eed_0001;
 
 /// The primes under roots of these fractions, with the images of their roots.
-fn roots(radicands: impl Iterator<Item = Exact>) -> Vec<(String, u64)> {
+fn roots(radicands: impl Iterator<Item = Exact>) -> BTreeMap<String, u64> {
     let mut primes = BTreeSet::new();
     for x in radicands.filter(|x| x.is_rational()) {
         let (n, d, twos, fives) = x.fraction.parts();
@@ -197,10 +211,10 @@ impl Question<'_> {
         let matrix: Vec<Modular> =
             (0..h).flat_map(|i| open.iter().map(move |j| i * n + j)).map(|at| jacobian[at]).collect();
         let (_, supplied) = inverse(&matrix, open.len(), one).ok_or("the start is not unique")?;
-        let mut divided_by = vec![
+        let mut divided_by = BTreeMap::from([
             ("equations of motion".to_owned(), curve.determinant.value()),
             ("constraints at the start".to_owned(), supplied.value()),
-        ];
+        ]);
         let divisors = order(Evaluator::<Jet<Modular>>::new(self.denominators.clone()).evaluate(&curve.inputs), 0);
         divided_by.extend(self.divisors.iter().cloned().zip(divisors.iter().map(|x| x.value())));
         let coordinates = curve.inputs.len() - 3 * n;
@@ -208,8 +222,8 @@ impl Question<'_> {
         let scene = PlainScene::new(start, exact, open, at_random)?;
         Ok(Certificate {
             scene,
-            almost_every_start: false,
             images: Images::at(start, exact)?,
+            almost_every_start: false,
             order: last,
             rows,
             minor: minor.value(),

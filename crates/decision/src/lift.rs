@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use equations::Equations;
+use mechanics::elimination::{eliminate, largest, open};
 use mechanics::{Removal, RemovalStart, State, System, complete_removal_start};
 use symbolic::{Evaluator, Expr, Scalar, Symbol, Tape};
 
@@ -162,17 +163,9 @@ impl Lift {
 
 /// Rows of a matrix of `columns` columns by which it has full rank; fewer where it has not.
 fn independent_rows<C: Coefficient>(matrix: &[C], columns: usize) -> Vec<usize> {
-    let mut rows: Vec<(usize, Vec<C>)> = matrix.chunks_exact(columns.max(1)).map(<[C]>::to_vec).enumerate().collect();
-    let mut picked = Vec::new();
-    for column in 0..columns {
-        let best = rows.iter().enumerate().max_by(|a, b| a.1.1[column].weight().total_cmp(&b.1.1[column].weight()));
-        let Some((at, over)) = best.and_then(|(at, row)| Some((at, row.1[column].inverse()?))) else { continue };
-        let (row, pivot) = rows.swap_remove(at);
-        for (_, other) in &mut rows {
-            let factor = other[column] * over;
-            other.iter_mut().zip(&pivot).for_each(|(x, &p)| *x = *x - factor * p);
-        }
-        picked.push(row);
-    }
-    picked
+    let column = |j: usize| matrix.iter().skip(j).step_by(columns).copied().collect();
+    let mut transposed: Vec<Vec<C>> = (0..columns).map(column).collect();
+    eliminate(&mut transposed, |rows, done| {
+        largest(rows, open(rows, done, rows.first().map_or(0, Vec::len)).filter(|(i, _)| *i == done.len()))
+    })
 }

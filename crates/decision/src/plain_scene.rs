@@ -1,29 +1,41 @@
 //! The system and start of a proof as plain scalar formulas, which a small reader can parse.
 
+use std::collections::BTreeMap;
+
+use schemars::JsonSchema;
+use serde::Serialize;
+
 use crate::exact::Modular;
 use crate::series::SeriesStart;
 use crate::start::ExactStart;
 
-/// A system and a start as scalar formulas: no vectors, rotations or definitions, every number as it was
-/// proved, in names of coordinates (with a prime: of velocities), parameters and `t`.
-#[derive(Clone, Debug, PartialEq, Eq)]
+/// Formulas by name.
+pub type Formulas = BTreeMap<String, String>;
+
+/// The system, and the start or a point that was drawn, in scalar formulas: every number as it was taken.
+///
+/// No vectors, rotations or definitions; in names of coordinates (with a prime: of velocities), parameters
+/// and t. Fields are in the order of the alphabet, in which the digest of a certificate is taken.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, JsonSchema)]
+#[schemars(rename = "Scene")]
 pub struct PlainScene {
-    /// Names, in the order of `q`.
-    pub coordinates: Vec<String>,
-    /// Parameters that stand in what follows, and are not functions of others.
-    pub parameters: Vec<(String, String)>,
-    /// `L(q, v, t)`.
-    pub lagrangian: String,
-    /// `f(q, v, t)`.
+    /// f(q, v, t).
     pub constraints: Vec<String>,
-    /// `Q(q, v, t)`, where it is not zero.
-    pub forces: Vec<(String, String)>,
-    /// `t₀`.
+    /// Names, in the order of q.
+    pub coordinates: Vec<String>,
+    /// Generalized forces Q(q, v, t) other than zero, by coordinate; in every formulation they act by virtual
+    /// work.
+    pub forces: Formulas,
+    /// L(q, v, t).
+    pub lagrangian: String,
+    /// Those that stand in the other formulas, and are not functions of others.
+    pub parameters: Formulas,
+    /// At the start.
+    pub positions: Formulas,
+    /// Of the start.
     pub time: String,
-    /// `q₀`.
-    pub positions: Vec<(String, String)>,
-    /// `v₀`, except what the constraints supply.
-    pub velocities: Vec<(String, String)>,
+    /// Those that the constraints do not supply.
+    pub velocities: Formulas,
 }
 
 impl PlainScene {
@@ -85,7 +97,7 @@ impl PlainScene {
     /// # Errors
     /// What cannot be written, in words.
     pub fn at_random_point(start: &ExactStart, point: &SeriesStart<Modular>) -> Result<Self, String> {
-        Ok(PlainScene { velocities: Vec::new(), ..PlainScene::new(start, point, &[], true)? })
+        Ok(PlainScene { velocities: Formulas::new(), ..PlainScene::new(start, point, &[], true)? })
     }
 }
 

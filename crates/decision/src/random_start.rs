@@ -1,7 +1,7 @@
 //! Starts drawn at random on the constraint, for what holds at almost every start.
 
-use symbolic::Evaluator;
 use symbolic::limits::HALF_THE_DIGITS;
+use symbolic::{Evaluator, SplitMix};
 
 use crate::exact::{Coefficient, Exact, Flaw, Jet, Modular};
 use crate::leaf::{PART, Short};
@@ -11,6 +11,14 @@ use crate::start::{ExactStart, NoExactStart};
 /// Random times, positions and velocities are integers of either sign up to 2 to one of these powers, tried
 /// in this order: exact functions of large integers may not fit.
 const BITS: [u32; 3] = [20, 8, 3];
+
+/// An integer of either sign, not zero, up to `2^bits`.
+pub fn random_integer(random: &mut SplitMix, bits: u32) -> i128 {
+    let x = random.bits();
+    let size = i128::from(x % (1 << bits)) + 1;
+    if x >> 63 == 0 { size } else { -size }
+}
+
 /// Maximum number of draws until the constraints have roots: a square has one for every second draw.
 const DRAWS: usize = 256;
 /// Number of draws with a root after which a square counts as that of a function: one other in 2^64 has as
@@ -68,17 +76,10 @@ impl ExactStart {
         let parameters = short(&given);
         let near = if self.domain.branch { Some(self.series()?.0) } else { None };
         let (near_q, near_v) = near.as_ref().map(|near| (short(&near.positions), short(&near.velocities))).unzip();
-        let mut state = seed;
+        let mut random = SplitMix::new(seed);
         let mut draw = || {
-            // SplitMix64
-            state = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
-            let mut x = state;
-            x = (x ^ (x >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-            x = (x ^ (x >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-            let x = x ^ (x >> 31);
-            let n = i128::from(x % (1 << bits)) + 1;
-            let numerator = if x >> 63 == 0 { n } else { -n };
-            let exact = Exact::ratio(numerator, if near.is_some() { PART } else { 1 }).ok_or(Flaw::Number)?;
+            let over = if near.is_some() { PART } else { 1 };
+            let exact = Exact::ratio(random_integer(&mut random, bits), over).ok_or(Flaw::Number)?;
             Modular::of(exact).map(|value| Jet::constant(value, Some(exact)))
         };
         let n = self.system.dimension();

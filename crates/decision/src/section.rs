@@ -137,17 +137,9 @@ impl Ansatz<'_> {
                 }
             }
         }
-        let mut solution = vec![Modular::ZERO; unknowns];
-        let mut rows = echelon.0;
-        rows.sort_by_key(|(pivot, _)| std::cmp::Reverse(*pivot));
-        for (pivot, row) in rows {
-            let mut value = row[unknowns];
-            for (j, &x) in row[..unknowns].iter().enumerate().skip(pivot + 1) {
-                value = value - x * solution[j];
-            }
-            solution[pivot] = value;
-        }
-        solution.iter().map(|&x| x.small_fraction()).collect()
+        // r · a − s · 1 = 0
+        let solution = echelon.kernel(unknowns + 1).1.pop()?;
+        solution[..unknowns].iter().map(|&x| (-x).small_fraction()).collect()
     }
 
     /// What the equations of the family say about the coefficients at a random point.

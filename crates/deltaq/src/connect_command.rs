@@ -2,7 +2,7 @@
 
 use anyhow::Result;
 use indexmap::IndexMap;
-use motion::{Aim, Connection, Connections, SecondVariation, Settings, connect};
+use motion::{Aim, ConjugateTime, Connection, Connections, SecondVariation, Settings, connect};
 use scene::Scene;
 use schemars::JsonSchema;
 use serde::Serialize;
@@ -134,7 +134,7 @@ pub(crate) struct Connected<'a> {
     unknowns: &'a [String],
     starts: usize,
     /// By rising action.
-    motions: Vec<Found>,
+    motions: Vec<Found<'a>>,
     /// Why starts led nowhere.
     failures: Vec<Failure<'a>>,
     /// Whether every mu0 gives the same motions, so that none is unknown.
@@ -148,7 +148,7 @@ pub(crate) struct Connected<'a> {
 }
 
 #[derive(Serialize, JsonSchema)]
-struct Found {
+struct Found<'a> {
     unknowns: Numbers,
     /// How far the unknowns may be wrong; null where nothing is known.
     #[schemars(with = "IndexMap<String, Option<f64>>")]
@@ -167,7 +167,7 @@ struct Found {
     /// Whether no other motion is beside it.
     isolated: bool,
     /// Rising; null where the unknowns are dependent at all times.
-    conjugate_times: Option<Vec<ConjugateTime>>,
+    conjugate_times: Option<&'a [ConjugateTime]>,
     /// Whether the action has a local minimum, as far as conjugate times tell; null where that is not known.
     minimum: Option<bool>,
     /// What the second variation of the action says, in words.
@@ -179,14 +179,6 @@ struct Found {
 }
 
 #[derive(Serialize, JsonSchema)]
-struct ConjugateTime {
-    t: f64,
-    #[schemars(with = "Option<f64>")]
-    error: f64,
-    multiplicity: usize,
-}
-
-#[derive(Serialize, JsonSchema)]
 struct Failure<'a> {
     why: &'a str,
     starts: usize,
@@ -195,12 +187,7 @@ struct Failure<'a> {
 impl<'a> Connected<'a> {
     fn of(scene: &'a Scene, formulation: &'a str, aim: &Aim, found: &'a Connections) -> Self {
         let ends = || aim.to.iter().map(|(name, _)| name);
-        let conjugate = |time: &motion::ConjugateTime| ConjugateTime {
-            t: time.t,
-            error: time.error,
-            multiplicity: time.multiplicity,
-        };
-        let motion = |motion: &Connection| Found {
+        let motion = |motion: &'a Connection| Found {
             unknowns: named(&found.unknowns, &motion.unknowns),
             errors: named(&found.unknowns, &motion.errors),
             velocities: named(scene.system.coordinates.iter().map(|c| format!("{}'", c.name)), &motion.start.v),
@@ -209,7 +196,7 @@ impl<'a> Connected<'a> {
             residuals: named(ends(), &motion.residuals),
             condition: motion.condition,
             isolated: motion.is_isolated(),
-            conjugate_times: motion.conjugate.as_ref().map(|times| times.iter().map(conjugate).collect()),
+            conjugate_times: motion.conjugate.as_deref(),
             minimum: motion.is_minimum,
             second_variation: motion.second_variation.words(),
             starts: motion.starts,

@@ -13,9 +13,9 @@ use integrate::{Interrupt, Projection};
 use mechanics::{Constancy, ConstantsRule, Observables, Removal, Watched};
 use motion::band::SAMPLES;
 use motion::{
-    Choice, ErrorEstimate, Form, STEP_LIMIT, Setting, Settings, Stepping, Steps, default_constants, equidistant,
-    error_estimates, formulation_in, removal, removal_names, removals, sensitivities, setting, solve_by_steps,
-    solve_choice,
+    ChartChange, Choice, ErrorEstimate, Form, STEP_LIMIT, Seconds, Setting, Settings, Stepping, Steps,
+    default_constants, equidistant, error_estimates, formulation_in, removal, removal_names, removals, sensitivities,
+    setting, solve_by_steps, solve_choice,
 };
 use scene::Scene;
 use schemars::JsonSchema;
@@ -133,12 +133,8 @@ pub(crate) fn run(arguments: &SolveArguments, quiet: bool) -> Result<Answer> {
                     why: &motion.form.why,
                     fallbacks: motion.form.fallbacks,
                 },
-                charts: motion.charts.iter().map(|chart| Chart { from: chart.t, by: chart.by }).collect(),
-                seconds: Seconds {
-                    derive: motion.seconds.derive,
-                    compile: motion.seconds.compile,
-                    integrate: motion.seconds.integrate,
-                },
+                charts: &motion.charts,
+                seconds: motion.seconds,
                 status,
                 cause: complaint.as_deref(),
                 times: &reached,
@@ -176,7 +172,7 @@ pub(crate) struct Solved<'a> {
     /// The form that was integrated.
     form: Evaluated<'a>,
     /// Where pivots became small, and by what the motion went on from that time, s.
-    charts: Vec<Chart>,
+    charts: &'a [ChartChange],
     /// Seconds of the clock.
     seconds: Seconds,
     #[schemars(extend("enum" = ["completed", "stopped", "untrusted"]))]
@@ -237,20 +233,6 @@ struct Evaluated<'a> {
     why: &'a [String],
     /// How often the plain way stood in.
     fallbacks: usize,
-}
-
-#[derive(Serialize, JsonSchema)]
-struct Chart {
-    from: f64,
-    #[schemars(extend("enum" = ["multipliers", "canonical momenta"]))]
-    by: &'static str,
-}
-
-#[derive(Serialize, JsonSchema)]
-struct Seconds {
-    derive: f64,
-    compile: f64,
-    integrate: f64,
 }
 
 /// What is not done by then has a progress bar.

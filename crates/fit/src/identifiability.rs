@@ -16,7 +16,7 @@
 use decision::exact::{Coefficient, Dual, Exact, Jet, Modular, ORDERS, agreed, nullspace};
 use std::sync::Arc;
 
-use decision::{Dynamics, ExactStart};
+use decision::{Dynamics, ExactStart, random_integer};
 use motion::{Choice, derive};
 use scene::Scene;
 use symbolic::{Evaluator, SplitMix, Symbol, Tape};
@@ -166,11 +166,7 @@ impl<'a> Jets<'a> {
     /// By unknown: derivatives of all coefficients, and of what is known before.
     fn slopes(&self, orders: usize, seed: u64, bits: u32) -> Result<Vec<Vec<Modular>>, String> {
         let mut random = SplitMix::new(seed);
-        let mut draw = || {
-            let x = random.bits();
-            let size = i128::from(x % (1 << bits)) + 1;
-            Exact::ratio(if x >> 63 == 0 { size } else { -size }, 1).ok_or("no number".to_string())
-        };
+        let mut draw = || Exact::ratio(random_integer(&mut random, bits), 1).ok_or("no number".to_string());
         let numbers = self.unknowns.iter().map(|_| draw()).collect::<Result<Vec<_>, _>>()?;
         let column = |j: usize| -> Result<Vec<Modular>, String> {
             let mut slopes = Vec::new();

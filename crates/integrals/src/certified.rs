@@ -3,12 +3,9 @@
 use std::collections::BTreeMap;
 use std::fmt::Write;
 
-use decision::{Certificate, Images, PlainScene};
+use decision::{Certificate, Formulas, Images, PlainScene};
 use schemars::JsonSchema;
 use serde::Serialize;
-
-/// By name.
-type Formulas = BTreeMap<String, String>;
 
 /// A proof that no multipliers make the vakonomic motion Chetaev's.
 #[derive(Serialize, JsonSchema)]
@@ -16,34 +13,14 @@ type Formulas = BTreeMap<String, String>;
 pub struct NoMultipliers<'a> {
     #[serde(flatten)]
     common: Common,
-    /// Whether the start stands for almost every one; it is then not the scene file's.
-    almost_every_start: bool,
-    order: usize,
-    /// Order and coordinate of each row.
-    rows: &'a [(usize, usize)],
-    minor: u64,
-    divided_by: BTreeMap<String, u64>,
-    /// Given velocities that are solved from the constraints, which their decimals miss by round-off.
-    completed: &'a [String],
-    /// Taylor coefficients by coordinate.
-    motion: BTreeMap<String, Vec<u64>>,
-    reactions: &'a [Vec<u64>],
+    #[serde(flatten)]
+    found: &'a Certificate,
 }
 
 impl<'a> NoMultipliers<'a> {
     /// `set` are the numbers that were set, as they were written.
     pub fn of(found: &'a Certificate, set: &[(String, String)]) -> Self {
-        NoMultipliers {
-            common: Common::of(&found.scene, &found.images, set),
-            almost_every_start: found.almost_every_start,
-            order: found.order,
-            rows: &found.rows,
-            minor: found.minor,
-            divided_by: found.divided_by.iter().cloned().collect(),
-            completed: &found.completed,
-            motion: found.motion.iter().cloned().collect(),
-            reactions: &found.reactions,
-        }
+        NoMultipliers { common: Common::of(&found.scene, &found.images, set), found }
     }
 }
 
@@ -105,71 +82,22 @@ pub(crate) struct Exponents {
 
 #[derive(Serialize, JsonSchema)]
 pub(crate) struct Common {
-    scene: Scene,
+    scene: PlainScene,
     /// SHA-256 of the scene as JSON without spaces.
     #[schemars(extend("pattern" = "^sha256:[0-9a-f]{64}$"))]
     digest: String,
-    prime: u64,
-    /// M and the image of e^(2 pi i/M).
-    unity: (u64, u64),
-    exponents: ImagesOfExponents,
-    /// Images of the roots of primes.
-    roots: BTreeMap<String, u64>,
+    #[serde(flatten)]
+    images: Images,
     /// Numbers that were set, as they were written.
     set: Formulas,
 }
 
-/// Images of e^i and e, and a power of both that is 1.
-#[derive(Serialize, JsonSchema)]
-struct ImagesOfExponents {
-    order: u64,
-    #[serde(rename = "e^i")]
-    circle: u64,
-    e: u64,
-}
-
-/// The system, and the start or a point that was drawn, in scalar formulas: every number as it was taken.
-/// Fields are in the order of the alphabet, in which the digest is taken.
-#[derive(Serialize, JsonSchema)]
-struct Scene {
-    constraints: Vec<String>,
-    coordinates: Vec<String>,
-    /// Generalized forces Q other than zero, by coordinate; in every formulation they act by virtual work.
-    forces: Formulas,
-    lagrangian: String,
-    parameters: Formulas,
-    positions: Formulas,
-    time: String,
-    /// Those that the constraints do not supply.
-    velocities: Formulas,
-}
-
 impl Common {
-    pub(crate) fn of(plain: &PlainScene, images: &Images, set: &[(String, String)]) -> Self {
-        let named = |formulas: &[(String, String)]| formulas.iter().cloned().collect::<Formulas>();
-        let scene = Scene {
-            constraints: plain.constraints.clone(),
-            coordinates: plain.coordinates.clone(),
-            forces: named(&plain.forces),
-            lagrangian: plain.lagrangian.clone(),
-            parameters: named(&plain.parameters),
-            positions: named(&plain.positions),
-            time: plain.time.clone(),
-            velocities: named(&plain.velocities),
-        };
+    pub(crate) fn of(scene: &PlainScene, images: &Images, set: &[(String, String)]) -> Self {
         let mut digest = String::from("sha256:");
         for byte in hmac_sha256::Hash::hash(serde_json::json!(scene).to_string().as_bytes()) {
             let _ = write!(digest, "{byte:02x}");
         }
-        let (order, circle, e) = images.exponents;
-        Common {
-            scene,
-            digest,
-            prime: images.prime,
-            unity: images.unity,
-            exponents: ImagesOfExponents { order, circle, e },
-            roots: images.roots.iter().cloned().collect(),
-            set: named(set),
-        }
+        Common { scene: scene.clone(), digest, images: images.clone(), set: set.iter().cloned().collect() }
     }
 }

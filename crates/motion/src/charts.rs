@@ -26,11 +26,14 @@ use crate::wanted::wanted;
 use crate::{Choice, Ending, Prepared, Setting, Settings, SingleRun, SolveError, TIGHTER};
 
 /// That a motion went on by equations without pivots.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, serde::Serialize, schemars::JsonSchema)]
+#[schemars(rename = "Chart")]
 pub struct ChartChange {
     /// From this time on.
+    #[serde(rename = "from")]
     pub t: f64,
-    /// By what, in words: `multipliers` or `canonical momenta`.
+    /// By what, in words.
+    #[schemars(extend("enum" = ["multipliers", "canonical momenta"]))]
     pub by: &'static str,
 }
 

@@ -22,7 +22,7 @@ use crate::wanted::kept_before;
 use crate::{Choice, ChosenForm, Doubt, Ending, Prepared, Setting, Settings, SolveError, setting};
 
 /// Wall-clock seconds spent.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug, Default, serde::Serialize, schemars::JsonSchema)]
 pub struct Seconds {
     /// From system to equations.
     pub derive: f64,

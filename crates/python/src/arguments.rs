@@ -83,18 +83,15 @@ pub(crate) fn settings(
     Ok((settings, interrupt))
 }
 
-/// Which free constants are fitted.
-pub(crate) fn fits(word: &str) -> PyResult<Fits> {
-    let words = [("undecided", Fits::Undecided), ("all", Fits::All), ("none", Fits::None)];
-    let found = words.iter().find(|(known, _)| *known == word);
-    found.map(|(_, fits)| *fits).ok_or_else(|| unknown("fits", word, words.iter().map(|(known, _)| *known)))
-}
+/// Which free constants are fitted, and what a comparison computes.
+pub(crate) const FITS: [(&str, Fits); 3] = [("undecided", Fits::Undecided), ("all", Fits::All), ("none", Fits::None)];
+pub(crate) const EXTENTS: [(&str, Extent); 3] =
+    [("answer", Extent::Answer), ("everything", Extent::Everything), ("gaps", Extent::Gaps)];
 
-/// What a comparison computes.
-pub(crate) fn extent(word: &str) -> PyResult<Extent> {
-    let words = [("answer", Extent::Answer), ("everything", Extent::Everything), ("gaps", Extent::Gaps)];
+/// What a word of the argument `what` stands for.
+pub(crate) fn among<T: Copy>(what: &str, word: &str, words: &[(&str, T)]) -> PyResult<T> {
     let found = words.iter().find(|(known, _)| *known == word);
-    found.map(|(_, extent)| *extent).ok_or_else(|| unknown("extent", word, words.iter().map(|(known, _)| *known)))
+    found.map(|(_, meant)| *meant).ok_or_else(|| unknown(what, word, words.iter().map(|(known, _)| *known)))
 }
 
 /// The refusal of a name that is none of those that are known.

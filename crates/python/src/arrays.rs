@@ -120,6 +120,12 @@ pub(crate) fn fixed<'py>(py: Python<'py>, values: Vec<f64>, count: Option<usize>
     array(py, values, count, tail).map(read_only)
 }
 
+/// A result of shape `(k,)`, which nobody is to change.
+pub(crate) fn vector(py: Python<'_>, values: Vec<f64>) -> PyResult<Py<PyArrayDyn<f64>>> {
+    let count = Some(values.len());
+    fixed(py, values, count, &[]).map(Bound::unbind)
+}
+
 /// The array, which cannot be written to any more.
 pub(crate) fn read_only<T: Element, D: Dimension>(array: Bound<'_, PyArray<T, D>>) -> Bound<'_, PyArray<T, D>> {
     array.readwrite().make_nonwriteable();

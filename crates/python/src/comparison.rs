@@ -2,46 +2,25 @@
 
 use comparison::{Extent, Fits, Gap, THRESHOLDS, Verdict};
 use equations::Formulation;
-use numpy::PyArrayDyn;
 use pyo3::exceptions::PyKeyError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use scene::Scene;
+use stubs::{answer, stubbed};
 
-use crate::arrays::fixed;
+use crate::arrays::vector;
 use crate::errors;
 use crate::families::{Decided, Fit};
 use crate::motion::{Asked, Motion, Sampled};
-use crate::pickled::answer;
 use crate::system::System;
 
-answer! {
-    Growth {
-        exponent: f64,
-        uncertainty: f64,
-        coefficient: Py<PyArrayDyn<f64>>,
-        length: f64,
-    }
-}
+#[answer("<deltaq.Growth {length:.3e} t^{exponent:.2}, exponent within {uncertainty:.0e}>")]
+pub(crate) struct Growth;
 
-#[pymethods]
-impl Growth {
-    fn __repr__(&self) -> String {
-        let Growth { exponent, uncertainty, length, .. } = self;
-        format!("<deltaq.Growth {length:.3e} t^{exponent:.2}, exponent within {uncertainty:.0e}>")
-    }
-}
+#[answer]
+pub(crate) struct LeadingTerm;
 
-answer! {
-    LeadingTerm {
-        exponent: u32,
-        coefficient: Py<PyArrayDyn<f64>>,
-        length: f64,
-        proved: bool,
-    }
-}
-
-#[pymethods]
+#[stubbed]
 impl LeadingTerm {
     fn __repr__(&self) -> String {
         let proved = if self.proved { "proved" } else { "not proved" };
@@ -49,68 +28,24 @@ impl LeadingTerm {
     }
 }
 
-answer! {
-    Pair {
-        first: String,
-        second: String,
-        verdict: String,
-        because: Option<String>,
-        tau: Py<PyDict>,
-        largest_gap: f64,
-        largest_by_coordinate: Py<PyDict>,
-        certain_from: Option<f64>,
-        error_estimates: (f64, f64),
-        end: f64,
-        times: Py<PyArrayDyn<f64>>,
-        gap: Py<PyArrayDyn<f64>>,
-        limit: Py<PyArrayDyn<f64>>,
-        growth: Option<Py<Growth>>,
-        predicted: Option<Py<LeadingTerm>>,
-    }
-}
+#[answer("<deltaq.Pair {first} - {second}: {verdict}, largest gap {largest_gap:.3e}>")]
+pub(crate) struct Pair;
 
-#[pymethods]
-impl Pair {
-    fn __repr__(&self) -> String {
-        let Pair { first, second, verdict, largest_gap, .. } = self;
-        format!("<deltaq.Pair {first} - {second}: {verdict}, largest gap {largest_gap:.3e}>")
-    }
-}
+#[answer]
+pub(crate) struct Run;
 
-answer! {
-    Run {
-        label: String,
-        title: String,
-        formulation: String,
-        removal: Option<String>,
-        motion: Option<Py<Motion>>,
-        error: Option<String>,
-    }
-}
-
-#[pymethods]
+#[stubbed]
 impl Run {
     fn __repr__(&self) -> String {
         format!("<deltaq.Run {}: {}>", self.label, self.error.as_deref().unwrap_or("a motion"))
     }
 }
 
-answer! {
-    Comparison {
-        system: Py<System>,
-        integrability: String,
-        runs: Vec<Py<Run>>,
-        pairs: Vec<Py<Pair>>,
-        fits: Vec<Py<Fit>>,
-        decided: Vec<Py<Decided>>,
-        contradictions: Vec<String>,
-    }
-}
+#[answer]
+pub(crate) struct Comparison;
 
-#[pymethods]
+#[stubbed]
 impl Comparison {
-    #[doc = doc!("Comparison.pair")]
-    #[pyo3(signature = (a, b))]
     fn pair(&self, py: Python<'_>, a: &str, b: &str) -> PyResult<Py<Pair>> {
         let (one, two) = (self.label(a)?, self.label(b)?);
         let is = |p: &Pair| (p.first == one && p.second == two) || (p.first == two && p.second == one);
@@ -118,8 +53,6 @@ impl Comparison {
         found.ok_or_else(|| PyKeyError::new_err(format!("{one} and {two} were not compared")))
     }
 
-    #[doc = doc!("Comparison.verdict")]
-    #[pyo3(signature = (a, b))]
     fn verdict(&self, py: Python<'_>, a: &str, b: &str) -> PyResult<String> {
         Ok(self.pair(py, a, b)?.get().verdict.clone())
     }
@@ -143,10 +76,6 @@ impl Comparison {
         let Compared { scene, settings, integrability, runs, pairs, fits, decided, contradictions } = compared;
         let labels: Vec<String> = runs.iter().map(|r| identifier(&r.0)).collect();
         let names: Vec<&str> = scene.system.coordinates.iter().map(|c| c.name.as_str()).collect();
-        let vector = |values: Vec<f64>| {
-            let count = Some(values.len());
-            fixed(py, values, count, &[]).map(Bound::unbind)
-        };
         let pair = |p: comparison::Pair| -> PyResult<Py<Pair>> {
             let (verdict, because) = words(&p.gap);
             let (tau, by_coordinate) = (PyDict::new(py), PyDict::new(py));
@@ -158,13 +87,13 @@ impl Comparison {
             }
             let growth = p.growth.map(|g| -> PyResult<Py<Growth>> {
                 let (exponent, uncertainty, length) = (g.exponent, g.uncertainty, g.length);
-                Py::new(py, Growth { exponent, uncertainty, length, coefficient: vector(g.coefficient)? })
+                Py::new(py, Growth { exponent, uncertainty, length, coefficient: vector(py, g.coefficient)? })
             });
             let predicted = p.predicted.map(|term| -> PyResult<Py<LeadingTerm>> {
-                let (exponent, length, proved) = (term.exponent, term.length, term.proved);
-                Py::new(py, LeadingTerm { exponent, length, proved, coefficient: vector(term.coefficient)? })
+                let (exponent, length, proved) = (term.exponent as usize, term.length, term.proved);
+                Py::new(py, LeadingTerm { exponent, length, proved, coefficient: vector(py, term.coefficient)? })
             });
-            let samples = |pick: fn(&comparison::GapPoint) -> f64| vector(p.gap.points.iter().map(pick).collect());
+            let samples = |pick: fn(&comparison::GapPoint) -> f64| vector(py, p.gap.points.iter().map(pick).collect());
             let pair = Pair {
                 first: labels[p.first].clone(),
                 second: labels[p.second].clone(),

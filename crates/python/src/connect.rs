@@ -3,32 +3,20 @@
 use integrate::Interrupt;
 use mechanics::ConstantsRule;
 use motion::{Aim, Choice, Connections as Found, Settings, SolveError};
-use numpy::PyArrayDyn;
 use pyo3::prelude::*;
-use pyo3::types::{IntoPyDict, PyDict};
+use pyo3::types::IntoPyDict;
 use scene::Scene;
+use stubs::{answer, stubbed};
 
 use crate::arguments::Numbers;
-use crate::arrays::{Floats, fixed};
-use crate::pickled::answer;
+use crate::arrays::{Floats, vector};
 use crate::system::{Overrides, System};
 use crate::{arguments, background, errors};
 
-answer! {
-    Connections {
-        formulation: String,
-        unknowns: Vec<String>,
-        motions: Vec<Py<Connection>>,
-        starts: usize,
-        failures: Py<PyDict>,
-        runs: usize,
-        with_derivatives: usize,
-        every_constant: bool,
-        none: Option<String>,
-    }
-}
+#[answer]
+pub(crate) struct Connections;
 
-#[pymethods]
+#[stubbed]
 impl Connections {
     fn __len__(&self) -> usize {
         self.motions.len()
@@ -39,43 +27,11 @@ impl Connections {
     }
 }
 
-answer! {
-    Connection {
-        system: Py<System>,
-        unknowns: Py<PyDict>,
-        errors: Py<PyDict>,
-        constants: Py<PyArrayDyn<f64>>,
-        velocities: Py<PyArrayDyn<f64>>,
-        action: f64,
-        action_error: f64,
-        residuals: Py<PyDict>,
-        condition: f64,
-        is_isolated: bool,
-        conjugate_times: Option<Py<PyArrayDyn<f64>>>,
-        conjugate_errors: Option<Py<PyArrayDyn<f64>>>,
-        multiplicities: Option<Vec<usize>>,
-        is_minimum: Option<bool>,
-        second_variation: String,
-        starts: usize,
-        by_half: bool,
-    }
-}
+#[answer("<deltaq.Connection, action {action}>")]
+pub(crate) struct Connection;
 
-#[pymethods]
-impl Connection {
-    fn __repr__(&self) -> String {
-        format!("<deltaq.Connection, action {}>", self.action)
-    }
-}
-
-#[pymethods]
+#[stubbed]
 impl System {
-    #[doc = doc!("System.connect")]
-    #[expect(clippy::too_many_arguments, reason = "named in Python, and most of them left out")]
-    #[pyo3(signature = (
-        to, at=None, formulation="vakonomic", *, removal=None, mu0=None, constants=None, starts=60, tolerance=1e-11,
-        threads=0
-    ))]
     fn connect(
         &self,
         py: Python<'_>,
@@ -136,10 +92,6 @@ fn one(
     motion: motion::Connection,
 ) -> PyResult<Connection> {
     let named = |values: &[f64]| unknowns.iter().zip(values.iter().copied()).into_py_dict(py).map(Bound::unbind);
-    let vector = |values: Vec<f64>| {
-        let count = values.len();
-        fixed(py, values, None, &[count]).map(Bound::unbind)
-    };
     let mut own = Scene { start: motion.start.clone(), duration: aim.t - scene.start.t, ..scene.clone() };
     let constants = motion.motion.constants.clone();
     if constants.len() == own.multipliers.len() {
@@ -151,7 +103,7 @@ fn one(
     let system = System::read(py, (&scene.name, None), own.to_toml(), Overrides::new())?;
     let times = motion.conjugate.as_ref();
     let column = |pick: fn(&motion::ConjugateTime) -> f64| {
-        times.map(|times| vector(times.iter().map(pick).collect())).transpose()
+        times.map(|times| vector(py, times.iter().map(pick).collect())).transpose()
     };
     Ok(Connection {
         system: Py::new(py, system)?,
@@ -161,8 +113,8 @@ fn one(
         conjugate_errors: column(|time| time.error)?,
         multiplicities: times.map(|times| times.iter().map(|time| time.multiplicity).collect()),
         is_isolated: motion.is_isolated(),
-        constants: vector(constants)?,
-        velocities: vector(motion.start.v)?,
+        constants: vector(py, constants)?,
+        velocities: vector(py, motion.start.v)?,
         action: motion.action[0],
         action_error: motion.action[1],
         residuals: aim.to.iter().map(|(name, _)| name).zip(motion.residuals).into_py_dict(py)?.unbind(),

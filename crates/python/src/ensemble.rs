@@ -5,14 +5,13 @@ use std::collections::BTreeMap;
 use equations::Named;
 use motion::band::CHUNK;
 use motion::{Choice, EnsembleOptions, MemberMotion, Settings, SolveError, setting};
-use numpy::PyArrayDyn;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use scene::Scene;
+use stubs::{answer, stubbed};
 
-use crate::arrays::{Floats, fixed, list, times, within};
-use crate::pickled::answer;
+use crate::arrays::{Floats, fixed, list, times, vector, within};
 use crate::system::System;
 
 /// What varies over the members of an ensemble: names, each with as many values as there are members.
@@ -204,27 +203,8 @@ impl Columns {
     }
 }
 
-answer! {
-    Ensemble {
-        system: Py<System>,
-        formulation: String,
-        removal: Option<String>,
-        times: Py<PyArrayDyn<f64>>,
-        varied: Py<PyDict>,
-        coordinate_names: Vec<String>,
-        coordinates: Py<PyArrayDyn<f64>>,
-        velocities: Py<PyArrayDyn<f64>>,
-        multipliers: Py<PyDict>,
-        invariants: Py<PyDict>,
-        error_estimate: Py<PyArrayDyn<f64>>,
-        relative_error_estimate: Py<PyArrayDyn<f64>>,
-        status: Vec<String>,
-        cause: Vec<Option<String>>,
-        reached: Vec<usize>,
-        alone: Vec<Option<String>>,
-        seconds: f64,
-    }
-}
+#[answer]
+pub(crate) struct Ensemble;
 
 impl Ensemble {
     pub(crate) fn new(system: &Bound<'_, System>, integrated: Integrated) -> PyResult<Ensemble> {
@@ -235,7 +215,7 @@ impl Ensemble {
         let cube = |cube: Cube| fixed(py, cube.values, Some(m), &tail(cube.width)).map(Bound::unbind);
         let varied = PyDict::new(py);
         for (name, values) in values {
-            varied.set_item(name, fixed(py, values, Some(m), &[])?)?;
+            varied.set_item(name, vector(py, values)?)?;
         }
         Ok(Ensemble {
             system: system.clone().unbind(),
@@ -248,8 +228,8 @@ impl Ensemble {
             velocities: cube(done.velocities)?,
             multipliers: done.multipliers.1.columns(py, &done.multipliers.0, k)?.unbind(),
             invariants: done.invariants.1.columns(py, &done.invariants.0, k)?.unbind(),
-            error_estimate: fixed(py, done.error_estimate, Some(m), &[])?.unbind(),
-            relative_error_estimate: fixed(py, done.relative_error_estimate, Some(m), &[])?.unbind(),
+            error_estimate: vector(py, done.error_estimate)?,
+            relative_error_estimate: vector(py, done.relative_error_estimate)?,
             status: done.status,
             cause: done.cause,
             reached: done.reached,
@@ -259,7 +239,7 @@ impl Ensemble {
     }
 }
 
-#[pymethods]
+#[stubbed]
 impl Ensemble {
     fn __len__(&self) -> usize {
         self.status.len()

@@ -10,19 +10,19 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use scene::Scene;
+use stubs::stubbed;
 
 use crate::arguments::Numbers;
 use crate::arrays::{Array, Floats, States, array, list};
 use crate::at_run_time::AtRunTime;
 use crate::background::apart;
 use crate::outputs::{Names, Outputs, observed};
-use crate::pickled::Reduced;
+use crate::pickled::partial;
 use crate::shared::Shared;
 use crate::system::System;
 use crate::{arguments, background, errors};
 
-#[doc = doc!("Equations")]
-#[pyclass(frozen, module = "deltaq")]
+#[stubbed]
 pub(crate) struct Equations {
     ready: Shared<Prepared>,
     /// Those that no thread works with: each call takes one, and brings it back.
@@ -31,16 +31,12 @@ pub(crate) struct Equations {
     pub(crate) at_run_time: AtRunTime,
     dimension: usize,
     system: Py<System>,
-    /// Name of the formulation.
     #[pyo3(get)]
     formulation: &'static str,
-    /// Name of the removal, None where the formulation needs none.
     #[pyo3(get)]
     removal: Option<String>,
-    /// Names of the states y, length m.
     #[pyo3(get)]
     pub(crate) states: Vec<String>,
-    /// Names of the free constants.
     #[pyo3(get)]
     constants: Vec<String>,
 }
@@ -162,21 +158,18 @@ fn state(equations: &equations::Equations, q: &[f64], v: &[f64], mu: &[f64]) -> 
     places.filter(|_| y.len() == equations.states.len()).map(|places| (y, places))
 }
 
-#[pymethods]
+#[stubbed]
 impl Equations {
-    /// Values of the parameters of the system, by name: those that `rates`, `jacobian` and `integrate` take.
     #[getter]
     fn parameters<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         self.system.get().parameters(py)
     }
 
-    /// The equations and what was left out of them, in the language of scenes.
     #[getter]
     fn text(&self) -> PyResult<String> {
         self.ready.with(|ready| equations_text(&ready.equations, EquationStyle::Plain))
     }
 
-    /// The equations in LaTeX: one `aligned` environment.
     #[getter]
     fn latex(&self) -> PyResult<String> {
         self.ready.with(|Prepared { equations, .. }| {
@@ -187,38 +180,26 @@ impl Equations {
         })
     }
 
-    #[doc = doc!("Equations.to_c")]
-    #[pyo3(signature = ())]
     fn to_c(&self, py: Python<'_>) -> PyResult<String> {
         self.code(py, Language::C)
     }
 
-    #[doc = doc!("Equations.to_numpy")]
-    #[pyo3(signature = ())]
     fn to_numpy(&self, py: Python<'_>) -> PyResult<String> {
         self.code(py, Language::Numpy)
     }
 
-    #[doc = doc!("Equations.to_jax")]
-    #[pyo3(signature = ())]
     fn to_jax(&self, py: Python<'_>) -> PyResult<String> {
         self.code(py, Language::Jax)
     }
 
-    #[doc = doc!("Equations.to_numba")]
-    #[pyo3(signature = ())]
     fn to_numba(&self, py: Python<'_>) -> PyResult<String> {
         self.code(py, Language::Numba)
     }
 
-    #[doc = doc!("Equations.to_sympy")]
-    #[pyo3(signature = ())]
     fn to_sympy(&self, py: Python<'_>) -> PyResult<String> {
         self.code(py, Language::Sympy)
     }
 
-    #[doc = doc!("Equations.initial_state")]
-    #[pyo3(signature = (constants=None))]
     fn initial_state<'py>(&self, py: Python<'py>, constants: Option<Bound<'_, PyAny>>) -> Array<'py> {
         let rule = arguments::constants(constants.as_ref(), None)?;
         let Prepared { equations, start, .. } = self.ready.copy()?;
@@ -235,24 +216,18 @@ impl Equations {
         array(py, start, None, &[width])
     }
 
-    #[doc = doc!("Equations.rates")]
-    #[pyo3(signature = (t, y, parameters=None))]
     fn rates<'py>(&self, py: Python<'py>, t: Floats<'_>, y: Floats<'_>, parameters: Option<Numbers>) -> Array<'py> {
         let (width, at) = (self.states.len(), self.at(&t, &y)?);
         let rows = self.rows(py, (&at, parameters), (width, Method::Dop853), Compiled::rates)?;
         array(py, rows, at.count, &[width])
     }
 
-    #[doc = doc!("Equations.jacobian")]
-    #[pyo3(signature = (t, y, parameters=None))]
     fn jacobian<'py>(&self, py: Python<'py>, t: Floats<'_>, y: Floats<'_>, parameters: Option<Numbers>) -> Array<'py> {
         let (width, at) = (self.states.len(), self.at(&t, &y)?);
         let rows = self.rows(py, (&at, parameters), (width * width, Method::Radau5), Compiled::jacobian)?;
         array(py, rows, at.count, &[width, width])
     }
 
-    #[doc = doc!("Equations.outputs")]
-    #[pyo3(signature = (t, y))]
     fn outputs(&self, py: Python<'_>, t: Floats<'_>, y: Floats<'_>) -> PyResult<Outputs> {
         let at = self.at(&t, &y)?;
         let work = |ready: &mut Prepared| -> PyResult<_> {
@@ -268,8 +243,6 @@ impl Equations {
         Outputs::new(py, &rows, self.dimension, &names, at.count)
     }
 
-    #[doc = doc!("Equations.acceleration")]
-    #[pyo3(signature = (t, q, v, mu=None))]
     fn acceleration<'py>(
         &self,
         py: Python<'py>,
@@ -293,15 +266,15 @@ impl Equations {
         array(py, places.into_iter().map(|i| rates[i]).collect(), None, &[self.dimension])
     }
 
-    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Reduced<'py>> {
+    /// They are derived again.
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<(Bound<'py, PyAny>, ())> {
         let (py, Equations { system, formulation, removal, .. }) = (slf.py(), slf.get());
         let given = slf.get().at_run_time.scene_and_choice()?.1.constants;
-        let state = PyDict::new(py);
-        state.set_item("system", system)?;
-        state.set_item("formulation", formulation)?;
-        state.set_item("removal", removal)?;
-        state.set_item("constants", arguments::rule_value(py, &given)?)?;
-        Ok((py.import("deltaq")?.getattr("_again")?, ("Equations", state)))
+        let options = PyDict::new(py);
+        options.set_item("formulation", formulation)?;
+        options.set_item("removal", removal)?;
+        options.set_item("constants", arguments::rule_value(py, &given)?)?;
+        Ok((partial(system.bind(py).getattr("equations")?, &options)?, ()))
     }
 
     fn _repr_latex_(&self) -> PyResult<String> {

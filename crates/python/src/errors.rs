@@ -4,29 +4,13 @@ use std::path::Path;
 
 use equations::EvaluationFailure;
 use motion::Broken;
-use pyo3::create_exception;
 use pyo3::exceptions::{PyException, PyOSError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
 use pyo3::types::{IntoPyDict, PyType};
 use scene::SceneErrorKind;
 
-create_exception!(deltaq, DeltaqError, PyException, "What deltaq refuses, and why.");
-create_exception!(
-    deltaq,
-    SceneError,
-    DeltaqError,
-    "A fault in the description of a system, with its place: `file`, `line` and `column` (from 1; 0 where it is not in the text)."
-);
-create_exception!(deltaq, SolveError, DeltaqError, "A motion that could not be started.");
-create_exception!(deltaq, DerivationError, SolveError, "The formulation has no equations for this system.");
-create_exception!(deltaq, RemovalError, SolveError, "A parametrization that does not remove the constraints.");
-create_exception!(deltaq, StartError, SolveError, "Start values could not be found.");
-create_exception!(deltaq, CompileError, SolveError, "The derived equations cannot be compiled.");
-create_exception!(deltaq, EvaluationError, SolveError, "Equations that cannot be evaluated at a point.");
-create_exception!(deltaq, BoundaryError, SolveError, "No free constants meet the condition at the horizon.");
-create_exception!(deltaq, FaultError, DeltaqError, "A fault of deltaq itself, with its place; please report it.");
-create_exception!(deltaq, CallError, SolveError, "The time integrator was called wrongly.");
+stubs::exceptions!();
 
 /// `UnknownNameError`: one class for all names, which two classes have been caught by.
 pub(crate) fn unknown_name(py: Python<'_>) -> PyResult<&Bound<'_, PyType>> {

@@ -4,24 +4,12 @@ use comparison::words::at_most;
 use comparison::{Answer, Membership};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
+use stubs::{answer, stubbed};
 
-use crate::pickled::answer;
+#[answer]
+pub(crate) struct Fit;
 
-answer! {
-    Fit {
-        run: String,
-        target: String,
-        constants: Option<Py<PyDict>>,
-        verdict: Option<String>,
-        largest_gap: Option<f64>,
-        largest_gap_by_half: Option<f64>,
-        settled: Option<bool>,
-        starts: Option<usize>,
-        by_identity: bool,
-    }
-}
-
-#[pymethods]
+#[stubbed]
 impl Fit {
     fn __repr__(&self) -> String {
         let word = if self.settled == Some(false) { " at most" } else { "" };
@@ -31,22 +19,10 @@ impl Fit {
     }
 }
 
-answer! {
-    Decided {
-        family: String,
-        motion: String,
-        answer: String,
-        proved: bool,
-        order: Option<usize>,
-        because: Option<String>,
-        constants: Option<Py<PyDict>>,
-        dimension: Option<usize>,
-        identity: Option<Vec<String>>,
-        mismatch: Option<f64>,
-    }
-}
+#[answer]
+pub(crate) struct Decided;
 
-#[pymethods]
+#[stubbed]
 impl Decided {
     fn __repr__(&self) -> String {
         let Decided { family, motion, answer, proved, .. } = self;

@@ -8,6 +8,7 @@ use integrate::Interrupt;
 use motion::Settings;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
+use stubs::stubbed;
 
 use crate::answer::typed;
 use crate::arrays::{Array, Floats, array};
@@ -16,14 +17,11 @@ use crate::shared::Shared;
 use crate::system::System;
 use crate::{arguments, background, errors};
 
-/// Fits of formulations to films, to be asked further.
-#[pyclass(frozen, module = "deltaq")]
+#[stubbed]
 pub(crate) struct _Fitted {
     rows: Shared<Vec<Row>>,
-    /// The answer as JSON.
     #[pyo3(get)]
     answer: String,
-    /// By film: name, times of shape (k,), columns with standard deviations, and what was seen, shape (k,).
     #[pyo3(get)]
     films: Vec<Seen>,
 }
@@ -69,13 +67,12 @@ impl _Fitted {
     }
 }
 
-#[pymethods]
+#[stubbed]
 impl _Fitted {
     fn __repr__(&self) -> String {
         format!("<deltaq._Fitted, {} films>", self.films.len())
     }
 
-    /// Names of the unknowns of formulation `place`, in the order of theta, with the least that each can be.
     fn unknowns(&self, py: Python<'_>, place: usize) -> PyResult<Vec<(String, Option<f64>)>> {
         self.ask(py, |rows| {
             let problem = rows[place].problem.as_ref();
@@ -83,14 +80,12 @@ impl _Fitted {
         })
     }
 
-    /// χ² with priors; infinite where there is no motion.
     fn chi_squared(&self, py: Python<'_>, place: usize, theta: Floats<'_>) -> PyResult<f64> {
         let theta: Vec<f64> = theta.as_array().iter().copied().collect();
         let found = self.squares(py, place, &theta, false)?;
         Ok(found.map_or(f64::INFINITY, |(value, _)| value))
     }
 
-    /// Its derivatives, shape (P,); zero where there is no motion.
     fn slopes<'py>(&self, py: Python<'py>, place: usize, theta: Floats<'py>) -> Array<'py> {
         let theta: Vec<f64> = theta.as_array().iter().copied().collect();
         let found = self.squares(py, place, &theta, true)?;
@@ -99,8 +94,6 @@ impl _Fitted {
         array(py, slopes, None, &[width])
     }
 
-    /// How χ² rises above its least where an unknown has these values, shape (k,), and the others are fitted
-    /// again; None where there is none of this name.
     fn rises(&self, py: Python<'_>, place: usize, name: &str, at: Vec<f64>) -> PyResult<Option<Vec<f64>>> {
         self.ask(py, |rows| {
             let (problem, fit) = (rows[place].problem.as_ref()?, rows[place].fit.as_ref().ok()?);
@@ -108,7 +101,6 @@ impl _Fitted {
         })
     }
 
-    /// Residuals of formulation `place`: film, column, time, (fitted - seen)/sigma.
     fn residuals(&self, py: Python<'_>, place: usize) -> PyResult<Vec<(usize, usize, f64, f64)>> {
         self.ask(py, |rows| {
             let fit = rows[place].fit.as_ref().ok();
@@ -117,11 +109,9 @@ impl _Fitted {
     }
 }
 
-#[pymethods]
+#[stubbed]
 impl System {
     /// Tables (name, text) fitted: see `fit`.
-    #[expect(clippy::too_many_arguments, reason = "called by name from Python")]
-    #[pyo3(signature = (tables, free, law, sigma, known, formulations, starts, robust, tolerance, max_steps))]
     fn _fit(
         &self,
         py: Python<'_>,
@@ -171,8 +161,6 @@ impl System {
     }
 
     /// The film that would show most, as JSON: see `design`.
-    #[expect(clippy::too_many_arguments, reason = "called by name from Python")]
-    #[pyo3(signature = (aim, over, film, films, columns, sigma, free, law, starts, points, tolerance, max_steps, threads))]
     fn _design(
         &self,
         py: Python<'_>,

@@ -5,14 +5,6 @@
 // `>>>` begins an example of Python
 #![allow(clippy::doc_lazy_continuation)]
 
-/// The docstring of a class, method or function, as the stubs have it.
-macro_rules! doc {
-    ($item:literal) => {
-        include_str!(concat!(env!("OUT_DIR"), "/", $item, ".txt"))
-    };
-}
-
-mod again;
 mod answer;
 mod arguments;
 mod arrays;
@@ -45,7 +37,6 @@ mod trajectory;
 mod _native {
     #[pymodule_export]
     use crate::{
-        again::_again,
         comparison::{Comparison, Growth, LeadingTerm, Pair, Run},
         connect::{Connection, Connections},
         ensemble::Ensemble,

@@ -3,35 +3,18 @@
 use integrate::Interrupt;
 use linear::{LinearError, Part, find_steady, linearize, linearize_at};
 use motion::{Choice, Settings, setting};
-use numpy::{Complex64, PyArray1, PyArrayDyn};
+use numpy::{Complex64, PyArray1, PyArrayMethods};
 use pyo3::prelude::*;
-use pyo3::types::{IntoPyDict, PyDict};
+use pyo3::types::IntoPyDict;
 use scene::Scene;
+use stubs::{answer, stubbed};
 
-use crate::arrays::{fixed, read_only};
-use crate::pickled::answer;
+use crate::arrays::{fixed, read_only, vector};
 use crate::system::System;
 use crate::{arguments, background, errors};
 
-answer! {
-    Linearization {
-        form: String,
-        t: f64,
-        is_steady: bool,
-        states: Vec<String>,
-        values: Py<PyArrayDyn<f64>>,
-        carried: Py<PyDict>,
-        matrix: Py<PyArrayDyn<f64>>,
-        of: Vec<String>,
-        eigenvalues: Py<PyArray1<Complex64>>,
-        errors: Py<PyArrayDyn<f64>>,
-        zeros: usize,
-        zero_vectors: usize,
-        zero_error: f64,
-        unstable: usize,
-        growing: String,
-    }
-}
+#[answer]
+pub(crate) struct Linearization;
 
 fn linearized(
     mut scene: Scene,
@@ -79,19 +62,17 @@ impl Linearization {
     fn new(py: Python<'_>, found: linear::Linearization, part: &Part) -> PyResult<Linearization> {
         let n = found.states.len();
         let eigenvalues = part.eigenvalues.iter().map(|e| Complex64::new(e.value.re, e.value.im)).collect();
-        let moved: Vec<f64> = part.eigenvalues.iter().map(|e| e.error).collect();
-        let count = moved.len();
         Ok(Linearization {
             form: found.form.into(),
             t: found.t,
             is_steady: found.is_steady,
             of: part.states.iter().map(|&i| found.states[i].clone()).collect(),
-            values: fixed(py, found.values, None, &[n])?.unbind(),
+            values: vector(py, found.values)?,
             carried: found.carried.into_iter().map(|c| (c.name, c.rate)).into_py_dict(py)?.unbind(),
             matrix: fixed(py, found.matrix.transpose().as_slice().to_vec(), None, &[n, n])?.unbind(),
             states: found.states,
-            eigenvalues: read_only(PyArray1::from_vec(py, eigenvalues)).unbind(),
-            errors: fixed(py, moved, None, &[count])?.unbind(),
+            eigenvalues: read_only(PyArray1::from_vec(py, eigenvalues)).to_dyn().clone().unbind(),
+            errors: vector(py, part.eigenvalues.iter().map(|e| e.error).collect())?,
             zeros: part.zeros,
             zero_vectors: found.spectrum.zero_vectors,
             zero_error: part.zero_error,
@@ -101,7 +82,7 @@ impl Linearization {
     }
 }
 
-#[pymethods]
+#[stubbed]
 impl Linearization {
     fn __repr__(&self) -> String {
         let Linearization { form, t, of, zeros, growing, .. } = self;
@@ -109,36 +90,13 @@ impl Linearization {
     }
 }
 
-answer! {
-    LinearizationSweep {
-        system: Py<System>,
-        name: String,
-        values: Py<PyArrayDyn<f64>>,
-        asked: Py<PyArrayDyn<f64>>,
-        points: Vec<Py<Linearization>>,
-        changes: Vec<Py<StabilityChange>>,
-    }
-}
+#[answer]
+pub(crate) struct LinearizationSweep;
 
-answer! {
-    StabilityChange {
-        value: f64,
-        width: f64,
-        asked: f64,
-        below: usize,
-        above: usize,
-        frequency: f64,
-    }
-}
+#[answer("<deltaq.StabilityChange at {value}, unstable: {below} to {above}>")]
+pub(crate) struct StabilityChange;
 
-#[pymethods]
-impl StabilityChange {
-    fn __repr__(&self) -> String {
-        format!("<deltaq.StabilityChange at {}, unstable: {} to {}>", self.value, self.below, self.above)
-    }
-}
-
-#[pymethods]
+#[stubbed]
 impl LinearizationSweep {
     fn __len__(&self) -> usize {
         self.points.len()
@@ -164,8 +122,7 @@ impl LinearizationSweep {
             linear::sweep(&scene, &choice, &free, (name, &values), find)
         };
         let swept = background::run(py, &interrupt, work)?.map_err(refused)?;
-        let count = Some(swept.points.len());
-        let column = |of: fn(&linear::SweepPoint) -> f64| fixed(py, swept.points.iter().map(of).collect(), count, &[]);
+        let column = |of: fn(&linear::SweepPoint) -> f64| vector(py, swept.points.iter().map(of).collect());
         let changes = swept.changes.iter().map(|change| {
             let linear::Change { value, width, asked, unstable: [below, above], frequency, .. } = *change;
             Py::new(py, StabilityChange { value, width, asked, below, above, frequency })
@@ -173,8 +130,8 @@ impl LinearizationSweep {
         Ok(LinearizationSweep {
             system: system.clone().unbind(),
             name: name.into(),
-            values: column(|point| point.value)?.unbind(),
-            asked: column(|point| point.asked)?.unbind(),
+            values: column(|point| point.value)?,
+            asked: column(|point| point.asked)?,
             changes: changes.collect::<PyResult<_>>()?,
             points: swept
                 .points

@@ -7,16 +7,15 @@ use mechanics::Observables;
 use motion::{
     Choice, ErrorEstimate, Seconds, Sensitivities, Setting, Settings, SolveError, constant_names, error_estimates,
 };
-use numpy::PyArrayDyn;
 use pyo3::exceptions::{PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{IntoPyDict, PyDict};
+use stubs::{answer, stubbed};
 
 use crate::arguments::rule_value;
 use crate::arrays::{Floats, columns, fixed, times, within};
 use crate::ensemble::Instants;
 use crate::outputs::{Names, Outputs, Row, observed};
-use crate::pickled::{Pickled, answer};
 use crate::shared::Shared;
 use crate::system::System;
 use crate::{errors, sensitivities};
@@ -105,42 +104,10 @@ impl Asked<'_> {
     }
 }
 
-answer! {
-    Motion {
-        _asked: Py<PyDict>,
-        system: Py<System>,
-        coordinate_names: Vec<String>,
-        formulation: String,
-        removal: Option<String>,
-        times: Py<PyArrayDyn<f64>>,
-        reached: usize,
-        coordinates: Py<PyArrayDyn<f64>>,
-        velocities: Py<PyArrayDyn<f64>>,
-        multipliers: Py<PyDict>,
-        invariants: Py<PyDict>,
-        observables: Py<PyDict>,
-        error_estimate: f64,
-        relative_error_estimate: f64,
-        coordinate_error_estimates: Py<PyArrayDyn<f64>>,
-        velocity_error_estimates: Py<PyArrayDyn<f64>>,
-        multiplier_error_estimates: Py<PyDict>,
-        sensitivities: Py<PyDict>,
-        sensitivity_error_estimates: Py<PyDict>,
-        status: String,
-        cause: Option<String>,
-        doubt: Option<String>,
-        start: f64,
-        end: f64,
-        method: Option<(String, String)>,
-        form: (String, String),
-        charts: Vec<(f64, String)>,
-        constants: Py<PyDict>,
-        work: Py<PyDict>,
-        projection: Py<PyDict>,
-        seconds: Py<PyDict>,
-    }
+#[answer("<deltaq.Motion {formulation}, t = {start} to {end}, {status}, error estimate {error_estimate:.1e}>")]
+pub(crate) struct Motion {
     /// None of one that was pickled, until it is read off.
-    motion: OnceLock<Arc<Integrated>> = OnceLock::new(),
+    motion: OnceLock<Arc<Integrated>>,
 }
 
 /// A motion, and the program of what is observed in it.
@@ -237,10 +204,8 @@ impl Motion {
     }
 }
 
-#[pymethods]
+#[stubbed]
 impl Motion {
-    #[doc = doc!("Motion.at")]
-    #[pyo3(signature = (t))]
     fn at(&self, py: Python<'_>, t: Floats<'_>) -> PyResult<Outputs> {
         let (t, start, end) = (times("t", &t)?, self.start, self.end);
         let inside = |i| {
@@ -261,11 +226,6 @@ impl Motion {
 
     /// The motion with these fields, read off as this one is.
     fn _with(&self, state: &Bound<'_, PyDict>) -> PyResult<Motion> {
-        Ok(Motion { motion: self.motion.clone(), ..Motion::again(state)? })
-    }
-
-    fn __repr__(&self) -> String {
-        let Motion { formulation, start, end, status, error_estimate, .. } = self;
-        format!("<deltaq.Motion {formulation}, t = {start} to {end}, {status}, error estimate {error_estimate:.1e}>")
+        Ok(Motion { motion: self.motion.clone(), ..Motion::_again(&state.py().get_type::<Motion>(), state)? })
     }
 }

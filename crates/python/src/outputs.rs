@@ -1,24 +1,16 @@
 //! What is read off at instants, as arrays.
 
 use mechanics::Observables;
-use numpy::PyArrayDyn;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
+use stubs::{answer, stubbed};
 
 use crate::arrays::{columns, fixed};
-use crate::pickled::answer;
 
-answer! {
-    Outputs {
-        coordinates: Py<PyArrayDyn<f64>>,
-        velocities: Py<PyArrayDyn<f64>>,
-        multipliers: Py<PyDict>,
-        invariants: Py<PyDict>,
-        observables: Py<PyDict>,
-    }
-}
+#[answer]
+pub(crate) struct Outputs;
 
-#[pymethods]
+#[stubbed]
 impl Outputs {
     fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
         let names = |table: &Py<PyDict>| table.bind(py).keys().iter().map(|name| name.to_string()).collect::<Vec<_>>();

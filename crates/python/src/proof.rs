@@ -5,15 +5,15 @@ use integrals::{Integrals, NoAnswer, NoMultipliers, Open};
 use integrate::Interrupt;
 use pyo3::prelude::*;
 use scene::Number;
+use stubs::stubbed;
 
 use crate::answer::typed;
 use crate::system::System;
 use crate::{arguments, background, errors};
 
-#[pymethods]
+#[stubbed]
 impl System {
     /// The certificate as JSON, from the start or from almost every one, or why there is none.
-    #[pyo3(signature = (almost_every_start))]
     fn _certificate(&self, py: Python<'_>, almost_every_start: bool) -> PyResult<(Option<String>, Option<String>)> {
         let (scene, interrupt) = (self.scene()?, Interrupt::default());
         let work = move || -> Result<_, motion::SolveError> {
@@ -30,7 +30,6 @@ impl System {
     }
 
     /// What is computed by `integrals`, as JSON.
-    #[pyo3(signature = (formulation, degree, names))]
     fn _integrals(&self, py: Python<'_>, formulation: &str, degree: u8, names: Vec<String>) -> PyResult<String> {
         let (interrupt, own) = (Interrupt::default(), arguments::formulation(formulation)?);
         let (scene, choice) = arguments::choice(py, &interrupt, self.scene()?, (own, None), None)?;

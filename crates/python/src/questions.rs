@@ -11,6 +11,7 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use scene::scenery::{Drawn, moving};
+use stubs::stubbed;
 
 use crate::arguments::{Numbers, Table};
 use crate::arrays::{Floats, Rows, list};
@@ -23,10 +24,8 @@ use crate::motion::{Asked, Motion, Sampled};
 use crate::system::System;
 use crate::{arguments, background, errors};
 
-#[pymethods]
+#[stubbed]
 impl System {
-    #[doc = doc!("System.equations")]
-    #[pyo3(signature = (formulation="chetaev", removal=None, *, mu0=None, constants=None))]
     fn equations(
         slf: &Bound<'_, Self>,
         formulation: &str,
@@ -38,9 +37,6 @@ impl System {
         Equations::derived(slf, (arguments::formulation(formulation)?, removal), given)
     }
 
-    #[doc = doc!("System.linearize")]
-    #[expect(clippy::too_many_arguments, reason = "named in Python, and most of them left out")]
-    #[pyo3(signature = (formulation="chetaev", *, free=None, at=None, find=false, removal=None, mu0=None, constants=None))]
     fn linearize(
         &self,
         py: Python<'_>,
@@ -60,9 +56,6 @@ impl System {
         Linearization::about(py, scene, choice, free.unwrap_or_default(), (at, find))
     }
 
-    #[doc = doc!("System.linearize_over")]
-    #[expect(clippy::too_many_arguments, reason = "named in Python, and most of them left out")]
-    #[pyo3(signature = (over, formulation="chetaev", *, free=None, find=false, removal=None, mu0=None, constants=None))]
     fn linearize_over(
         slf: &Bound<'_, Self>,
         over: Table<'_>,
@@ -85,12 +78,6 @@ impl System {
         LinearizationSweep::over(slf, scene, choice, (&name, values), (free.unwrap_or_default(), find))
     }
 
-    #[doc = doc!("System.solve")]
-    #[expect(clippy::too_many_arguments, reason = "named in Python, and most of them left out")]
-    #[pyo3(signature = (
-        formulation="chetaev", times=None, *, parameters=None, start=None, removal=None, mu0=None, constants=None,
-        form="auto", method="auto", tolerance=1e-11, project=true, max_steps=1_000_000, max_step=None, time_limit=None, sensitivities=None
-    ))]
     fn solve(
         slf: &Bound<'_, Self>,
         formulation: &str,
@@ -136,12 +123,6 @@ impl System {
         Motion::new(slf, sampled, &asked)
     }
 
-    #[doc = doc!("System.ensemble")]
-    #[expect(clippy::too_many_arguments, reason = "named in Python, and most of them left out")]
-    #[pyo3(signature = (
-        formulation="chetaev", times=None, *, vary, removal=None, mu0=None, constants=None, tolerance=1e-11, project=true,
-        max_steps=1_000_000, max_step=None, time_limit=None, threads=0, estimate=true
-    ))]
     fn ensemble(
         slf: &Bound<'_, Self>,
         formulation: &str,
@@ -175,12 +156,6 @@ impl System {
         Ensemble::new(slf, integrated.map_err(errors::solve)?)
     }
 
-    #[doc = doc!("System.compare")]
-    #[expect(clippy::too_many_arguments, reason = "named in Python, and most of them left out")]
-    #[pyo3(signature = (
-        formulations=None, *, extent="answer", decision=true, fits="undecided", tolerance=1e-11, max_steps=1_000_000,
-        max_step=None, time_limit=None
-    ))]
     fn compare(
         slf: &Bound<'_, Self>,
         formulations: Option<Vec<String>>,
@@ -195,8 +170,8 @@ impl System {
         let py = slf.py();
         let named = |names: Vec<String>| names.iter().map(|name| arguments::formulation(name)).collect();
         let only: Option<Vec<&Formulation>> = formulations.map(named).transpose()?;
-        let extent = arguments::extent(extent)?;
-        let fits = match arguments::fits(fits)? {
+        let extent = arguments::among("extent", extent, &arguments::EXTENTS)?;
+        let fits = match arguments::among("fits", fits, &arguments::FITS)? {
             // what is not decided on is not searched for
             Fits::Undecided if !decision || extent == Extent::Gaps => Fits::None,
             fits => fits,
@@ -210,7 +185,6 @@ impl System {
 
     /// What `deltaq.sweep` finds at some points: columns by name.
     #[expect(clippy::too_many_arguments, reason = "named in Python")]
-    #[pyo3(signature = (names, values, formulations, decision, tolerance, max_steps, max_step, time_limit, threads))]
     fn _sweep_points<'py>(
         &self,
         py: Python<'py>,
@@ -250,7 +224,6 @@ impl System {
 
     /// The bodies along curves (label, formulation, times, coordinates of shape (k, n)) as an SVG that moves;
     /// None where nothing is seen to move. Between times a curve is straight.
-    #[pyo3(signature = (curves))]
     fn _moving(&self, curves: Vec<(String, String, Floats<'_>, Floats<'_>)>) -> PyResult<Option<String>> {
         let mut scene = self.scene()?;
         let mut motions = Vec::new();

@@ -5,14 +5,13 @@ use std::path::PathBuf;
 
 use pyo3::prelude::*;
 use scene::Scene;
+use stubs::stubbed;
 
 use crate::arguments::{Numbers, unknown};
 use crate::errors;
 use crate::system::{Overrides, System};
 
-#[doc = doc!("load")]
-#[pyfunction]
-#[pyo3(signature = (path, overrides=None))]
+#[stubbed]
 pub(crate) fn load(py: Python<'_>, path: PathBuf, overrides: Option<Numbers>) -> PyResult<System> {
     let overrides = overrides.map_or(Overrides::new(), |numbers| numbers.0);
     // what the operating system refuses is its own error: FileNotFoundError, PermissionError, ...
@@ -21,17 +20,13 @@ pub(crate) fn load(py: Python<'_>, path: PathBuf, overrides: Option<Numbers>) ->
     System::read(py, ("", Some(&path)), text, overrides)
 }
 
-#[doc = doc!("parse")]
-#[pyfunction]
-#[pyo3(signature = (text, overrides=None, *, name="scene"))]
+#[stubbed]
 pub(crate) fn parse(py: Python<'_>, text: &str, overrides: Option<Numbers>, name: &str) -> PyResult<System> {
     let overrides = overrides.map_or(Overrides::new(), |numbers| numbers.0);
     System::read(py, (name, None), text.into(), overrides)
 }
 
-#[doc = doc!("built_in")]
-#[pyfunction]
-#[pyo3(signature = (name, overrides=None))]
+#[stubbed]
 pub(crate) fn built_in(py: Python<'_>, name: &str, overrides: Option<Numbers>) -> PyResult<System> {
     let Some(text) = scene::catalogue::text_of(name) else {
         let known = scene::catalogue::built_in().map(|(known, _)| *known).chain(["n-trailer-N"]);
@@ -41,7 +36,7 @@ pub(crate) fn built_in(py: Python<'_>, name: &str, overrides: Option<Numbers>) -
 }
 
 /// What a pickled system is read from.
-#[pyfunction]
+#[stubbed]
 pub(crate) fn _read_again(py: Python<'_>, name: &str, text: String, overrides: Overrides) -> PyResult<System> {
     System::read(py, (name, None), text, overrides)
 }

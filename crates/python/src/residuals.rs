@@ -7,25 +7,23 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 use scene::Scene;
+use stubs::stubbed;
 
 use crate::arguments::{Numbers, Table, unknown};
 use crate::arrays::{Array, Floats, array, finite, list};
 use crate::background::whole;
+use crate::pickled::partial;
 use crate::shared::Shared;
 use crate::system::System;
 use crate::{arguments, errors};
 
-#[doc = doc!("Residuals")]
-#[pyclass(frozen, module = "deltaq")]
+#[stubbed]
 pub(crate) struct Residuals {
     model: Shared<Model>,
-    /// Names of the numbers p, length P.
     #[pyo3(get)]
     names: Vec<String>,
-    /// Names of the columns: coordinates ("x"), velocities ("x'"), multipliers and costates.
     #[pyo3(get)]
     columns: Vec<String>,
-    /// Residuals at times that a motion does not reach.
     #[pyo3(get)]
     penalty: f64,
     places: Vec<Place>,
@@ -136,10 +134,9 @@ impl Residuals {
     }
 }
 
-#[pymethods]
+#[stubbed]
 impl Residuals {
     /// The residuals for numbers p of shape (P,): shape (columns times k,), finite whatever p is.
-    #[pyo3(signature = (p))]
     fn __call__<'py>(&self, py: Python<'py>, p: Floats<'py>) -> Array<'py> {
         let reading = self.read(py, &p, |model, p| model.outputs(p))?;
         let mut values = Vec::with_capacity(self.count());
@@ -153,8 +150,6 @@ impl Residuals {
         array(py, values, None, &[count])
     }
 
-    #[doc = doc!("Residuals.jac")]
-    #[pyo3(signature = (p))]
     fn jac<'py>(&self, py: Python<'py>, p: Floats<'py>) -> Array<'py> {
         let reading = self.read(py, &p, |model, p| model.derivatives(p))?;
         let mut values = Vec::with_capacity(self.count() * self.names.len());
@@ -170,7 +165,6 @@ impl Residuals {
         array(py, values, None, &[count, width])
     }
 
-    /// Why the motion of the last call ended before the last time; None where it did not.
     #[getter]
     fn ended(&self) -> PyResult<Option<String>> {
         self.ended.copy()
@@ -190,14 +184,9 @@ impl Residuals {
     }
 }
 
-#[pymethods]
+#[stubbed]
 impl System {
     /// `residuals` of columns by name.
-    #[expect(clippy::too_many_arguments, reason = "named in Python, and most of them left out")]
-    #[pyo3(signature = (
-        names, times, data, formulation, *, sigma=None, removal=None, mu0=None, constants=None, method="auto",
-        tolerance=1e-11, max_steps=100_000, penalty=1e6
-    ))]
     fn _residuals(
         slf: &Bound<'_, Self>,
         names: Vec<String>,
@@ -239,9 +228,4 @@ impl System {
         let asked = (names, &times[..], data);
         Residuals::new((&scene, &choice), asked, sigma, penalty, &settings, (call, positional.unbind()))
     }
-}
-
-/// `call(*arguments, **options)` without the arguments.
-fn partial<'py>(method: Bound<'py, PyAny>, options: &Bound<'py, PyDict>) -> PyResult<Bound<'py, PyAny>> {
-    method.py().import("functools")?.getattr("partial")?.call((method,), Some(options))
 }

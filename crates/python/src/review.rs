@@ -3,6 +3,7 @@
 use integrate::Interrupt;
 use pyo3::prelude::*;
 use review::{Asked, Reviewed, review, states};
+use stubs::stubbed;
 
 use crate::answer::typed;
 use crate::system::System;
@@ -11,10 +12,9 @@ use crate::{arguments, background, errors};
 /// `(t, q, v)`.
 type Plain = (f64, Vec<f64>, Vec<f64>);
 
-#[pymethods]
+#[stubbed]
 impl System {
     /// What `review` finds, as JSON.
-    #[pyo3(signature = (file, text, wheres, formulation, tolerance))]
     fn _review(
         &self,
         py: Python<'_>,

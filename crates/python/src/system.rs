@@ -10,18 +10,18 @@ use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::types::{IntoPyDict, PyDict};
 use scene::Scene;
+use stubs::stubbed;
 use symbolic::{work_on, worked_on};
 
 use crate::arguments::{Numbers, Table, unknown};
-use crate::arrays::{Array, Floats, Points, array, fixed};
+use crate::arrays::{Array, Floats, Points, array, vector};
 use crate::background::apart;
 use crate::scene_text::{Arguments, Formula, Formulas, write};
 use crate::shared::Shared;
 use crate::state::State;
 use crate::{background, errors};
 
-#[doc = doc!("System")]
-#[pyclass(frozen, module = "deltaq")]
+#[stubbed]
 pub(crate) struct System {
     scene: Shared<Scene>,
     /// What its faults are about.
@@ -99,15 +99,39 @@ impl System {
     }
 }
 
-#[pymethods]
+/// What Python reads off the scene.
+macro_rules! read_off {
+    ($scene:ident: $($name:ident: $kind:ty = $value:expr;)*) => {
+        #[stubbed]
+        impl System {
+            $(
+                #[getter]
+                pub(crate) fn $name(&self) -> PyResult<$kind> {
+                    self.scene.with(|$scene| $value)
+                }
+            )*
+        }
+    };
+}
+
+read_off! { scene:
+    name: String = scene.name.clone();
+    title: String = scene.title.clone();
+    source: String = scene.source.clone();
+    notes: String = scene.notes.clone();
+    coordinates: Vec<String> = scene.system.coordinates.iter().map(|c| c.name.clone()).collect();
+    dimension: usize = scene.system.dimension();
+    lagrangian: String = scene.system.graph.plain(scene.system.lagrangian);
+    constraints: Vec<String> = scene.system.constraints.iter().map(|&f| scene.system.graph.plain(f)).collect();
+    r#virtual: Vec<String> = scene.system.virtual_conditions.iter().map(|&w| scene.system.graph.plain(w)).collect();
+    multipliers: Vec<f64> = scene.multipliers.clone();
+    duration: f64 = scene.duration;
+    breakpoints: Vec<f64> = scene.system.breakpoints.clone();
+}
+
+#[stubbed]
 impl System {
     #[new]
-    #[expect(clippy::too_many_arguments, reason = "named in Python, and most of them left out")]
-    #[pyo3(signature = (
-        coordinates, lagrangian, constraints=None, *, start, parameters=None, definitions=None, units=None,
-        r#virtual=None, forces=None, observables=None, invariants=None, view=None, velocities=None, start_equations=None, guess=None, project=false, removals=None, multipliers=None, time=0.0, duration=1.0,
-        breakpoints=None, name="system", title=None, notes=""
-    ))]
     fn new(
         py: Python<'_>,
         coordinates: Formulas,
@@ -165,75 +189,17 @@ impl System {
         System::read(py, (name, None), text, Overrides::new())
     }
 
-    /// Name: that of the file without its ending.
-    #[getter]
-    pub(crate) fn name(&self) -> PyResult<String> {
-        self.scene.with(|scene| scene.name.clone())
-    }
-
-    /// Title, one line.
-    #[getter]
-    fn title(&self) -> PyResult<String> {
-        self.scene.with(|scene| scene.title.clone())
-    }
-
-    /// Where the example is from, empty where that is not said.
-    #[getter]
-    fn source(&self) -> PyResult<String> {
-        self.scene.with(|scene| scene.source.clone())
-    }
-
-    /// Remarks, empty where there are none.
-    #[getter]
-    fn notes(&self) -> PyResult<String> {
-        self.scene.with(|scene| scene.notes.clone())
-    }
-
-    /// Names of the coordinates, length n.
-    #[getter]
-    fn coordinates(&self) -> PyResult<Vec<String>> {
-        self.scene.with(|scene| scene.system.coordinates.iter().map(|c| c.name.clone()).collect())
-    }
-
-    /// Units of the coordinates, by name.
     #[getter]
     fn units<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         self.scene()?.system.coordinates.iter().map(|c| (&c.name, &c.unit)).into_py_dict(py)
     }
 
-    /// Number of coordinates, n.
-    #[getter]
-    fn dimension(&self) -> PyResult<usize> {
-        self.scene.with(|scene| scene.system.dimension())
-    }
-
-    /// Values of the parameters, by name.
     #[getter]
     pub(crate) fn parameters<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let scene = self.scene()?;
         scene.system.parameters.iter().map(|p| (scene.system.graph.name(p.symbol), p.value)).into_py_dict(py)
     }
 
-    /// The Lagrangian, as text.
-    #[getter]
-    fn lagrangian(&self) -> PyResult<String> {
-        self.scene.with(|scene| scene.system.graph.plain(scene.system.lagrangian))
-    }
-
-    /// The constraints, as text, length h.
-    #[getter]
-    fn constraints(&self) -> PyResult<Vec<String>> {
-        self.scene.with(|Scene { system, .. }| system.constraints.iter().map(|&f| system.graph.plain(f)).collect())
-    }
-
-    /// What rates of virtual displacements satisfy, as text, length h; empty where that is not prescribed.
-    #[getter]
-    fn r#virtual(&self) -> PyResult<Vec<String>> {
-        self.scene
-            .with(|Scene { system, .. }| system.virtual_conditions.iter().map(|&w| system.graph.plain(w)).collect())
-    }
-
-    /// The generalized forces other than zero, as text, by coordinate.
     #[getter]
     fn forces<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let texts = |Scene { system, .. }: &mut Scene| -> Vec<(String, String)> {
@@ -244,19 +210,16 @@ impl System {
         self.scene.with(texts)?.into_py_dict(py)
     }
 
-    /// What motions list in addition, as text, by name.
     #[getter]
     fn observables<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         self.watched(py, false)
     }
 
-    /// What should stay constant along motions, as text, by name.
     #[getter]
     fn invariants<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         self.watched(py, true)
     }
 
-    /// The Lagrangian and the constraints in LaTeX: one `aligned` environment.
     #[getter]
     fn latex(&self) -> PyResult<String> {
         self.scene.with(|scene| {
@@ -271,33 +234,12 @@ impl System {
         Ok(format!("$\\displaystyle {}$", self.latex()?))
     }
 
-    /// The start: t0, q0 and v0 with f(q0, v0, t0) = 0.
     #[getter]
     fn start(&self, py: Python<'_>) -> PyResult<State> {
         let mechanics::State { t, q, v } = self.scene.with(|scene| scene.start.clone())?;
-        let n = q.len();
-        Ok(State { t, q: fixed(py, q, None, &[n])?.unbind(), v: fixed(py, v, None, &[n])?.unbind() })
+        Ok(State { t, q: vector(py, q)?, v: vector(py, v)? })
     }
 
-    /// Multipliers mu0 at the start of vakonomic motions, length h.
-    #[getter]
-    fn multipliers(&self) -> PyResult<Vec<f64>> {
-        self.scene.with(|scene| scene.multipliers.clone())
-    }
-
-    /// Length of the run, in the unit of time.
-    #[getter]
-    fn duration(&self) -> PyResult<f64> {
-        self.scene.with(|scene| scene.duration)
-    }
-
-    /// Times at which a step ends, where something is switched.
-    #[getter]
-    fn breakpoints(&self) -> PyResult<Vec<f64>> {
-        self.scene.with(|scene| scene.system.breakpoints.clone())
-    }
-
-    #[doc = doc!("System.removals")]
     #[getter]
     fn removals(&self, py: Python<'_>) -> PyResult<Vec<String>> {
         let scene = self.scene()?;
@@ -305,7 +247,6 @@ impl System {
         Ok(known.map_err(errors::solve)?.into_iter().map(|r| r.name).collect())
     }
 
-    /// Frobenius' verdict on the constraints, in words; RemovalError where they are dependent at the start.
     #[getter]
     fn integrability(&self, py: Python<'_>) -> PyResult<String> {
         let scene = self.scene()?;
@@ -313,8 +254,6 @@ impl System {
         Ok(found.map_err(errors::solve)?.to_string())
     }
 
-    #[doc = doc!("System.replace")]
-    #[pyo3(signature = (overrides=None, /, **numbers))]
     fn replace(
         &self,
         py: Python<'_>,
@@ -350,14 +289,10 @@ impl System {
         Ok((slf.py().import("deltaq")?.getattr("_read_again")?, arguments))
     }
 
-    #[doc = doc!("System.to_toml")]
-    #[pyo3(signature = ())]
     fn to_toml(&self) -> PyResult<String> {
         self.scene.with(|scene| scene.to_toml())
     }
 
-    #[doc = doc!("System.constraint")]
-    #[pyo3(signature = (t, q, v))]
     fn constraint<'py>(&self, py: Python<'py>, t: Floats<'_>, q: Floats<'_>, v: Floats<'_>) -> Array<'py> {
         let points = Points::read([t, q, v], self.dimension()?)?;
         let compile =
@@ -367,8 +302,6 @@ impl System {
         array(py, apart(py, || points.values(program))?, points.count, &[width])
     }
 
-    #[doc = doc!("System.mass")]
-    #[pyo3(signature = (t, q, v))]
     fn mass<'py>(&self, py: Python<'py>, t: Floats<'_>, q: Floats<'_>, v: Floats<'_>) -> Array<'py> {
         let n = self.dimension()?;
         let points = Points::read([t, q, v], n)?;

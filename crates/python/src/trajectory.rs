@@ -4,37 +4,19 @@ use std::time::Instant;
 
 use integrate::{Dense, Options, Status};
 use motion::{Prepared, SolveError};
-use numpy::PyArrayDyn;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
+use stubs::{answer, stubbed};
 
 use crate::arguments::Numbers;
 use crate::arrays::{Floats, fixed, list, times, within};
 use crate::ensemble::Instants;
 use crate::equations::Equations;
 use crate::motion::work;
-use crate::pickled::answer;
 use crate::{arguments, background, errors};
 
-answer! {
-    Trajectory {
-        times: Py<PyArrayDyn<f64>>,
-        states: Py<PyArrayDyn<f64>>,
-        reached: usize,
-        status: String,
-        cause: Option<String>,
-        work: Py<PyDict>,
-        seconds: f64,
-    }
-}
-
-#[pymethods]
-impl Trajectory {
-    fn __repr__(&self) -> String {
-        format!("<deltaq.Trajectory {}, {} s>", self.status, self.seconds)
-    }
-}
+#[answer("<deltaq.Trajectory {status}, {seconds} s>")]
+pub(crate) struct Trajectory;
 
 /// The time of y0: `t0` or the first of `instants`, which then must not be all there is.
 fn start_of(instants: &Floats<'_>, t0: Option<f64>) -> PyResult<f64> {
@@ -67,11 +49,8 @@ fn started_from<T>(
     result
 }
 
-#[pymethods]
+#[stubbed]
 impl Equations {
-    #[doc = doc!("Equations.integrate")]
-    #[expect(clippy::too_many_arguments, reason = "named in Python, and most of them left out")]
-    #[pyo3(signature = (times, *, y0=None, t0=None, parameters=None, constants=None, mu0=None, method="auto", tolerance=1e-11, project=true, max_steps=1_000_000, max_step=None, time_limit=None))]
     fn integrate(
         &self,
         py: Python<'_>,

@@ -74,7 +74,7 @@ SHORT = {
     ("_Fitted", "unknowns"): lambda f: f.unknowns(0),
 }
 # written in Python, of what others have
-OTHERS = {"plot", "animate", "to_arrow", "to_pandas", "to_xarray", "_fit", "_design", "_certificate", "_integrals", "_review", "_review_states", "_residuals", "_with"}
+OTHERS = {"plot", "animate", "to_arrow", "to_pandas", "to_xarray", "_fit", "_design", "_certificate", "_integrals", "_review", "_review_states", "_residuals", "_with", "_again"}
 
 
 def calls(thing):
@@ -82,7 +82,7 @@ def calls(thing):
     kind, long = type(thing).__name__, []
     yield lambda: repr(thing)
     if kind != "_Fitted":
-        yield lambda: pickle.dumps(thing)
+        yield lambda: pickle.loads(pickle.dumps(thing))
     for name in dir(thing):
         if name.startswith("__") or name == "_repr_html_" or name in OTHERS:
             continue

@@ -169,11 +169,6 @@ impl<C: Coefficient, const N: usize> Jet<C, N> {
         let result = self.integrated(first, |k, _, _| C::convolution(&slopes[1..=k], &slope.coefficients[..k]));
         Jet { flaw: result.flaw.or(slope.flaw), ..result }
     }
-
-    fn inverse_function(self, function: Function, slope: Self) -> Self {
-        let first = self.coefficients[0].inverse_function(function, self.exact);
-        self.with_slope(first, slope)
-    }
 }
 
 impl<C: Coefficient, const N: usize> Add for Jet<C, N> {
@@ -247,6 +242,17 @@ impl<C: Coefficient, const N: usize> Div for Jet<C, N> {
         }
         quotient
     }
+}
+
+/// Functions by their derivatives.
+macro_rules! inverse_functions {
+    ($($name:ident $function:ident |$x:ident, $one:ident| $slope:expr;)*) => { $(
+        fn $name(self) -> Self {
+            let ($x, $one) = (self, Self::constant_one());
+            let first = self.coefficients[0].inverse_function(Function::$function, self.exact);
+            self.with_slope(first, $slope)
+        }
+    )* };
 }
 
 impl<C: Coefficient, const N: usize> Scalar for Jet<C, N> {
@@ -341,34 +347,14 @@ impl<C: Coefficient, const N: usize> Scalar for Jet<C, N> {
         (up - down) / (up + down)
     }
 
-    fn asin(self) -> Self {
-        let slope = (Self::constant_one() - self * self).sqrt().recip();
-        self.inverse_function(Function::Asin, slope)
-    }
-
-    fn acos(self) -> Self {
-        let slope = -(Self::constant_one() - self * self).sqrt().recip();
-        self.inverse_function(Function::Acos, slope)
-    }
-
-    fn atan(self) -> Self {
-        let slope = (Self::constant_one() + self * self).recip();
-        self.inverse_function(Function::Atan, slope)
-    }
-
-    fn asinh(self) -> Self {
-        let slope = (Self::constant_one() + self * self).sqrt().recip();
-        self.inverse_function(Function::Asinh, slope)
-    }
-
-    fn acosh(self) -> Self {
-        let slope = (self * self - Self::constant_one()).sqrt().recip();
-        self.inverse_function(Function::Acosh, slope)
-    }
-
-    fn atanh(self) -> Self {
-        let slope = (Self::constant_one() - self * self).recip();
-        self.inverse_function(Function::Atanh, slope)
+    inverse_functions! {
+        asin Asin |x, one| (one - x * x).sqrt().recip();
+        acos Acos |x, one| -(one - x * x).sqrt().recip();
+        atan Atan |x, one| (one + x * x).recip();
+        asinh Asinh |x, one| (one + x * x).sqrt().recip();
+        acosh Acosh |x, one| (x * x - one).sqrt().recip();
+        atanh Atanh |x, one| (one - x * x).recip();
+        log Log |x, _one| x.recip();
     }
 
     fn exp(self) -> Self {
@@ -376,11 +362,6 @@ impl<C: Coefficient, const N: usize> Scalar for Jet<C, N> {
         let one = self.exact.filter(|x| x.is_zero()).and_then(|_| Exact::ratio(1, 1));
         let first = self.coefficients[0].exponential(self.exact).map(|x| (x, one));
         self.integrated(first, |k, y, _| C::convolution(&slopes[1..=k], &y[..k]))
-    }
-
-    fn log(self) -> Self {
-        let slope = self.recip();
-        self.inverse_function(Function::Log, slope)
     }
 
     fn powf(self, exponent: Self) -> Self {

@@ -80,6 +80,25 @@ impl Echelon {
         self.0.push((pivot, row));
         true
     }
+
+    /// Columns of `width` without a pivot, and for each the vector of the kernel that has 1 there and 0 in the
+    /// others.
+    pub(crate) fn kernel(self, width: usize) -> (Vec<usize>, Vec<Vec<Modular>>) {
+        let mut pivots = self.0;
+        pivots.sort_by_key(|(pivot, _)| *pivot);
+        let free: Vec<usize> = (0..width).filter(|j| pivots.iter().all(|(pivot, _)| pivot != j)).collect();
+        let solve = |&j: &usize| {
+            let mut x = vec![Modular::ZERO; width];
+            x[j] = Modular::one();
+            for (pivot, row) in pivots.iter().rev() {
+                let sum = (pivot + 1..width).fold(Modular::ZERO, |sum, k| sum + row[k] * x[k]);
+                x[*pivot] = -sum;
+            }
+            x
+        };
+        let kernel = free.iter().map(solve).collect();
+        (free, kernel)
+    }
 }
 
 /// How many of the first `fresh` columns are free, and all relations `Σ x_j column_j = 0`.
@@ -93,17 +112,6 @@ pub fn nullspace(columns: &[Vec<Modular>], fresh: usize) -> (usize, Vec<Vec<Modu
         }
         rows.add(columns.iter().map(|column| column[i]).collect());
     }
-    let mut pivots = rows.0;
-    pivots.sort_by_key(|(pivot, _)| *pivot);
-    let free: Vec<usize> = (0..width).filter(|j| pivots.iter().all(|(pivot, _)| pivot != j)).collect();
-    let solve = |&j: &usize| {
-        let mut x = vec![Modular::ZERO; width];
-        x[j] = Modular::one();
-        for (pivot, row) in pivots.iter().rev() {
-            let sum = (pivot + 1..width).fold(Modular::ZERO, |sum, k| sum + row[k] * x[k]);
-            x[*pivot] = -sum;
-        }
-        x
-    };
-    (free.iter().filter(|&&j| j < fresh).count(), free.iter().map(solve).collect())
+    let (free, kernel) = rows.kernel(width);
+    (free.iter().filter(|&&j| j < fresh).count(), kernel)
 }

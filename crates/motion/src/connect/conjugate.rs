@@ -12,11 +12,12 @@ use crate::band::SAMPLES;
 use crate::band::limits::NEARLY_ZERO;
 
 /// A time conjugate to the start of a motion.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, schemars::JsonSchema)]
 pub struct ConjugateTime {
     /// When.
     pub t: f64,
     /// What two runs differ by; infinite where the looser one has it not.
+    #[schemars(with = "Option<f64>")]
     pub error: f64,
     /// By how much the rank of `∂q(t)/∂x` falls.
     pub multiplicity: usize,

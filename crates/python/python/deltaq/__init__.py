@@ -57,7 +57,6 @@ from ._native import (
     Trajectory,
     UnknownNameError,
     __version__,
-    _again,
     _Fitted,
     _read_again,
     built_in,

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from ._native import Ensemble, Motion, Outputs, State, UnknownNameError, _again
+from ._native import Ensemble, Motion, Outputs, State, UnknownNameError
 
 Array = npt.NDArray[np.float64]
 
@@ -51,7 +51,7 @@ def instants(self: Motion) -> Iterator[State]:
     shape = (len(times(self)), len(self.coordinate_names))
     for i, (q, v) in enumerate(zip(np.reshape(self.coordinates, shape), np.reshape(self.velocities, shape))):
         if i < self.reached:
-            yield _again("State", {"t": float(times(self)[i]), "q": q.copy(), "v": v.copy()})
+            yield State._again({"t": float(times(self)[i]), "q": q.copy(), "v": v.copy()})
 
 
 def is_column(self: Motion | Ensemble, name: object) -> bool:
@@ -72,7 +72,7 @@ def item(self: Motion, key: str | slice) -> Any:
     after = -np.inf if key.start is None else float(key.start)
     before = np.inf if key.stop is None else float(key.stop)
     chosen = np.flatnonzero((self.times >= after) & (self.times <= before))[::step]
-    _, (_, state) = self.__reduce__()
+    _, (state,) = self.__reduce__()
     for name in ("times", "coordinates", "velocities", "coordinate_error_estimates", "multipliers", "invariants", "observables", "multiplier_error_estimates", "sensitivities", "sensitivity_error_estimates"):
         state[name] = chosen_of(state[name], chosen)
     state["reached"] = int((chosen < self.reached).sum())
@@ -84,6 +84,6 @@ def chosen_of(value: Any, chosen: npt.NDArray[np.intp]) -> Any:
     if isinstance(value, dict):
         return {name: chosen_of(own, chosen) for name, own in value.items()}
     if isinstance(value, Outputs):
-        again, (name, state) = value.__reduce__()
-        return again(name, chosen_of(state, chosen))
+        again, (state,) = value.__reduce__()
+        return again(chosen_of(state, chosen))
     return value[chosen]

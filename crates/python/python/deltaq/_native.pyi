@@ -105,7 +105,6 @@ def built_in(name: str, overrides: Mapping[str, float] | None = None) -> System:
     1.6
     """
 def _read_again(name: str, text: str, overrides: list[tuple[str, float]]) -> System: ...
-def _again(name: str, state: dict[str, Any]) -> Any: ...
 def parse(text: str, overrides: Mapping[str, float] | None = None, *, name: str = "scene") -> System:
     """A system from the text of a scene file.
 
@@ -141,6 +140,8 @@ class State:
     """Coordinates, shape (n,), in the units of the system."""
     v: Final[_Array]
     """Velocities, shape (n,), in units of the coordinates per unit of time."""
+    @classmethod
+    def _again(cls, state: dict[str, Any]) -> State: ...
 
 @final
 class System:
@@ -847,7 +848,7 @@ class Outputs:
     """Quantities that should stay constant by name, each a float or of shape (k,)."""
     observables: Final[dict[str, Any]]
     """Observables of the system by name, each a float or of shape (k,)."""
-    def __reduce__(self) -> tuple[Any, tuple[str, dict[str, Any]]]: ...
+    def __reduce__(self) -> tuple[Any, tuple[dict[str, Any]]]: ...
 
 @final
 class Equations:
@@ -1423,7 +1424,7 @@ class Motion:
     def __getitem__(self, key: str) -> _Array: ...
     @overload
     def __getitem__(self, key: slice) -> Motion: ...
-    def __reduce__(self) -> tuple[Any, tuple[str, dict[str, Any]]]: ...
+    def __reduce__(self) -> tuple[Any, tuple[dict[str, Any]]]: ...
     def _with(self, state: dict[str, Any]) -> Motion: ...
     def at(self, t: _Floats) -> Outputs:
         """Everything at time t, read off the dense output (order 7 for dop853).
