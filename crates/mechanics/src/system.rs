@@ -209,11 +209,13 @@ impl System {
         Ok(Evaluator::new(self.graph.compile(inputs, outputs, &self.parameter_values())?))
     }
 
-    /// Values of `t, q, v` at `state`; parameters are left to [`System::parameter_values`].
+    /// Values of the parameters, and of `t, q, v` at `state`.
     pub fn values_at(&self, state: &State) -> HashMap<Symbol, f64> {
         let q = self.positions().into_iter().zip(state.q.iter().copied());
         let v = self.velocities().into_iter().zip(state.v.iter().copied());
-        q.chain(v).chain([(self.time, state.t)]).collect()
+        let mut values = self.parameter_values();
+        values.extend(q.chain(v).chain([(self.time, state.t)]));
+        values
     }
 
     /// The rates `(q, v), (v, a), (t, 1)` of every variable along a motion, for [`Graph::total_derivative`].
