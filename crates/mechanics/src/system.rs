@@ -195,6 +195,22 @@ impl System {
         g.substitute(e, &written.filter(|(_, e)| g.are_exact(&[*e])).collect())
     }
 
+    /// Whether a symbol is a parameter.
+    pub fn is_parameter(&self, symbol: Symbol) -> bool {
+        self.parameters.iter().any(|p| p.symbol == symbol)
+    }
+
+    /// Whether `e` has no symbols but parameters.
+    pub fn is_constant(&self, e: Expr) -> bool {
+        self.graph.symbols_of(e).into_iter().all(|s| self.is_parameter(s))
+    }
+
+    /// `es` at `v = 0`.
+    pub fn at_rest(&self, es: &[Expr]) -> Vec<Expr> {
+        let zero = self.velocities().into_iter().map(|v| (v, self.graph.zero())).collect();
+        self.graph.substitute_all(es, &zero)
+    }
+
     /// Whether `e` is identically zero for the parameters of the system as they are written: a formula is no
     /// float ([`Graph::vanishes`]).
     pub fn vanishes(&self, e: Expr) -> Vanishing {

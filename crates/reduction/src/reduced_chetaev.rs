@@ -84,7 +84,7 @@ pub fn derive_chetaev(system: &System, derivation: &Derivation) -> Result<Equati
         candidates.push(in_frame);
     }
     candidates.extend(chain.as_ref().map(own).transpose()?);
-    Ok(if candidates.len() == 1 { candidates.remove(0) } else { cheapest(candidates) })
+    Ok(cheapest(candidates))
 }
 
 /// The equations in quasi-velocities of coordinates, or of a frame.
@@ -178,9 +178,8 @@ fn balance_in_frame(
 ) -> Vec<Expr> {
     let g = &system.graph;
     let (q, v) = (system.positions(), system.velocities());
-    let at_rest: HashMap<Symbol, Expr> = v.iter().map(|&v| (v, g.zero())).collect();
-    let linear = g.substitute_all(momenta, &at_rest);
-    let rest = g.add(g.substitute(system.lagrangian, &at_rest), g.dot(&linear, &g.variables(&v)));
+    let linear = system.at_rest(momenta);
+    let rest = g.add(system.at_rest(&[system.lagrangian])[0], g.dot(&linear, &g.variables(&v)));
     let mut flow: Vec<(Symbol, Expr)> = q.iter().zip(&v).map(|(&q, &v)| (q, g.variable(v))).collect();
     flow.push((system.time, g.one()));
     let (inertia, gradient) = (g.total_derivatives(&linear, &flow), g.gradient(rest, &q));

@@ -91,7 +91,7 @@ pub fn derive_vakonomic(system: &System, derivation: &Derivation) -> Result<Equa
         candidates.push(in_frame);
     }
     candidates.extend(problem.put_in(&system).map(|whole| problem.equations(system.clone(), Some(&whole))));
-    if candidates.len() == 1 { Ok(candidates.remove(0)) } else { Ok(cheapest(candidates)) }
+    Ok(cheapest(candidates))
 }
 
 /// Quasi-velocities put in: short for small systems, where terms meet that cancel.
@@ -135,7 +135,7 @@ impl Problem {
         let v = system.velocities();
         let momenta = g.gradient(system.lagrangian, &v);
         let Some(frame) = &self.frame else { return (v, momenta) };
-        let linear = frame.along(g, &g.substitute_all(&momenta, &at_rest(system)));
+        let linear = frame.along(g, &system.at_rest(&momenta));
         let u: Vec<Symbol> = frame.velocities.iter().map(|u| u.symbol).collect();
         let own = frame.inertia.iter().zip(&u).zip(linear);
         let momenta = own.map(|((&c, &u), linear)| g.add(g.mul(c, g.variable(u)), linear)).collect();
@@ -159,7 +159,7 @@ impl Problem {
         };
         let u = frame.velocities.iter().map(|u| g.variable(u.symbol));
         let linear = momenta.iter().zip(&frame.inertia).zip(u).map(|((&l_u, &c), u)| g.mul(u, g.sub(l_u, g.mul(c, u))));
-        let rest: Vec<Expr> = linear.chain([g.substitute(system.lagrangian, &at_rest(system))]).collect();
+        let rest: Vec<Expr> = linear.chain(system.at_rest(&[system.lagrangian])).collect();
         let applied: Vec<Expr> =
             applied(g.sum(&rest)).iter().zip(along).map(|(&r_q, &along)| g.sub(r_q, along)).collect();
         let (applied, turned) = (frame.along(g, &applied), frame.turned(g, &self.p));
@@ -257,11 +257,6 @@ impl Problem {
         let rates = minus(&system.positions()).into_iter().zip(forces).map(|(e, force)| g.add(e, force)).collect();
         Some(Whole { balance: minus(&w), rates })
     }
-}
-
-/// `v = 0`
-fn at_rest(system: &System) -> HashMap<Symbol, Expr> {
-    system.velocities().into_iter().map(|v| (v, system.graph.zero())).collect()
 }
 
 /// `Sᵀ (L_v − p)` in `(t, q, p, w)`, without what depends on `w` by way of definitions.
