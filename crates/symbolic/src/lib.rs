@@ -59,7 +59,7 @@ pub use programs::evaluator::Evaluator;
 pub use programs::scalar::Scalar;
 pub use programs::tape::{Recorded, Tape, Workspace};
 pub use questions::identity::Vanishing;
-pub use questions::random::{SplitMix, Xorshift};
+pub use questions::random::SplitMix;
 pub use questions::range::Range;
 pub use questions::steep::Steep;
 pub use series::{
