@@ -177,8 +177,7 @@ pub fn watched(scene: &Scene, choice: &Choice) -> Result<Vec<Watched>, NoAnswer>
 
 /// The printed formula, parsed with the symbols of `g`.
 fn again(g: &Graph, text: &str) -> Result<Expr, String> {
-    let known = |name: &str| g.find_symbol(name).map(|symbol| g.variable(symbol));
-    g.parse(text, &known, &[]).map_err(|fault| fault.to_string())
+    g.parse(text, g).map_err(|fault| fault.to_string())
 }
 
 /// Changes along the motion of `choice` of what is printed, and of the scene's invariants.

@@ -151,7 +151,7 @@ impl System {
     /// # Errors
     /// [`ParseError`] with its place.
     pub fn expression(&self, text: &str) -> Result<Expr, ParseError> {
-        self.graph.parse(text, &|name| self.graph.find_symbol(name).map(|s| self.graph.variable(s)), &[])
+        self.graph.parse(text, &self.graph)
     }
 
     /// Number of coordinates, `n`.

@@ -133,13 +133,13 @@ impl Names {
             return Err(NameFault::Reserved("time"));
         }
         let nothing = |_: &str| None;
-        match graph.parse(name, &nothing, &[]).map_err(|e| e.kind) {
+        match graph.parse(name, &nothing).map_err(|e| e.kind) {
             Err(ParseErrorKind::Undefined { name: read, .. }) if read == name => {}
             Ok(_) if name.starts_with(|c: char| c.is_alphabetic()) => return Err(NameFault::Reserved("a constant")),
             Err(ParseErrorKind::FunctionWithoutArgument { .. }) => return Err(NameFault::Reserved("a function")),
             _ => return Err(NameFault::NotIdentifier),
         }
-        match graph.parse(&format!("{name}(1)"), &nothing, &[]).map_err(|e| e.kind) {
+        match graph.parse(&format!("{name}(1)"), &nothing).map_err(|e| e.kind) {
             Err(ParseErrorKind::UnknownFunction { .. } | ParseErrorKind::VariableCalled { .. }) => {}
             Err(ParseErrorKind::Undefined { .. }) => {}
             _ => return Err(NameFault::Reserved("a function")),
@@ -172,7 +172,7 @@ impl Names {
 
     /// Reads a number as an expression.
     pub(super) fn parse(&self, source: Source, graph: &Graph, text: &Written) -> Result<Expr, SceneError> {
-        graph.parse_number(&text.text, &Known(self, graph)).map_err(|error| self.fault(source, text, error))
+        graph.parse(&text.text, &Known(self, graph)).map_err(|error| self.fault(source, text, error))
     }
 
     /// Reads an expression for a number, a vector or a matrix.

@@ -60,7 +60,7 @@ impl FromStr for Number {
             let rounded = value.is_finite() && !is_decimal_of(text, value);
             return Ok(Number { value, formula: rounded.then(|| text.to_owned()) });
         }
-        let e = g.parse(text, &|_| None, &[]).map_err(|error| error.kind)?;
+        let e = g.parse(text, &|_: &str| None).map_err(|error| error.kind)?;
         let value = g.as_number(e).or_else(|| g.evaluate(e, &std::collections::HashMap::new()).ok());
         Ok(Number { value: value.ok_or(ParseErrorKind::NotFinite)?, formula: Some(text.to_owned()) })
     }
