@@ -216,23 +216,20 @@ fn reactions(
     let adjoints = adjoints(g, quasi, &whole.collect::<Vec<Expr>>(), definitions);
     let lambda = system.multipliers("lambda", "");
     multipliers(g, quasi, &lambda, &adjoints, definitions);
-    equations.multipliers = lambda.iter().map(|&s| Named { name: g.name(s), expression: g.variable(s) }).collect();
+    equations.multipliers = Named::symbols(g, &lambda);
 }
 
 /// States, outputs and invariants.
 fn hand_over(equations: &mut Equations, system: &System, quasi: &QuasiVelocities, momenta: &[Expr]) {
     let g = &system.graph;
     for c in &system.coordinates {
-        let (rate, start) = (g.variable(c.velocity), g.variable(c.position));
-        equations.states.push(StateVariable { symbol: c.position, role: Role::Position, rate, start });
+        equations.states.push(StateVariable::of(g, c.position, Role::Position, c.velocity, c.position));
     }
     for w in &quasi.free {
         let own = system.coordinates.iter().any(|c| c.velocity == w.symbol);
         let role = if own { Role::Velocity } else { Role::QuasiVelocity };
         equations.states.push(StateVariable { symbol: w.symbol, role, rate: g.variable(w.rate), start: w.start });
     }
-    equations.coordinates = g.variables(&system.positions());
-    equations.velocities = g.variables(&system.velocities());
     // energy is constant if the motion itself is a virtual displacement; so are momenta without reactions
     if quasi.homogeneous && system.is_autonomous() && !system.has_forces() {
         let power = g.dot(&g.variables(&system.velocities()), momenta);

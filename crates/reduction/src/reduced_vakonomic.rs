@@ -200,8 +200,7 @@ impl Problem {
         };
         let at_start = augmented.multipliers.iter().copied().zip(g.variables(&augmented.starts)).collect();
         for i in 0..q.len() {
-            let (rate, start) = (g.variable(v[i]), g.variable(q[i]));
-            equations.states.push(StateVariable { symbol: q[i], role: Role::Position, rate, start });
+            equations.states.push(StateVariable::of(g, q[i], Role::Position, v[i], q[i]));
         }
         for (i, (&symbol, &rate)) in costates.iter().zip(&rates).enumerate() {
             let start = g.substitute(p0[i], &at_start);
@@ -297,11 +296,8 @@ fn stationarity(
 fn hand_over(equations: &mut Equations, system: &System, augmented: &Augmented, p: &[Expr]) {
     let g = &system.graph;
     let v = g.variables(&system.velocities());
-    equations.coordinates = g.variables(&system.positions());
-    let named = |&mu: &Symbol| Named { name: g.name(mu), expression: g.variable(mu) };
-    equations.multipliers = augmented.multipliers.iter().map(named).collect();
+    equations.multipliers = Named::symbols(g, &augmented.multipliers);
     equations.free_constants = augmented.free_constants();
     let energy = g.sub(g.dot(&v, p), system.lagrangian);
     equations.add_invariants(system, Some(energy), p, &[&augmented.applied]);
-    equations.velocities = v;
 }
