@@ -156,9 +156,7 @@ fn balance(formulation: &'static str, system: &System, rows: &Matrix) -> Equatio
     if prescribed {
         equations.guard_regular(g);
     }
-    equations.coordinates = g.variables(&q);
-    equations.velocities = g.variables(&v);
-    equations.multipliers = lambda.iter().map(|&s| Named { name: g.name(s), expression: g.variable(s) }).collect();
+    equations.multipliers = Named::symbols(g, &lambda);
     equations.return_onto_constraints(&system);
     let energy = system.is_workless(rows).then(|| system.energy());
     equations.add_invariants(&system, energy, &momenta, &[&gradient, &system.forces, &reaction]);

@@ -335,8 +335,7 @@ fn along_memory(scene: &Scene, removal: &Removal) -> Result<Option<AlongMemory>,
         return Ok(None);
     };
     let rates: Vec<_> = memory.iter().map(|&i| system.coordinates[i].velocity).collect();
-    let mut values = system.parameter_values();
-    values.extend(system.values_at(&scene.start));
+    let values = system.values_at(&scene.start);
     let numbers = |es: &[Expr]| es.iter().map(|&e| g.evaluate(e, &values)).collect::<Result<Vec<f64>, _>>();
     let momenta = numbers(&g.gradient(system.lagrangian, &rates))?;
     let jacobian = numbers(g.jacobian(&system.constraints, &rates).entries())?;

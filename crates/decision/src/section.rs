@@ -1,11 +1,10 @@
 //! Constants as functions of the start: `c = φ(q, v, t)`, an identity on all of `f = 0`.
 
-use std::collections::HashMap;
 use std::sync::Arc;
 
 use mechanics::{State, System};
 use symbolic::limits::IN_FIELD;
-use symbolic::{Evaluator, Expr, Symbol, Tape};
+use symbolic::{Evaluator, Expr, Tape};
 
 use crate::DecisionError;
 use crate::exact::{Echelon, Exact, FIELDS, Jet, Modular, in_field};
@@ -69,8 +68,7 @@ impl Question<'_> {
         let ansatz = Ansatz { question: self, family, program, functions };
         let Some(coefficients) = ansatz.solve(start) else { return Ok(None) };
         let (k, count) = (family.shape.constants, ansatz.functions.len());
-        let mut values: HashMap<Symbol, f64> = system.parameter_values();
-        values.extend(system.values_at(state));
+        let values = system.values_at(state);
         let constants = family.constants().to_vec();
         let mut section =
             Section { constants, expressions: Vec::new(), values: Vec::new(), proved: false, every: false };

@@ -13,7 +13,7 @@ fn numbers_are_read_as_they_are_written() {
     assert_eq!(Exact::of(1.5708).ok().and_then(|x| x.recip()), Exact::ratio(2500, 3927));
     let read = |text: &str| {
         let g = Graph::new();
-        Exact::of_formula(g.as_fraction(g.parse(text, &|_| None, &[]).unwrap()).unwrap())
+        Exact::of_formula(g.as_fraction(g.parse(text, &|_: &str| None).unwrap()).unwrap())
     };
     assert_eq!(Exact::of(2.5e-60).map(|x| x.to_string()), Ok("1/(4*10^59)".into()));
     let of = |n, d, turns| Ok(Exact { turns, ..Exact::ratio(n, d).unwrap() });

@@ -160,8 +160,7 @@ impl Equations {
         let mut free = self.clone();
         let mut parameters: Vec<_> = free.parameters.drain().collect();
         parameters.sort_by_key(|(symbol, _)| *symbol);
-        let constant = |&(symbol, _): &(_, f64)| FreeConstant { symbol, natural: None, memory: None };
-        free.free_constants.extend(parameters.iter().map(constant));
+        free.free_constants.extend(parameters.iter().map(|&(symbol, _)| FreeConstant::new(symbol)));
         (free, parameters.into_iter().map(|(_, value)| value).collect())
     }
 }

@@ -50,6 +50,13 @@ pub struct StateVariable {
     pub start: Expr,
 }
 
+impl StateVariable {
+    /// One whose rate, and whose value at the start, are symbols.
+    pub fn of(g: &Graph, symbol: Symbol, role: Role, rate: Symbol, start: Symbol) -> Self {
+        StateVariable { symbol, role, rate: g.variable(rate), start: g.variable(start) }
+    }
+}
+
 /// Unknowns `z` of one instant and the equations `R(z; t, y) = 0` that determine them.
 #[derive(Clone, Debug)]
 pub struct Block {
@@ -74,6 +81,13 @@ pub struct FreeConstant {
     pub memory: Option<usize>,
 }
 
+impl FreeConstant {
+    /// One that no condition at the horizon belongs to.
+    pub fn new(symbol: Symbol) -> Self {
+        FreeConstant { symbol, natural: None, memory: None }
+    }
+}
+
 /// A named expression in `(t, y, z)`.
 #[derive(Clone, Debug)]
 pub struct Named {
@@ -81,6 +95,13 @@ pub struct Named {
     pub name: String,
     /// The expression.
     pub expression: Expr,
+}
+
+impl Named {
+    /// Symbols, by their own names.
+    pub fn symbols(g: &Graph, symbols: &[Symbol]) -> Vec<Self> {
+        symbols.iter().map(|&s| Named { name: g.name(s), expression: g.variable(s) }).collect()
+    }
 }
 
 /// Something that the equations did not need.
@@ -166,9 +187,9 @@ pub struct Equations {
     pub blocks: Vec<Block>,
     /// Constants that the start data leave free.
     pub free_constants: Vec<FreeConstant>,
-    /// `q` in `(t, y)`.
+    /// `q` in `(t, y)`; at first their symbols.
     pub coordinates: Vec<Expr>,
-    /// `q̇` in `(t, y, z)`.
+    /// `q̇` in `(t, y, z)`; at first their symbols.
     pub velocities: Vec<Expr>,
     /// Multipliers or costates, whatever the formulation has.
     pub multipliers: Vec<Named>,
@@ -217,8 +238,8 @@ impl Equations {
             states: Vec::new(),
             blocks: Vec::new(),
             free_constants: Vec::new(),
-            coordinates: Vec::new(),
-            velocities: Vec::new(),
+            coordinates: system.graph.variables(&system.positions()),
+            velocities: system.graph.variables(&system.velocities()),
             multipliers: Vec::new(),
             invariants: Vec::new(),
             watched: 0,
@@ -282,16 +303,10 @@ impl Equations {
     /// Adds the states `q` with rate `v` and `v` with rate `a`, started at `(q₀, v₀)`.
     pub fn add_positions_and_velocities(&mut self, system: &System) {
         let g = &system.graph;
-        let mut add = |symbol, role, rate| {
-            let (rate, start) = (g.variable(rate), g.variable(symbol));
-            self.states.push(StateVariable { symbol, role, rate, start });
-        };
-        for c in &system.coordinates {
-            add(c.position, Role::Position, c.velocity);
-        }
-        for c in &system.coordinates {
-            add(c.velocity, Role::Velocity, c.acceleration);
-        }
+        let state = |symbol, role, rate| StateVariable::of(g, symbol, role, rate, symbol);
+        let coordinates = &system.coordinates;
+        self.states.extend(coordinates.iter().map(|c| state(c.position, Role::Position, c.velocity)));
+        self.states.extend(coordinates.iter().map(|c| state(c.velocity, Role::Velocity, c.acceleration)));
     }
 
     /// A tape for `outputs`, with parameters folded in, by way of those definitions that it needs.

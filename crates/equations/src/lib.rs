@@ -40,8 +40,6 @@
 //! let residuals = vec![system.expression("2*x'' + 8*x")?];
 //! let unknowns = system.accelerations();
 //! equations.blocks.push(Block { unknowns, residuals, guess: Vec::new(), regular: "the mass" });
-//! equations.coordinates = system.graph.variables(&system.positions());
-//! equations.velocities = system.graph.variables(&system.velocities());
 //! equations.graph = system.graph;
 //!
 //! let mut compiled = Compiled::new(&equations)?.with_jacobian(&equations)?;

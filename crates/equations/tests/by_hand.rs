@@ -12,7 +12,7 @@ use symbolic::{Expr, Graph, LANES, Matrix};
 const REGULAR: &str = "whatever the test needs";
 
 fn parse(g: &Graph, text: &str) -> Expr {
-    g.parse(text, &|name| Some(g.variable(g.symbol(name))), &[]).unwrap_or_else(|e| panic!("{text}: {e}"))
+    g.parse(text, &|name: &str| Some(g.variable(g.symbol(name)))).unwrap_or_else(|e| panic!("{text}: {e}"))
 }
 
 /// States as (name, role, rate), blocks as (unknowns, residuals); coordinates and velocities as they are.

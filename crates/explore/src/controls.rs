@@ -79,8 +79,7 @@ pub(crate) fn start_numbers(scene: &Scene) -> Vec<(String, f64)> {
 /// The velocities and rates that are given at the start; the constraints supply the others.
 fn velocities(scene: &Scene) -> Vec<(String, f64)> {
     let g = &scene.system.graph;
-    let values = [scene.system.parameter_values(), scene.system.values_at(&scene.start)];
-    let values = values.into_iter().flatten().collect();
+    let values = scene.system.values_at(&scene.start);
     let given = |name: &String| {
         let symbol = g.find_symbol(name)?;
         let (_, written) = scene.completion.written.iter().find(|(of, _)| *of == symbol)?;

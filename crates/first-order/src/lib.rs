@@ -148,9 +148,7 @@ pub fn law(system: &System, epsilon: Expr, slip: Option<Expr>) -> Equations {
         guess: Vec::new(),
         regular: "constraint Jacobian of full row rank, mass matrix regular on its kernel, and ε small",
     }];
-    equations.coordinates = g.variables(&q);
-    equations.velocities = g.variables(&v);
-    equations.multipliers = multipliers.iter().map(|&s| Named { name: g.name(s), expression: g.variable(s) }).collect();
+    equations.multipliers = Named::symbols(g, &multipliers);
     let workless = slip.is_none() && system.is_workless(&system.constraint_jacobian());
     equations.add_invariants(
         &system,

@@ -12,6 +12,7 @@ use decision::exact::{Echelon, Exact, FIELDS, Jet, Modular, in_field, nullspace}
 use decision::{Dynamics, ExactStart};
 use equations::{Equations, Role};
 use mechanics::System;
+use mechanics::elimination::{eliminate, open};
 use symbolic::{Evaluator, Expr, Symbol, Tape};
 
 use crate::Open;
@@ -195,12 +196,10 @@ fn found(system: &System, functions: &[Function], (values, rates): &Columns) -> 
     let kept: Vec<usize> = (0..functions.len()).filter(|&i| independent.add(values[i].clone())).collect();
     let columns: Vec<Vec<Modular>> = kept.iter().map(|&i| rates[i].clone()).collect();
     // leading are the last functions: those before are simpler
-    let mut integrals = Echelon::default();
-    for mut x in nullspace(&columns, 0).1 {
-        x.reverse();
-        integrals.add(x);
-    }
-    let mut integrals = reduced(integrals);
+    let mut integrals = nullspace(&columns, 0).1;
+    eliminate(&mut integrals, |rows, done| {
+        open(rows, done, kept.len()).filter(|&(i, j)| !rows[i][j].is_zero()).max_by_key(|&(_, j)| j)
+    });
     integrals.reverse();
     let mut known = Echelon::default();
     known.add(vec![Modular::one(); points]);
@@ -208,8 +207,7 @@ fn found(system: &System, functions: &[Function], (values, rates): &Columns) -> 
     let (mut printed, mut unprinted) = (Vec::new(), 0);
     let highest = functions.iter().map(|f| f.degree).max().unwrap_or(0);
     let dimension = integrals.len();
-    for mut x in integrals {
-        x.reverse();
+    for x in integrals {
         let used = || kept.iter().zip(&x).filter(|(_, c)| !c.is_zero()).map(|(&i, &c)| (i, c));
         let degree = used().map(|(i, _)| functions[i].degree).max().unwrap_or(0);
         let along = used().fold(vec![Modular::ZERO; points], |sum, (i, c)| {
@@ -255,20 +253,4 @@ fn written(system: &System, functions: &[Function], coefficients: &[(usize, Exac
         is_energy: lower && coefficients.len() == 1,
         is_moving_energy: lower && coefficients.len() > 1,
     }
-}
-
-/// The reduced echelon form, leading places first.
-fn reduced(rows: Echelon) -> Vec<Vec<Modular>> {
-    let mut rows = rows.0;
-    rows.sort_by_key(|(pivot, _)| *pivot);
-    for i in (0..rows.len()).rev() {
-        let (pivot, row) = rows[i].clone();
-        for (_, above) in &mut rows[..i] {
-            let factor = above[pivot];
-            if !factor.is_zero() {
-                above.iter_mut().zip(&row).for_each(|(x, &y)| *x = *x - factor * y);
-            }
-        }
-    }
-    rows.into_iter().map(|(_, row)| row).collect()
 }

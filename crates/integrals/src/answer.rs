@@ -174,8 +174,7 @@ pub fn watched(scene: &Scene, choice: &Choice) -> Result<Vec<Watched>, NoAnswer>
 
 /// The printed formula, parsed with the symbols of `g`.
 fn again(g: &Graph, text: &str) -> Result<Expr, String> {
-    let known = |name: &str| g.find_symbol(name).map(|symbol| g.variable(symbol));
-    g.parse(text, &known, &[]).map_err(|fault| fault.to_string())
+    g.parse(text, g).map_err(|fault| fault.to_string())
 }
 
 /// Changes along the motion of `choice` of what is printed, and of the scene's invariants.
@@ -224,10 +223,9 @@ fn changes(scene: &Scene, choice: &Choice, printed: &[Printed]) -> Result<(Vec<K
 /// Whether an invariant of the scene is linear in the velocities, and not zero.
 fn is_linear(system: &System, name: &str) -> bool {
     let (g, v) = (&system.graph, system.velocities());
-    let at_rest = |e| g.substitute(e, &v.iter().map(|&v| (v, g.zero())).collect());
     system.watched.iter().filter(|watched| watched.name == name).any(|watched| {
         let slopes = g.gradient(watched.expression, &v);
         slopes.iter().all(|&e| v.iter().all(|&v| !g.depends_on(e, v)))
-            && g.vanishes_exactly(at_rest(watched.expression))
+            && g.vanishes_exactly(system.at_rest(&[watched.expression])[0])
     })
 }

@@ -1,7 +1,7 @@
 //! Functions of an ansatz: monomials in velocities, and in coordinates or their sines and cosines.
 
 use mechanics::System;
-use symbolic::{Expr, Graph, Symbol};
+use symbolic::{Expr, Symbol};
 
 use crate::Open;
 use crate::killing::velocity_monomials;
@@ -86,7 +86,7 @@ pub(crate) fn functions(
     };
     for d in 0..=degree {
         if d == 2 {
-            push(&mut all, energy(g, of_energy, &rates), 2, true);
+            push(&mut all, energy(system, of_energy), 2, true);
         }
         for (_, place) in &slow {
             for monomial in fast.iter().filter(|m| m.len() == d) {
@@ -105,10 +105,10 @@ pub(crate) fn functions(
 
 /// The energy of `L`, without its terms that cancel where `L` is quadratic in the velocities: `L − 2 L(v =
 /// 0)`.
-fn energy(g: &Graph, lagrangian: Expr, v: &[Symbol]) -> Expr {
-    let at_rest = g.substitute(lagrangian, &v.iter().map(|&v| (v, g.zero())).collect());
-    let short = g.sub(lagrangian, g.mul(g.integer(2), at_rest));
-    let energy = g.sub(g.dot(&g.variables(v), &g.gradient(lagrangian, v)), lagrangian);
+fn energy(system: &System, lagrangian: Expr) -> Expr {
+    let (g, v) = (&system.graph, system.velocities());
+    let short = g.sub(lagrangian, g.mul(g.integer(2), system.at_rest(&[lagrangian])[0]));
+    let energy = g.sub(g.dot(&g.variables(&v), &g.gradient(lagrangian, &v)), lagrangian);
     if g.vanishes_exactly(g.sub(short, energy)) { short } else { energy }
 }
 

@@ -54,18 +54,17 @@ impl Reversible {
         if !system.is_autonomous() {
             return Err(Open::Time);
         }
-        let at_rest = |e: Expr| g.substitute(e, &v.iter().map(|&v| (v, g.zero())).collect());
         let (mass, jacobian) = (system.velocity_hessian(), system.constraint_jacobian());
         let free = |es: &[Expr]| es.iter().all(|&e| v.iter().all(|&v| !g.depends_on(e, v)));
-        let momenta: Vec<Expr> = g.gradient(system.lagrangian, &v).into_iter().map(at_rest).collect();
+        let momenta = system.at_rest(&g.gradient(system.lagrangian, &v));
         if !free(mass.entries()) || !momenta.iter().all(|&e| g.vanishes_exactly(system.as_written(e))) {
             return Err(Open::NotQuadratic);
         }
-        let offsets: Vec<Expr> = system.constraints.iter().map(|&f| at_rest(f)).collect();
+        let offsets = system.at_rest(&system.constraints);
         if !free(jacobian.entries()) || !offsets.iter().all(|&e| g.vanishes_exactly(system.as_written(e))) {
             return Err(Open::NotHomogeneous);
         }
-        let outputs = [jacobian.entries(), mass.entries(), &[g.neg(at_rest(system.lagrangian))]].concat();
+        let outputs = [jacobian.entries(), mass.entries(), &[g.neg(system.at_rest(&[system.lagrangian])[0])]].concat();
         let mut inputs: Vec<_> = system.parameters.iter().map(|p| p.symbol).collect();
         let positions = system.positions();
         let on_positions: Vec<Expr> = system.on_positions.iter().map(|(_, e)| *e).collect();

@@ -96,11 +96,10 @@ pub fn derive(system: &System, _: &Derivation) -> Result<Equations, DerivationEr
 
     equations.add_positions_and_velocities(&system);
     for (i, &symbol) in multipliers.iter().enumerate() {
-        let (rate, start) = (g.variable(rates[i]), g.variable(starts[i]));
-        equations.states.push(StateVariable { symbol, role: Role::Multiplier, rate, start });
-        equations.multipliers.push(Named { name: g.name(symbol), expression: mu[i] });
-        equations.free_constants.push(FreeConstant { symbol: starts[i], natural: None, memory: None });
+        equations.states.push(StateVariable::of(g, symbol, Role::Multiplier, rates[i], starts[i]));
+        equations.free_constants.push(FreeConstant::new(starts[i]));
     }
+    equations.multipliers = Named::symbols(g, &multipliers);
     equations.blocks = vec![Block {
         unknowns: a.iter().chain(&rates).copied().collect(),
         residuals,
@@ -108,8 +107,6 @@ pub fn derive(system: &System, _: &Derivation) -> Result<Equations, DerivationEr
         regular: "constraint Jacobian of full row rank, ∂²𝓛/∂v² regular on its kernel",
     }];
     equations.guard(g, &system.constraints);
-    equations.coordinates = g.variables(&q);
-    equations.velocities = g.variables(&v);
     equations.return_onto_constraints(&system);
     let energy = g.sub(g.dot(&g.variables(&v), &momenta), augmented);
     let energy = system.is_workless(&jacobian).then_some(energy);

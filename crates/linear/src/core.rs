@@ -31,9 +31,7 @@ impl Core {
             let values = if is_zero { Vec::new() } else { vec![block[(0, 0)].into()] };
             return Some(Core { values, arithmetic: DMatrix::zeros(1, 1), matrix: block, error: noise });
         }
-        let mut own = block;
-        let units = balance_parlett_reinsch(&mut own);
-        let noise = in_units(noise, &units);
+        let (own, noise, units) = balanced(block, noise);
         let (limit, size) = (allowed(&own, &noise), own.norm());
         let [matrix, noise] = without_null_space(own, noise, limit);
         let (values, left) = eigenvalues(matrix.clone())?;
@@ -60,14 +58,14 @@ pub(crate) fn nullity(svd: &SingularValues, error: f64) -> usize {
     svd.values.iter().filter(|&&s| s <= limit).count()
 }
 
-/// A matrix in units in which its rows are about as large as its columns, and its errors in the same.
-pub(crate) fn balanced(mut matrix: DMatrix<f64>, noise: DMatrix<f64>) -> (DMatrix<f64>, DMatrix<f64>) {
+/// A matrix in units in which its rows are about as large as its columns, its errors in the same, and these units.
+pub(crate) fn balanced(mut matrix: DMatrix<f64>, noise: DMatrix<f64>) -> (DMatrix<f64>, DMatrix<f64>, DVector<f64>) {
     let units = balance_parlett_reinsch(&mut matrix);
     let noise = in_units(noise, &units);
-    (matrix, noise)
+    (matrix, noise, units)
 }
 
-fn in_units(matrix: DMatrix<f64>, units: &DVector<f64>) -> DMatrix<f64> {
+pub(crate) fn in_units(matrix: DMatrix<f64>, units: &DVector<f64>) -> DMatrix<f64> {
     DMatrix::from_fn(matrix.nrows(), matrix.nrows(), |i, j| matrix[(i, j)] * units[j] / units[i])
 }
 

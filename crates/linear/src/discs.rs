@@ -7,6 +7,8 @@
 use nalgebra::DMatrix;
 use num_complex::Complex;
 
+use crate::spectrum::part;
+
 /// Points on a circle round an eigenvalue, and of a contour.
 const ROUND: usize = 8;
 const CONTOUR: usize = 64;
@@ -98,10 +100,7 @@ impl Discs {
         let mut found = DMatrix::<Complex<f64>>::zeros(n, n);
         for places in &self.blocks {
             let m = places.len();
-            let own = DMatrix::from_fn(m, m, |i, j| {
-                let diagonal = if i == j { z } else { Complex::default() };
-                diagonal - self.matrix[(places[i], places[j])]
-            });
+            let own = DMatrix::from_diagonal_element(m, m, z) - part(&self.matrix, places);
             // rows of this block are zero as yet
             let mut rows = DMatrix::from_fn(m, n, |i, j| self.matrix.row(places[i]).transpose().dot(&found.column(j)));
             places.iter().enumerate().for_each(|(i, &place)| rows[(i, place)] += 1.0);

@@ -8,7 +8,8 @@ use symbolic::limits::{ITERATIONS, NOTHING};
 use crate::LinearError;
 use crate::limits::ROUNDINGS;
 use crate::linearization::{Moving, moving};
-use crate::point::{COORDINATES, Point, VELOCITIES};
+use crate::point::{COORDINATES, Point, VELOCITIES, at};
+use crate::spectrum::part;
 
 /// Steps of Runge and Kutta along one displacement.
 const PARTS: usize = 100;
@@ -52,7 +53,7 @@ impl Point {
         loop {
             let y = self.y.clone();
             let (rates, jacobian) = (self.rates(&y)?, self.jacobian(&y)?);
-            let matrix = DMatrix::from_fn(kept.len(), kept.len(), |i, j| jacobian[(kept[i], kept[j])]);
+            let matrix = part(&jacobian, &kept);
             let residual = DVector::from_iterator(kept.len(), kept.iter().map(|&i| rates[i]));
             let (scales, moving) = moving(self, &kept, &matrix)?;
             let terms = |row: usize| matrix.row(row).iter().zip(&scales).map(|(a, s)| a.abs() * s).sum::<f64>();
@@ -133,8 +134,7 @@ impl Point {
     }
 
     fn state(&mut self) -> Result<State, LinearError> {
-        let t = self.t;
-        let found = self.compiled.outputs(t, &self.y).map_err(|failure| LinearError::Evaluation { t, failure })?;
-        Ok(State { t, q: found.coordinates, v: found.velocities })
+        let found = self.compiled.outputs(self.t, &self.y).map_err(at(self.t))?;
+        Ok(State { t: self.t, q: found.coordinates, v: found.velocities })
     }
 }

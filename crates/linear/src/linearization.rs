@@ -2,14 +2,14 @@
 
 use std::fmt;
 
-use equations::{Compiled, Role};
-use motion::{Choice, Ending, Form, Setting, Settings, SolveError, solve_from};
+use equations::Role;
+use motion::{Choice, Ending, Form, Setting, Settings, solve_from};
 use nalgebra::DMatrix;
 use symbolic::limits::NOTHING;
 use symbolic::question;
 
 use crate::point::{COORDINATES, Point, VELOCITIES, in_quasi_velocities};
-use crate::spectrum::sort;
+use crate::spectrum::{part, sort};
 use crate::{Block, Chain, Eigenvalue, LinearError, Spectrum};
 
 /// A coordinate on which no rate depends.
@@ -85,10 +85,8 @@ pub fn linearize_at(
         return Err(LinearError::NotReached { t, end: motion.end(), cause });
     }
     let y = motion.states_at(t)?;
-    let compile = || -> Result<Compiled, _> { Compiled::plain(&motion.equations)?.with_jacobian(&motion.equations) };
-    let mut compiled = compile().map_err(SolveError::from)?;
-    compiled.set_constants(&motion.constants);
-    let mut point = Point { equations: motion.equations.clone(), compiled, t, y };
+    let mut point = Point::of(motion.equations.clone(), t, y)?;
+    point.compiled.set_constants(&motion.constants);
     Linearization::at(&mut point, false)
 }
 
@@ -112,8 +110,7 @@ impl Linearization {
         let rates = point.rates(&y)?;
         let kept: Vec<usize> = (0..y.len()).filter(|i| !carried.contains(i)).collect();
         let name = |point: &Point, i: usize| point.equations.graph.name(point.equations.states[i].symbol);
-        let part = |m: &DMatrix<f64>| DMatrix::from_fn(kept.len(), kept.len(), |i, j| m[(kept[i], kept[j])]);
-        let (matrix, form) = (part(&jacobian), point.equations.formulation);
+        let (matrix, form) = (part(&jacobian, &kept), point.equations.formulation);
         // before its eigenvalues are asked for, which takes longest
         if is_steady && let Some(Moving { place, rate, limit }) = moving(point, &kept, &matrix)?.1 {
             let carried = carried.iter().map(|&i| name(point, i)).collect::<Vec<_>>().join(", ");
@@ -121,7 +118,7 @@ impl Linearization {
             let state = name(point, kept[place]);
             return Err(LinearError::NotSteady { formulation: form.into(), state, rate, limit, carried });
         }
-        let spectrum = question(|| Spectrum::of(&matrix, &part(&noise)))?;
+        let spectrum = question(|| Spectrum::of(&matrix, &part(&noise, &kept)))?;
         let places = |roles: &[Role]| {
             let all = point.places(roles);
             (0..kept.len()).filter(|&k| all.contains(&kept[k])).collect::<Vec<usize>>()

@@ -2,7 +2,7 @@
 
 use equations::{Compiled, Equations, EvaluationFailure, Role};
 use integrate::Method;
-use motion::{Choice, Prepared, Setting, Settings, derive_at, formulation_in, prepare};
+use motion::{Choice, Prepared, Setting, Settings, SolveError, derive_at, formulation_in, prepare};
 use nalgebra::DMatrix;
 
 use crate::LinearError;
@@ -30,6 +30,13 @@ const DIGITS: f64 = 100.0;
 const CANCELLED: f64 = 1e4;
 
 impl Point {
+    /// The equations at a point, compiled for it.
+    pub(crate) fn of(equations: Equations, t: f64, y: Vec<f64>) -> Result<Point, LinearError> {
+        let compile = || Compiled::plain(&equations)?.with_jacobian(&equations);
+        let compiled = compile().map_err(SolveError::from)?;
+        Ok(Point { equations, compiled, t, y })
+    }
+
     pub(crate) fn start(setting: Setting, choice: &Choice) -> Result<Point, LinearError> {
         // an implicit method: the Jacobian is compiled, and no Taylor series
         let settings = Settings { method: Some(Method::Radau5), plain: true, ..Settings::default() };
@@ -59,9 +66,8 @@ impl Point {
     }
 
     fn finite(&self, found: Result<(), EvaluationFailure>, values: &[f64]) -> Result<(), LinearError> {
-        let t = self.t;
-        found.map_err(|failure| LinearError::Evaluation { t, failure })?;
-        if values.iter().all(|x| x.is_finite()) { Ok(()) } else { Err(LinearError::NotFinite { t }) }
+        found.map_err(at(self.t))?;
+        if values.iter().all(|x| x.is_finite()) { Ok(()) } else { Err(LinearError::NotFinite { t: self.t }) }
     }
 
     /// Errors of the entries of the Jacobian at `y`: their change with the last digits of `y`, and round-off
@@ -84,9 +90,8 @@ impl Point {
 
     /// The sum of terms behind each entry of the Jacobian at `y`.
     fn terms_of_jacobian(&mut self, y: &[f64]) -> Result<DMatrix<f64>, LinearError> {
-        let (n, t) = (y.len(), self.t);
-        let terms = self.compiled.terms_of_jacobian(t, y).map_err(|failure| LinearError::Evaluation { t, failure })?;
-        Ok(DMatrix::from_row_slice(n, n, &terms))
+        let terms = self.compiled.terms_of_jacobian(self.t, y).map_err(at(self.t))?;
+        Ok(DMatrix::from_row_slice(y.len(), y.len(), &terms))
     }
 
     /// Places of the states in these roles.
@@ -110,8 +115,7 @@ impl Point {
 
     /// How much is added up to each rate at the point.
     pub(crate) fn terms(&mut self) -> Result<Vec<f64>, LinearError> {
-        let t = self.t;
-        self.compiled.terms_of_rates(t, &self.y).map_err(|failure| LinearError::Evaluation { t, failure })
+        self.compiled.terms_of_rates(self.t, &self.y).map_err(at(self.t))
     }
 
     /// Which rates depend on which states, at random points near by: a trap of a micrometre is not seen from
@@ -137,6 +141,11 @@ impl Point {
         }
         Ok(coupled)
     }
+}
+
+/// What failed at a time, as an error.
+pub(crate) fn at(t: f64) -> impl FnOnce(EvaluationFailure) -> LinearError {
+    move |failure| LinearError::Evaluation { t, failure }
 }
 
 /// The form of `choice` in quasi-velocities, where it can be derived; itself elsewhere.

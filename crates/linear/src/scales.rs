@@ -3,8 +3,9 @@
 use nalgebra::{DMatrix, linalg::balancing::balance_parlett_reinsch};
 
 use crate::LinearError;
+use crate::core::in_units;
 use crate::point::Point;
-use crate::spectrum::{components, coupled, reached};
+use crate::spectrum::{components, coupled, part, reached};
 use crate::weyl::Weyl;
 
 /// Powers of ten by which states are moved: from minus this to this.
@@ -21,12 +22,11 @@ impl Point {
         let y = self.y.clone();
         let all = self.jacobian(&y)?;
         let noise = self.noise(&y, &all)?;
-        let noise = DMatrix::from_fn(kept.len(), kept.len(), |i, j| noise[(kept[i], kept[j])]);
+        let noise = part(&noise, kept);
         let mut scales: Vec<f64> = kept.iter().map(|&i| y[i].abs()).collect();
         for set in components(&reached(&coupled(matrix, &noise))).into_iter().filter(|set| set.len() > 1) {
             let places: Vec<usize> = set.iter().map(|&k| kept[k]).collect();
-            let part = DMatrix::from_fn(set.len(), set.len(), |i, j| matrix[(set[i], set[j])]);
-            if let Some(distances) = self.reach(&places, part) {
+            if let Some(distances) = self.reach(&places, part(matrix, &set)) {
                 set.iter().zip(distances).for_each(|(&k, distance)| scales[k] = distance);
             }
         }
@@ -35,7 +35,6 @@ impl Point {
 
     /// How far the states at `places` can be moved before `here`, their part of the Jacobian, is another one.
     fn reach(&mut self, places: &[usize], mut here: DMatrix<f64>) -> Option<Vec<f64>> {
-        let n = places.len();
         let units = balance_parlett_reinsch(&mut here);
         let (mut random, limit) = (Weyl::default(), ANOTHER * here.norm());
         let mut is_another = |reach: f64| -> Result<bool, LinearError> {
@@ -43,9 +42,8 @@ impl Point {
             for (&i, unit) in places.iter().zip(units.iter()) {
                 y[i] += reach * unit * random.number();
             }
-            let there = self.jacobian(&y)?;
-            let entry = |i: usize, j: usize| there[(places[i], places[j])] * units[j] / units[i];
-            Ok((DMatrix::from_fn(n, n, entry) - &here).norm() > limit)
+            let there = in_units(part(&self.jacobian(&y)?, places), &units);
+            Ok((there - &here).norm() > limit)
         };
         // what cannot be evaluated is far enough, too
         let mut reaches = (-MOST..=MOST).map(|k| 10_f64.powi(k));

@@ -1,7 +1,7 @@
 //! Eigenvalues of a matrix with errors of its entries, block by block.
 
 use mechanics::SingularValues;
-use nalgebra::DMatrix;
+use nalgebra::{DMatrix, Scalar};
 use num_complex::Complex;
 use symbolic::limits::HALF_THE_DIGITS;
 
@@ -103,9 +103,6 @@ impl Spectrum {
         let coupled = coupled(matrix, noise);
         let clean = DMatrix::from_fn(n, n, |i, j| if coupled[(i, j)] { matrix[(i, j)] } else { 0.0 });
         let mut error = noise + (matrix - &clean).abs();
-        let part = |m: &DMatrix<f64>, places: &[usize]| {
-            DMatrix::from_fn(places.len(), places.len(), |i, j| m[(places[i], places[j])])
-        };
         let given = matrix.zip_map(noise, |a, e| a != 0.0 || e != 0.0);
         let whole = components(&reached(&given));
         let reached = reached(&coupled);
@@ -116,8 +113,7 @@ impl Spectrum {
             for (i, j) in (0..places.len()).flat_map(|i| (0..places.len()).map(move |j| (i, j))) {
                 error[(places[i], places[j])] += core.arithmetic[(i, j)];
             }
-            let rank =
-                structural_rank(&DMatrix::from_fn(places.len(), places.len(), |i, j| given[(places[i], places[j])]));
+            let rank = structural_rank(&part(&given, &places));
             // zeros that all matrices with these entries have, and nothing from outside
             let is_sure = rank == core.values.len() && whole.contains(&places);
             let eigenvalues: Vec<_> = core.values.iter().map(|&value| Eigenvalue { value, error: 0.0 }).collect();
@@ -127,7 +123,7 @@ impl Spectrum {
         let all = || blocks.iter().flat_map(|block| block.eigenvalues.iter().map(|e| e.value));
         let fastest = all().fold(0.0_f64, |fastest, z| fastest.max(z.norm()));
         let zeros = std::iter::repeat_n(Complex::default(), n - all().count());
-        let (balanced, error) = balanced(clean, error);
+        let (balanced, error, _) = balanced(clean, error);
         let (zero_vectors, size) =
             (nullity(&SingularValues::of(&balanced), allowed(&balanced, &error)), balanced.norm());
         let mut order = sets;
@@ -207,6 +203,11 @@ impl Block {
             (lost, _) => all.radius(Complex::default(), lost.unwrap_or(least)),
         };
     }
+}
+
+/// The rows and columns at some places.
+pub(crate) fn part<T: Scalar + Copy>(matrix: &DMatrix<T>, places: &[usize]) -> DMatrix<T> {
+    DMatrix::from_fn(places.len(), places.len(), |i, j| matrix[(places[i], places[j])])
 }
 
 /// Which places a place depends on, beyond errors.

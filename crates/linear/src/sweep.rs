@@ -1,6 +1,5 @@
 //! Eigenvalues over a parameter, and where stability changes.
 
-use equations::Compiled;
 use mechanics::{ConstantsRule, State};
 use motion::{Choice, Ensemble, EnsembleStart, Form, Settings, SolveError, setting};
 use scene::{Scene, Starts};
@@ -125,10 +124,7 @@ impl Family {
         let choice = in_quasi_velocities(setting(scene), choice);
         let settings = Settings { form: Form::Named, plain: true, ..Settings::default() };
         let ensemble = Ensemble::new(scene, &choice, &[name], &settings)?;
-        let equations = ensemble.equations().clone();
-        let compile = || Compiled::plain(&equations)?.with_jacobian(&equations);
-        let compiled = compile().map_err(SolveError::from)?;
-        let point = Point { equations, compiled, t: scene.start.t, y: Vec::new() };
+        let point = Point::of(ensemble.equations().clone(), scene.start.t, Vec::new())?;
         Ok(Family { ensemble, starts, constants: choice.constants, point })
     }
 

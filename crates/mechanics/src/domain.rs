@@ -1,6 +1,6 @@
 //! Where a statement about almost every place holds.
 
-use symbolic::{Expr, Symbol};
+use symbolic::Expr;
 
 use crate::System;
 
@@ -35,9 +35,8 @@ impl Domain {
 
     fn of_formulas(system: &System, formulas: &[Expr]) -> Self {
         let g = &system.graph;
-        let parameters: Vec<Symbol> = system.parameters.iter().map(|p| p.symbol).collect();
-        let varies = |e: &Expr| g.symbols_of(*e).iter().any(|s| !parameters.contains(s));
-        Domain { leaf: !system.on_positions.is_empty(), branch: g.ends_of_pieces(formulas).iter().any(varies) }
+        let branch = g.ends_of_pieces(formulas).into_iter().any(|e| !system.is_constant(e));
+        Domain { leaf: !system.on_positions.is_empty(), branch }
     }
 
     /// "almost every place of the leaf of this start", or of what else there are so many.

@@ -57,7 +57,7 @@ impl System {
                 };
                 let row = &matrix.rows()[p];
                 let fewest = row.iter().filter(own).map(|(&j, _)| j).min_by_key(|&j| matrix.rows_with(j).len());
-                let Some(i) = fewest.filter(|_| rest.is_total_derivative(row, &places)) else { continue };
+                let Some(i) = fewest.filter(|_| rest.is_total_derivative(row)) else { continue };
                 let Some(Pivot { entry, row, column }) = matrix.take(p, i) else { continue };
                 for (r, factor) in column {
                     for (&j, &e) in &row {
@@ -97,9 +97,10 @@ impl System {
         Ok((rest, State { t: state.t, q: of(&state.q), v: of(&state.v) }))
     }
 
-    /// Whether `Σ a_j dq_j + b dt` is closed, exactly: `∂a_j/∂q_k = ∂a_k/∂q_j`. `places` are `q` and time.
-    fn is_total_derivative(&self, row: &BTreeMap<usize, Expr>, places: &[Symbol]) -> bool {
-        let g = &self.graph;
+    /// Whether `Σ a_j dq_j + b dt` is closed, exactly: `∂a_j/∂q_k = ∂a_k/∂q_j`. Of `row`, `a_j` by `j` and `b`
+    /// by `n`.
+    pub fn is_total_derivative(&self, row: &BTreeMap<usize, Expr>) -> bool {
+        let (g, places) = (&self.graph, [self.positions(), vec![self.time]].concat());
         g.are_exact(&row.values().copied().collect::<Vec<_>>())
             && row.iter().all(|(&j, &a)| {
                 let symbols = g.symbols_of(a);

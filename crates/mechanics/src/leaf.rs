@@ -40,8 +40,7 @@ impl System {
     /// A constraint on positions, the coordinate that it gives, and how.
     fn solved_position(&self, state: &State) -> Option<(usize, usize, Expr)> {
         let g = &self.graph;
-        let mut values = self.parameter_values();
-        values.extend(self.values_at(state));
+        let values = self.values_at(state);
         let number = |e: Expr| g.evaluate(e, &values).ok().filter(|x| x.is_finite()).unwrap_or(0.0);
         self.on_positions.iter().enumerate().find_map(|(which, &(_, e))| {
             let slopes: Vec<Expr> = self.coordinates.iter().map(|c| g.derivative(e, c.position)).collect();

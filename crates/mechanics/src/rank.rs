@@ -38,8 +38,7 @@ impl Surroundings {
     /// Round a start, in sizes that go with the units: of a coordinate how large it is, how far its velocity
     /// takes it up to `end`, how far all kinetic energy and the work of its own force up to `end` could.
     pub fn of_start(system: &System, start: &State, end: f64) -> Self {
-        let (g, mut values) = (&system.graph, system.parameter_values());
-        values.extend(system.values_at(start));
+        let (g, values) = (&system.graph, system.values_at(start));
         let number = |e: Expr| g.evaluate(e, &values).ok().filter(|x| x.is_finite()).unwrap_or(0.0);
         let time = (end - start.t).abs();
         let momenta = g.gradient(system.lagrangian, &system.velocities());

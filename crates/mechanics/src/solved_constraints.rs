@@ -36,9 +36,7 @@ impl SolvedConstraints {
     pub(crate) fn new(system: &System, state: &State) -> Result<SolvedConstraints, RemovalError> {
         let g = &system.graph;
         let (n, h) = (system.dimension(), system.constraints.len());
-        let constants = system.parameter_values();
-        let mut values = constants.clone();
-        values.extend(system.values_at(state));
+        let values = system.values_at(state);
         let forms = system.linear_constraints()?;
         let speeds = system.speeds(&forms, state);
         let LinearForms { mut rows, offsets } = forms;

@@ -12,8 +12,7 @@ impl System {
     pub(crate) fn speeds(&self, constraints: &LinearForms, state: &State) -> Vec<f64> {
         let system = self.clone(); // second derivatives are built in a graph of their own
         let g = &system.graph;
-        let mut values = system.parameter_values();
-        values.extend(system.values_at(state));
+        let values = system.values_at(state);
         let number = |e: Expr| g.evaluate(e, &values).unwrap_or(f64::NAN);
         let speed = |v| {
             let mass = number(g.derivative(g.derivative(system.lagrangian, v), v)).abs();

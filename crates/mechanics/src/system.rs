@@ -151,7 +151,7 @@ impl System {
     /// # Errors
     /// [`ParseError`] with its place.
     pub fn expression(&self, text: &str) -> Result<Expr, ParseError> {
-        self.graph.parse(text, &|name| self.graph.find_symbol(name).map(|s| self.graph.variable(s)), &[])
+        self.graph.parse(text, &self.graph)
     }
 
     /// Number of coordinates, `n`.
@@ -195,6 +195,22 @@ impl System {
         g.substitute(e, &written.filter(|(_, e)| g.are_exact(&[*e])).collect())
     }
 
+    /// Whether a symbol is a parameter.
+    pub fn is_parameter(&self, symbol: Symbol) -> bool {
+        self.parameters.iter().any(|p| p.symbol == symbol)
+    }
+
+    /// Whether `e` has no symbols but parameters.
+    pub fn is_constant(&self, e: Expr) -> bool {
+        self.graph.symbols_of(e).into_iter().all(|s| self.is_parameter(s))
+    }
+
+    /// `es` at `v = 0`.
+    pub fn at_rest(&self, es: &[Expr]) -> Vec<Expr> {
+        let zero = self.velocities().into_iter().map(|v| (v, self.graph.zero())).collect();
+        self.graph.substitute_all(es, &zero)
+    }
+
     /// Whether `e` is identically zero for the parameters of the system as they are written: a formula is no
     /// float ([`Graph::vanishes`]).
     pub fn vanishes(&self, e: Expr) -> Vanishing {
@@ -209,11 +225,13 @@ impl System {
         Ok(Evaluator::new(self.graph.compile(inputs, outputs, &self.parameter_values())?))
     }
 
-    /// Values of `t, q, v` at `state`; parameters are left to [`System::parameter_values`].
+    /// Values of the parameters, and of `t, q, v` at `state`.
     pub fn values_at(&self, state: &State) -> HashMap<Symbol, f64> {
         let q = self.positions().into_iter().zip(state.q.iter().copied());
         let v = self.velocities().into_iter().zip(state.v.iter().copied());
-        q.chain(v).chain([(self.time, state.t)]).collect()
+        let mut values = self.parameter_values();
+        values.extend(q.chain(v).chain([(self.time, state.t)]));
+        values
     }
 
     /// The rates `(q, v), (v, a), (t, 1)` of every variable along a motion, for [`Graph::total_derivative`].

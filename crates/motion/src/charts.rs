@@ -190,8 +190,7 @@ fn other_rows(system: &System, points: &mut [Point; 2]) -> Option<System> {
     let jacobian = all.constraint_jacobian();
     let (h, n) = (jacobian.rows(), jacobian.columns());
     for (state, named) in points {
-        let mut values = system.parameter_values();
-        values.extend(system.values_at(state));
+        let values = system.values_at(state);
         let entries: Option<Vec<f64>> =
             jacobian.entries().iter().map(|&e| system.graph.evaluate(e, &values).ok()).collect();
         let rows = DMatrix::from_row_slice(h, n, &entries?);

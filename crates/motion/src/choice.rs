@@ -176,8 +176,7 @@ pub fn derive_at(system: &System, start: &State, choice: &Choice) -> Result<Equa
 /// What has to stay positive for the system as it was written, in the variables of its equations.
 fn domains_at(system: &System, start: &State, equations: &Equations) -> Result<Vec<Expr>, SolveError> {
     let g = &system.graph;
-    let mut values = system.values_at(start);
-    values.extend(system.parameter_values());
+    let values = system.values_at(start);
     let outside = |e: &&Expr| g.evaluate(**e, &values).is_ok_and(|x| x < 0.0);
     if let Some(e) = system.domains.iter().find(outside) {
         let value = g.evaluate(*e, &values).unwrap_or(f64::NAN);

@@ -1,6 +1,6 @@
 //! Bodies that move: an SVG that plays by itself, and is legible where it does not.
 
-use super::draw::{BUDGET, headline, opening, swatch};
+use super::draw::{BUDGET, clipped, headline, opening, swatch};
 use super::frame::{BOLD, LEGEND_ROW, TITLE_SIZE};
 use super::layout::{self, Entry, LABEL_SIZE, WIDTH};
 use super::solid::{Camera, Solid, Space};
@@ -202,13 +202,7 @@ impl MovingPicture {
         out += "<style>.still{display:none}@media (prefers-reduced-motion:reduce){.moving{display:none}.still{display:inline}}</style>\n";
         headline(&mut out, &title, MARGIN);
         placed.iter().for_each(|place| swatch(&mut out, place, (MARGIN, legend_top)));
-        out += &format!(
-            "<svg x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" overflow=\"hidden\" fill=\"none\" stroke-linejoin=\"round\">\n",
-            px(MARGIN),
-            px(top),
-            px(sheet.extent.width),
-            px(sheet.extent.height)
-        );
+        clipped(&mut out, (MARGIN, top), sheet.extent, " fill=\"none\" stroke-linejoin=\"round\"");
         let shown: Vec<usize> = (0..steps).step_by(stride).collect();
         let (fixed, turning): (Vec<&Solid>, Vec<&Solid>) = self.ground.iter().partition(|s| s.poses.len() == 1);
         out += &format!("<g stroke=\"{INK}\" stroke-opacity=\".6\">\n");
@@ -260,38 +254,27 @@ impl MovingPicture {
         let length = [1.0, 2.0, 5.0].map(|digit| digit * power).into_iter().rfind(|l| *l <= wanted).unwrap_or(power);
         let end = MARGIN + length * sheet.scale;
         let decimals = (-length.log10().floor()).max(0.0) as usize;
+        let [l, a, r, beside, below] = [MARGIN, y - 4.0, end, end + 8.0, y + 4.5].map(px);
         *out += &format!(
             "<g font-size=\"{LABEL_SIZE}\" fill=\"{INK}\"><path d=\"M{l} {a}v8m0-4H{r}m0-4v8\" stroke=\"{INK}\" stroke-width=\"1.6\" fill=\"none\"/>\
-             <text x=\"{}\" y=\"{}\">{length:.decimals$} {}</text>",
-            px(end + 8.0),
-            px(y + 4.5),
+             <text x=\"{beside}\" y=\"{below}\">{length:.decimals$} {}</text>",
             self.unit,
-            l = px(MARGIN),
-            a = px(y - 4.0),
-            r = px(end),
         );
         let (direction, name) = &self.down;
         let (x, up) = sheet.camera.project(*direction);
         let (size, right) = (x.hypot(up), WIDTH - MARGIN);
         if size < 0.05 {
-            *out += &format!(
-                "<text x=\"{}\" y=\"{}\" text-anchor=\"end\">seen from above</text></g>\n",
-                px(right),
-                px(y + 4.5)
-            );
+            let [x, y] = [right, y + 4.5].map(px);
+            *out += &format!("<text x=\"{x}\" y=\"{y}\" text-anchor=\"end\">seen from above</text></g>\n");
             return;
         }
         let (x, down) = (ARROW * x / size, -ARROW * up / size);
         let (from, angle) = ((right - ARROW / 2.0 - x / 2.0, y - down / 2.0), down.atan2(x).to_degrees());
+        let [x, down, angle, beside, below] = [from.0, from.1, angle, right - ARROW - 8.0, y + 4.5].map(px);
+        let line = ARROW - 6.0;
         *out += &format!(
-            "<g transform=\"translate({} {}) rotate({})\"><path d=\"M0 0h{}\" stroke=\"{INK}\" stroke-width=\"2\"/>\
-             <path d=\"M{ARROW} 0l-9-5v10z\"/></g><text x=\"{}\" y=\"{}\" text-anchor=\"end\">{name}</text></g>\n",
-            px(from.0),
-            px(from.1),
-            px(angle),
-            ARROW - 6.0,
-            px(right - ARROW - 8.0),
-            px(y + 4.5)
+            "<g transform=\"translate({x} {down}) rotate({angle})\"><path d=\"M0 0h{line}\" stroke=\"{INK}\" stroke-width=\"2\"/>\
+             <path d=\"M{ARROW} 0l-9-5v10z\"/></g><text x=\"{beside}\" y=\"{below}\" text-anchor=\"end\">{name}</text></g>\n"
         );
     }
 
@@ -301,18 +284,14 @@ impl MovingPicture {
         let [from, to] = [from, to].map(|t| format!("{t} {unit}"));
         let left = MARGIN + width(&from, LABEL_SIZE) + 8.0;
         let right = WIDTH - MARGIN - width(&to, LABEL_SIZE) - 8.0;
-        let (y, below) = (px(y), px(y + 4.5));
+        let [y, below, l, r, m] = [y, y + 4.5, left, right, left + still * (right - left)].map(px);
+        let [first, last] = [MARGIN, WIDTH - MARGIN].map(px);
         *out += &format!(
-            "<g font-size=\"{LABEL_SIZE}\" fill=\"{INK}\"><text x=\"{}\" y=\"{below}\">{from}</text>\
-             <text x=\"{}\" y=\"{below}\" text-anchor=\"end\">{to}</text>\
+            "<g font-size=\"{LABEL_SIZE}\" fill=\"{INK}\"><text x=\"{first}\" y=\"{below}\">{from}</text>\
+             <text x=\"{last}\" y=\"{below}\" text-anchor=\"end\">{to}</text>\
              <path d=\"M{l} {y}H{r}\" stroke=\"{INK}\"/><circle class=\"moving\" cx=\"{m}\" cy=\"{y}\" r=\"4\">\
              <animate id=\"t\" attributeName=\"cx\" values=\"{l};{r}\" dur=\"{PLAY}s\" begin=\"{BEGIN}\" fill=\"freeze\"/></circle>\
-             <circle class=\"still\" cx=\"{m}\" cy=\"{y}\" r=\"4\"/></g>\n",
-            px(MARGIN),
-            px(WIDTH - MARGIN),
-            l = px(left),
-            r = px(right),
-            m = px(left + still * (right - left))
+             <circle class=\"still\" cx=\"{m}\" cy=\"{y}\" r=\"4\"/></g>\n"
         );
     }
 }
@@ -370,11 +349,9 @@ impl Sheet {
             let priced = places.map(|place| (cost(place), place));
             let Some((_, (x, y))) = priced.min_by(|a, b| a.0.total_cmp(&b.0)) else { continue };
             covered.extend((0..=8).map(|k| (x + wide * f64::from(k) / 8.0, y - LABEL_SIZE / 2.0)));
+            let ([x, y], (colour, _)) = ([x, y].map(px), motion.style.outline());
             *out += &format!(
-                "<text x=\"{}\" y=\"{}\" font-size=\"{LABEL_SIZE}\" font-weight=\"600\" fill=\"{}\">{name}</text>\n",
-                px(x),
-                px(y),
-                motion.style.outline().0
+                "<text x=\"{x}\" y=\"{y}\" font-size=\"{LABEL_SIZE}\" font-weight=\"600\" fill=\"{colour}\">{name}</text>\n"
             );
         }
     }

@@ -89,13 +89,10 @@ pub(super) fn opening(title: &str, description: &str, (width, height): (f64, f64
 /// The title, in lines.
 pub(super) fn headline(out: &mut String, lines: &[String], left: f64) {
     for (row, line) in (1u32..).zip(lines) {
-        let y = f64::from(row) * 20.0;
-        out.push_str(&format!(
-            "<text x=\"{}\" y=\"{}\" font-size=\"{TITLE_SIZE}\" font-weight=\"600\" fill=\"{INK}\">{}</text>\n",
-            px(left),
-            px(y),
-            escape(line)
-        ));
+        let ([x, y], line) = ([left, f64::from(row) * 20.0].map(px), escape(line));
+        *out += &format!(
+            "<text x=\"{x}\" y=\"{y}\" font-size=\"{TITLE_SIZE}\" font-weight=\"600\" fill=\"{INK}\">{line}</text>\n"
+        );
     }
 }
 
@@ -118,21 +115,15 @@ pub(super) fn swatch(out: &mut String, place: &layout::Placed, (left, top): Plac
         strokes(out, entry.style, &trace);
     }
     marks(out, entry, &[(SWATCH / 2.0, 0.0)]);
-    out.push_str(&format!(
-        "<text x=\"{}\" y=\"4.5\" font-size=\"{LABEL_SIZE}\" fill=\"{INK}\">{}</text></g>\n",
-        px(SWATCH + 8.0),
-        escape(&place.text)
-    ));
+    let (x, label) = (px(SWATCH + 8.0), escape(&place.text));
+    *out += &format!("<text x=\"{x}\" y=\"4.5\" font-size=\"{LABEL_SIZE}\" fill=\"{INK}\">{label}</text></g>\n");
 }
 
 /// Frame, grid, ticks and labels of one plot.
 fn axes(out: &mut String, plot: &Framed) {
     let Extent { width: w, height: h } = plot.extent;
-    out.push_str(&format!(
-        "<g transform=\"translate({} {})\" font-size=\"{TICK_SIZE}\" fill=\"{INK}\">\n",
-        px(plot.corner.0),
-        px(plot.corner.1)
-    ));
+    let (x, y) = (px(plot.corner.0), px(plot.corner.1));
+    *out += &format!("<g transform=\"translate({x} {y})\" font-size=\"{TICK_SIZE}\" fill=\"{INK}\">\n");
     let (mut grid, mut ticks) = (String::new(), String::new());
     for tick in &plot.x_ticks.labelled {
         let x = px(plot.across(tick.at));
@@ -173,18 +164,14 @@ fn axes(out: &mut String, plot: &Framed) {
     if let Some(factor) = &plot.x_ticks.factor {
         text(out, (w, h + 37.0), "end", factor);
     }
-    out.push_str(&format!(
-        "<text x=\"{}\" y=\"{}\" text-anchor=\"middle\" font-size=\"{LABEL_SIZE}\">{}</text>\n",
-        px(w / 2.0),
-        px(h + 38.0),
-        escape(&fit(plot.x_label, LABEL_SIZE, w))
-    ));
+    let ([x, y], label) = ([w / 2.0, h + 38.0].map(px), escape(&fit(plot.x_label, LABEL_SIZE, w)));
+    *out += &format!("<text x=\"{x}\" y=\"{y}\" text-anchor=\"middle\" font-size=\"{LABEL_SIZE}\">{label}</text>\n");
     let widest = plot.y_ticks.labelled.iter().map(|tick| width(&tick.label, TICK_SIZE));
-    out.push_str(&format!("<text transform=\"translate(-{} {}) rotate(-90)\" text-anchor=\"middle\" font-size=\"{LABEL_SIZE}\">{}</text>\n",
-        px(widest.fold(0.0, f64::max) + 18.0),
-        px(h / 2.0),
-        escape(&fit(&plot.plot.y.label, LABEL_SIZE, h + 20.0))
-    ));
+    let [x, y] = [widest.fold(0.0, f64::max) + 18.0, h / 2.0].map(px);
+    let label = escape(&fit(&plot.plot.y.label, LABEL_SIZE, h + 20.0));
+    *out += &format!(
+        "<text transform=\"translate(-{x} {y}) rotate(-90)\" text-anchor=\"middle\" font-size=\"{LABEL_SIZE}\">{label}</text>\n"
+    );
     thresholds(out, plot);
     out.push_str("</g>\n");
 }
@@ -203,23 +190,20 @@ fn thresholds(out: &mut String, plot: &Framed) {
 
 /// A line of text, as large as what it stands in says.
 pub(super) fn text(out: &mut String, (x, y): Place, anchor: &str, content: &str) {
-    out.push_str(&format!(
-        "<text x=\"{}\" y=\"{}\" text-anchor=\"{anchor}\">{}</text>\n",
-        px(x),
-        px(y),
-        escape(content)
-    ));
+    let ([x, y], content) = ([x, y].map(px), escape(content));
+    *out += &format!("<text x=\"{x}\" y=\"{y}\" text-anchor=\"{anchor}\">{content}</text>\n");
+}
+
+/// The beginning of a part that is clipped to its frame, of which all has these attributes.
+pub(super) fn clipped(out: &mut String, (x, y): Place, extent: Extent, attributes: &str) {
+    let [x, y, width, height] = [x, y, extent.width, extent.height].map(px);
+    *out +=
+        &format!("<svg x=\"{x}\" y=\"{y}\" width=\"{width}\" height=\"{height}\" overflow=\"hidden\"{attributes}>\n");
 }
 
 /// The curves of one plot, clipped to its frame.
 fn curves(out: &mut String, plot: &Framed, coarseness: Coarseness) {
-    out.push_str(&format!(
-        "<svg x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" overflow=\"hidden\">\n",
-        px(plot.corner.0),
-        px(plot.corner.1),
-        px(plot.extent.width),
-        px(plot.extent.height)
-    ));
+    clipped(out, plot.corner, plot.extent, "");
     let mut order: Vec<(&Curve, &Measured)> = plot.plot.curves.iter().zip(plot.measured).collect();
     order.sort_by_key(|(curve, _)| curve.style);
     let place = |&(x, y): &(f64, f64)| (plot.across(x), plot.down(y));
@@ -260,11 +244,8 @@ fn curves(out: &mut String, plot: &Framed, coarseness: Coarseness) {
     let first = plot.plot.curves.iter().zip(plot.measured).find(|(curve, _)| curve.style > Style::Threshold);
     if let Some(start) = first.and_then(|(_, measured)| measured.points().next()).filter(|_| plot.every > 0) {
         let (x, y) = place(&start);
-        out.push_str(&format!(
-            "<circle cx=\"{}\" cy=\"{}\" r=\"9\" fill=\"none\" stroke=\"{INK}\" stroke-width=\"2\"/>\n",
-            px(x),
-            px(y)
-        ));
+        let [x, y] = [x, y].map(px);
+        *out += &format!("<circle cx=\"{x}\" cy=\"{y}\" r=\"9\" fill=\"none\" stroke=\"{INK}\" stroke-width=\"2\"/>\n");
     }
     out.push_str("</svg>\n");
 }
@@ -307,14 +288,11 @@ fn leaving(out: &mut String, plot: &Framed, style: Style, measured: &Measured) {
     };
     let Extent { width: w, height: h } = plot.extent;
     let (anchor, beside) = if x > w / 2.0 { ("end", -14.0) } else { ("start", 14.0) };
-    out.push_str(&format!(
-        "<path transform=\"translate({} {}) rotate({})\" d=\"M0 0l-14-7v14z\" fill=\"{}\"/>\n\
-         <g font-size=\"{TICK_SIZE}\" fill=\"{INK}\">",
-        px(x),
-        px(y),
-        px(angle.to_degrees()),
-        style.strokes()[0].colour
-    ));
+    let ([at_x, at_y, angle], colour) = ([x, y, angle.to_degrees()].map(px), style.strokes()[0].colour);
+    *out += &format!(
+        "<path transform=\"translate({at_x} {at_y}) rotate({angle})\" d=\"M0 0l-14-7v14z\" fill=\"{colour}\"/>\n\
+         <g font-size=\"{TICK_SIZE}\" fill=\"{INK}\">"
+    );
     text(out, (x + beside, (y - 10.0).clamp(14.0, h - 6.0)), anchor, &format!("to {far}"));
     out.push_str("</g>\n");
 }

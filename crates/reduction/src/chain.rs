@@ -169,7 +169,7 @@ fn links(system: &System) -> Vec<Link> {
         };
         let before = (0..links.len()).min_by_key(|&k| apart(&links[k])).filter(|&k| apart(&links[k]) < row.len() - 1);
         let own = before.map_or_else(|| row.clone(), |k| difference(g, &row, &links[k].row));
-        if is_closed(system, &own) {
+        if system.is_total_derivative(&own) {
             links.push(Link { written, row, before, own });
         }
     }
@@ -185,18 +185,6 @@ fn difference(g: &Graph, a: &Sparse, b: &Sparse) -> Sparse {
     }
     difference.retain(|_, e| !g.is_zero(*e));
     difference
-}
-
-/// Whether a form in `q` is one of the position alone, and `∂_i d_j = ∂_j d_i`.
-fn is_closed(system: &System, form: &Sparse) -> bool {
-    let g = &system.graph;
-    let by = |e: Option<&Expr>, i: usize| e.map_or(g.zero(), |&e| g.derivative(e, system.coordinates[i].position));
-    let vanishes = |e: Expr| g.is_zero(e) || g.vanishes_exactly(e);
-    form.iter().all(|(&j, &e)| {
-        let symbols = g.symbols_of(e);
-        let mut others = (0..system.dimension()).filter(|&i| symbols.contains(&system.coordinates[i].position));
-        !symbols.contains(&system.time) && others.all(|i| vanishes(g.sub(by(Some(&e), i), by(form.get(&i), j))))
-    })
 }
 
 struct Search<'a> {

@@ -8,7 +8,10 @@ use equations::{Compiled, Equations};
 ///
 /// # Panics
 /// If there are none.
-pub fn cheapest(candidates: Vec<Equations>) -> Equations {
+pub fn cheapest(mut candidates: Vec<Equations>) -> Equations {
+    if candidates.len() == 1 {
+        return candidates.remove(0);
+    }
     let price = |equations: &Equations| {
         let compiled = Compiled::plain(&equations.clone().leave_out_unneeded());
         compiled.map_or(usize::MAX, |compiled| compiled.cost()[0].operations())

@@ -31,13 +31,9 @@ pub(crate) fn shortest(g: &Graph, e: Expr) -> Expr {
 /// Values of parameters, time, coordinates and velocities at `start`, or at a point of no significance.
 pub(crate) fn point(system: &System, start: Option<&State>) -> HashMap<Symbol, f64> {
     let n = system.dimension();
-    let mut values = system.parameter_values();
+    let drawn = || (1..=n).map(|i| 0.3 + (i as f64 * 0.618_033_988_749_895).fract()).collect();
     match start {
-        Some(state) => values.extend(system.values_at(state)),
-        None => {
-            let q: Vec<f64> = (1..=n).map(|i| 0.3 + (i as f64 * 0.618_033_988_749_895).fract()).collect();
-            values.extend(system.values_at(&State { t: 0.3, q, v: vec![0.0; n] }));
-        }
+        Some(state) => system.values_at(state),
+        None => system.values_at(&State { t: 0.3, q: drawn(), v: vec![0.0; n] }),
     }
-    values
 }

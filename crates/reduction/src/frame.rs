@@ -29,4 +29,4 @@ mod parts;
 mod search;
 mod squares;
 
-pub use parts::{Frame, FrameConstraint, FrameVelocity, Turning};
+pub use parts::{Frame, FrameVelocity, Turning};

@@ -31,7 +31,7 @@ mod reduced_chetaev;
 mod reduced_vakonomic;
 
 pub use cost::{cheapest, matrix_moves};
-pub use frame::{Frame, FrameConstraint, FrameVelocity, Turning};
+pub use frame::{Frame, FrameVelocity, Turning};
 pub use quasi_velocities::{Columns, DependentVelocity, EliminatedConstraint, QuasiVelocities, QuasiVelocity, Single};
 pub use reduced_chetaev::{REDUCED_CHETAEV, derive_chetaev};
 pub use reduced_vakonomic::{REDUCED_VAKONOMIC, derive_vakonomic};

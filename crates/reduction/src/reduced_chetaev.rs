@@ -84,7 +84,7 @@ pub fn derive_chetaev(system: &System, derivation: &Derivation) -> Result<Equati
         candidates.push(in_frame);
     }
     candidates.extend(chain.as_ref().map(own).transpose()?);
-    Ok(if candidates.len() == 1 { candidates.remove(0) } else { cheapest(candidates) })
+    Ok(cheapest(candidates))
 }
 
 /// The equations in quasi-velocities of coordinates, or of a frame.
@@ -178,9 +178,8 @@ fn balance_in_frame(
 ) -> Vec<Expr> {
     let g = &system.graph;
     let (q, v) = (system.positions(), system.velocities());
-    let at_rest: HashMap<Symbol, Expr> = v.iter().map(|&v| (v, g.zero())).collect();
-    let linear = g.substitute_all(momenta, &at_rest);
-    let rest = g.add(g.substitute(system.lagrangian, &at_rest), g.dot(&linear, &g.variables(&v)));
+    let linear = system.at_rest(momenta);
+    let rest = g.add(system.at_rest(&[system.lagrangian])[0], g.dot(&linear, &g.variables(&v)));
     let mut flow: Vec<(Symbol, Expr)> = q.iter().zip(&v).map(|(&q, &v)| (q, g.variable(v))).collect();
     flow.push((system.time, g.one()));
     let (inertia, gradient) = (g.total_derivatives(&linear, &flow), g.gradient(rest, &q));
@@ -217,23 +216,20 @@ fn reactions(
     let adjoints = adjoints(g, quasi, &whole.collect::<Vec<Expr>>(), definitions);
     let lambda = system.multipliers("lambda", "");
     multipliers(g, quasi, &lambda, &adjoints, definitions);
-    equations.multipliers = lambda.iter().map(|&s| Named { name: g.name(s), expression: g.variable(s) }).collect();
+    equations.multipliers = Named::symbols(g, &lambda);
 }
 
 /// States, outputs and invariants.
 fn hand_over(equations: &mut Equations, system: &System, quasi: &QuasiVelocities, momenta: &[Expr]) {
     let g = &system.graph;
     for c in &system.coordinates {
-        let (rate, start) = (g.variable(c.velocity), g.variable(c.position));
-        equations.states.push(StateVariable { symbol: c.position, role: Role::Position, rate, start });
+        equations.states.push(StateVariable::of(g, c.position, Role::Position, c.velocity, c.position));
     }
     for w in &quasi.free {
         let own = system.coordinates.iter().any(|c| c.velocity == w.symbol);
         let role = if own { Role::Velocity } else { Role::QuasiVelocity };
         equations.states.push(StateVariable { symbol: w.symbol, role, rate: g.variable(w.rate), start: w.start });
     }
-    equations.coordinates = g.variables(&system.positions());
-    equations.velocities = g.variables(&system.velocities());
     // energy is constant if the motion itself is a virtual displacement; so are momenta without reactions
     if quasi.homogeneous && system.is_autonomous() && !system.has_forces() {
         let power = g.dot(&g.variables(&system.velocities()), momenta);

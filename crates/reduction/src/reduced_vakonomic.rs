@@ -91,7 +91,7 @@ pub fn derive_vakonomic(system: &System, derivation: &Derivation) -> Result<Equa
         candidates.push(in_frame);
     }
     candidates.extend(problem.put_in(&system).map(|whole| problem.equations(system.clone(), Some(&whole))));
-    if candidates.len() == 1 { Ok(candidates.remove(0)) } else { Ok(cheapest(candidates)) }
+    Ok(cheapest(candidates))
 }
 
 /// Quasi-velocities put in: short for small systems, where terms meet that cancel.
@@ -135,7 +135,7 @@ impl Problem {
         let v = system.velocities();
         let momenta = g.gradient(system.lagrangian, &v);
         let Some(frame) = &self.frame else { return (v, momenta) };
-        let linear = frame.along(g, &g.substitute_all(&momenta, &at_rest(system)));
+        let linear = frame.along(g, &system.at_rest(&momenta));
         let u: Vec<Symbol> = frame.velocities.iter().map(|u| u.symbol).collect();
         let own = frame.inertia.iter().zip(&u).zip(linear);
         let momenta = own.map(|((&c, &u), linear)| g.add(g.mul(c, g.variable(u)), linear)).collect();
@@ -159,7 +159,7 @@ impl Problem {
         };
         let u = frame.velocities.iter().map(|u| g.variable(u.symbol));
         let linear = momenta.iter().zip(&frame.inertia).zip(u).map(|((&l_u, &c), u)| g.mul(u, g.sub(l_u, g.mul(c, u))));
-        let rest: Vec<Expr> = linear.chain([g.substitute(system.lagrangian, &at_rest(system))]).collect();
+        let rest: Vec<Expr> = linear.chain(system.at_rest(&[system.lagrangian])).collect();
         let applied: Vec<Expr> =
             applied(g.sum(&rest)).iter().zip(along).map(|(&r_q, &along)| g.sub(r_q, along)).collect();
         let (applied, turned) = (frame.along(g, &applied), frame.turned(g, &self.p));
@@ -200,8 +200,7 @@ impl Problem {
         };
         let at_start = augmented.multipliers.iter().copied().zip(g.variables(&augmented.starts)).collect();
         for i in 0..q.len() {
-            let (rate, start) = (g.variable(v[i]), g.variable(q[i]));
-            equations.states.push(StateVariable { symbol: q[i], role: Role::Position, rate, start });
+            equations.states.push(StateVariable::of(g, q[i], Role::Position, v[i], q[i]));
         }
         for (i, (&symbol, &rate)) in costates.iter().zip(&rates).enumerate() {
             let start = g.substitute(p0[i], &at_start);
@@ -259,11 +258,6 @@ impl Problem {
     }
 }
 
-/// `v = 0`
-fn at_rest(system: &System) -> HashMap<Symbol, Expr> {
-    system.velocities().into_iter().map(|v| (v, system.graph.zero())).collect()
-}
-
 /// `Sᵀ (L_v − p)` in `(t, q, p, w)`, without what depends on `w` by way of definitions.
 fn stationarity(
     g: &Graph,
@@ -302,11 +296,8 @@ fn stationarity(
 fn hand_over(equations: &mut Equations, system: &System, augmented: &Augmented, p: &[Expr]) {
     let g = &system.graph;
     let v = g.variables(&system.velocities());
-    equations.coordinates = g.variables(&system.positions());
-    let named = |&mu: &Symbol| Named { name: g.name(mu), expression: g.variable(mu) };
-    equations.multipliers = augmented.multipliers.iter().map(named).collect();
+    equations.multipliers = Named::symbols(g, &augmented.multipliers);
     equations.free_constants = augmented.free_constants();
     let energy = g.sub(g.dot(&v, p), system.lagrangian);
     equations.add_invariants(system, Some(energy), p, &[&augmented.applied]);
-    equations.velocities = v;
 }

@@ -140,31 +140,27 @@ pub fn derive(system: &System, derivation: &Derivation) -> Result<Equations, Der
     }
     flow.push((system.time, g.one()));
 
+    let state = |symbol, role, rate| StateVariable::of(g, symbol, role, rate, symbol);
     let mut residuals = Vec::new();
     for (i, p) in parameters.iter().enumerate() {
         let u = p.u;
         let gradient = g.add(g.derivative(generating, u.symbol), work.by_parameter[i]);
         let first = g.add(g.derivative(generating, u.rate), work.by_rate[i]);
         let role = if u.coordinate.is_some() { Role::Position } else { Role::DisplacementParameter };
-        equations.states.push(state(g, u.symbol, role, g.variable(u.rate), u.symbol));
+        equations.states.push(state(u.symbol, role, u.rate));
         let (residual, conserved) = match p.momentum {
             // d/dt (∂G/∂u̇ + Q_u̇) − ∂G/∂u − Q_u = 0
             None => (g.sub(g.total_derivative(first, &flow), gradient), first),
             // d/dt ∂G/∂ü − ∂G/∂u̇ − Q_u̇ + p = 0,  ṗ = ∂G/∂u + Q_u
             Some(Momentum { state: momentum, start }) => {
                 let second = g.total_derivative(g.derivative(generating, u.second_rate), &flow);
-                equations.states.push(state(
-                    g,
-                    u.second_rate,
-                    Role::ParameterSecondRate,
-                    g.variable(p.unknown),
-                    u.second_rate,
-                ));
-                equations.states.push(state(g, momentum, Role::ParameterMomentum, gradient, start));
+                equations.states.push(state(u.second_rate, Role::ParameterSecondRate, p.unknown));
+                let (role, start) = (Role::ParameterMomentum, g.variable(start));
+                equations.states.push(StateVariable { symbol: momentum, role, rate: gradient, start });
                 (g.sum(&[second, g.neg(first), g.variable(momentum)]), g.variable(momentum))
             }
         };
-        equations.states.push(state(g, u.rate, Role::ParameterRate, g.variable(u.second_rate), u.rate));
+        equations.states.push(state(u.rate, Role::ParameterRate, u.second_rate));
         let name = g.name(u.symbol);
         equations.statements.push(Statement {
             meaning: format!("balance for {name}"),
@@ -180,7 +176,7 @@ pub fn derive(system: &System, derivation: &Derivation) -> Result<Equations, Der
     costates.hand_over(g, removal, &mut equations);
     for p in &parameters {
         if let Some(Momentum { start, .. }) = p.momentum {
-            equations.free_constants.push(FreeConstant { symbol: start, natural: None, memory: None });
+            equations.free_constants.push(FreeConstant::new(start));
         }
     }
     equations.blocks = vec![Block {
@@ -282,8 +278,4 @@ fn energy(g: &Graph, generating: Expr, parameters: &[Parameter]) -> Expr {
         }
     }
     g.sum(&terms)
-}
-
-fn state(g: &Graph, symbol: Symbol, role: Role, rate: Expr, start: Symbol) -> StateVariable {
-    StateVariable { symbol, role, rate, start: g.variable(start) }
 }

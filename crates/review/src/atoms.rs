@@ -84,8 +84,8 @@ pub(crate) fn pieces(system: &System) -> Vec<(Called, Expr)> {
     }
     let mut alike: BTreeMap<Vec<Expr>, Vec<Expr>> = BTreeMap::new();
     for &t in terms.iter().filter(|&&t| moves(t)) {
-        let constant = |&f: &Expr| g.symbols_of(f).iter().all(|s| system.parameters.iter().any(|p| p.symbol == *s));
-        alike.entry(g.factors(t).into_iter().filter(constant).collect()).or_default().push(t);
+        let constants = g.factors(t).into_iter().filter(|&f| system.is_constant(f)).collect();
+        alike.entry(constants).or_default().push(t);
     }
     let several = alike.len() > 1;
     for (factors, terms) in alike.into_iter().filter(|(_, terms)| terms.len() > 1 && several) {
@@ -103,11 +103,10 @@ pub(crate) fn pieces(system: &System) -> Vec<(Called, Expr)> {
 /// `t` with one factor more or less: each with what is called.
 fn misprints(system: &System, t: Expr, place: &str, all: bool) -> Vec<(Called, Expr)> {
     let g = &system.graph;
-    let is_parameter = |s: &Symbol| system.parameters.iter().any(|p| p.symbol == *s);
     let mut found = Vec::new();
     for factor in g.factors(t) {
         let symbols = g.symbols_of(factor);
-        let constant = symbols.iter().all(is_parameter) && !symbols.is_empty();
+        let constant = system.is_constant(factor) && !symbols.is_empty();
         if !constant && !all {
             continue;
         }

@@ -8,7 +8,7 @@ use mechanics::{DisplacementParameter, System};
 use scene::Scene;
 use symbolic::{CompileError, Evaluator, Expr, Graph, Symbol};
 
-use crate::frame::{Frame, Point, Trouble};
+use crate::frame::{Frame, Linear, Point, Trouble};
 use crate::number::{At, Number, constants, eliminate, values};
 use crate::reading::Reading;
 use crate::{Law, substitution};
@@ -17,10 +17,8 @@ use crate::{Law, substitution};
 pub(crate) struct Base {
     /// What was done, as one says of somebody's equations; nothing for what was asked for.
     pub(crate) words: Vec<String>,
-    /// The rows where the others are zero, then their slopes by them.
-    outputs: Vec<Expr>,
-    pub(crate) rows: usize,
-    others: usize,
+    /// The rows where the others are zero, and their slopes by them.
+    rows: Linear,
     /// Unknowns that the state does not give.
     states: Vec<Symbol>,
     /// Whether the rows are the balances of the scene's coordinates and the rates of its constraints.
@@ -85,16 +83,17 @@ impl Base {
         (others, states): (&[Symbol], &[Symbol]),
         plain: bool,
     ) -> Option<Base> {
-        let zeros = others.iter().map(|&s| (s, g.zero())).collect();
-        let outputs = [&g.substitute_all(rows, &zeros)[..], g.jacobian(rows, others).entries()].concat();
-        if outputs.iter().any(|&e| g.symbols_of(e).iter().any(|s| others.contains(s))) {
+        let mut rows = Linear::new(g, rows, others, false);
+        if rows.bends(g, others) {
             return None;
         }
         let own = &reading.system.graph;
         let states = states.iter().map(|&s| own.symbol(&g.name(s))).collect();
-        let outputs = if std::ptr::eq(own, g) { outputs } else { own.adopt(g, &outputs) };
-        let outputs = reading.of_scene(own, &outputs);
-        Some(Base { words, outputs, rows: rows.len(), others: others.len(), states, plain })
+        if !std::ptr::eq(own, g) {
+            rows.outputs = own.adopt(g, &rows.outputs);
+        }
+        rows.outputs = reading.of_scene(own, &rows.outputs);
+        Some(Base { words, rows, states, plain })
     }
 
     /// The program for numbers of one kind, from the inputs of a frame, accelerations and states.
@@ -102,7 +101,7 @@ impl Base {
         let accelerations = frame.reading.coordinates.iter().map(|c| c[2]);
         let inputs: Vec<Symbol> =
             frame.inputs.iter().copied().chain(accelerations).chain(self.states.clone()).collect();
-        Ok(Evaluator::new(frame.reading.system.graph.compile(&inputs, &self.outputs, &<_>::default())?))
+        Ok(Evaluator::new(frame.reading.system.graph.compile(&inputs, &self.rows.outputs, &<_>::default())?))
     }
 
     /// Signs with which their unknowns with a rate may be those of these equations.
@@ -132,13 +131,11 @@ impl Base {
         inputs.extend(own);
         let outputs = values(program, &inputs)?;
         // the combinations of rows in which the others cancel
-        let row = |i: usize| {
-            let slopes = &outputs[self.rows + i * self.others..][..self.others];
-            slopes.iter().copied().chain([outputs[i]]).chain(columns.iter().map(|column| column[i])).collect()
-        };
-        let mut rows: Vec<Vec<C>> = (0..self.rows).map(row).collect();
-        let done = eliminate(&mut rows, self.others).len();
-        let of = |k: usize| rows[done..].iter().map(|row| row[self.others + k]).collect();
+        let mut rows = self.rows.rows(&outputs);
+        rows.iter_mut().enumerate().for_each(|(i, row)| row.extend(columns.iter().map(|column| column[i])));
+        let others = self.rows.unknowns;
+        let done = eliminate(&mut rows, others).len();
+        let of = |k: usize| rows[done..].iter().map(|row| row[others + k]).collect();
         Ok(Residuals { residual: of(0), columns: (1..=columns.len()).map(of).collect() })
     }
 }

@@ -1,7 +1,7 @@
 //! Points `(q, v, t, parameters)` on the constraints, and what their equations say there of `q̈`.
 
 use decision::exact::Flaw;
-use symbolic::{Evaluator, Expr, SplitMix, Symbol};
+use symbolic::{Evaluator, Expr, Graph, SplitMix, Symbol};
 
 use crate::number::{At, Number, constants, eliminate, values};
 use crate::reading::Reading;
@@ -47,16 +47,15 @@ pub(crate) struct Point<C> {
 }
 
 /// Expressions with their slopes by unknowns: as many, and as many times as many slopes.
-struct Linear {
-    outputs: Vec<Expr>,
-    count: usize,
-    unknowns: usize,
+pub(crate) struct Linear {
+    pub(crate) outputs: Vec<Expr>,
+    pub(crate) count: usize,
+    pub(crate) unknowns: usize,
 }
 
 impl Linear {
     /// `es` at `unknowns` as they are (`at`), or where these are zero.
-    fn new(reading: &Reading, es: &[Expr], unknowns: &[Symbol], at: bool) -> Self {
-        let g = &reading.system.graph;
+    pub(crate) fn new(g: &Graph, es: &[Expr], unknowns: &[Symbol], at: bool) -> Self {
         let zeros = unknowns.iter().map(|&s| (s, g.zero())).collect();
         let rest = if at { es.to_vec() } else { g.substitute_all(es, &zeros) };
         let outputs = [&rest[..], g.jacobian(es, unknowns).entries()].concat();
@@ -64,13 +63,13 @@ impl Linear {
     }
 
     /// Whether an unknown is left in it.
-    fn bends(&self, reading: &Reading, unknowns: &[Symbol]) -> bool {
-        let symbols = self.outputs.iter().flat_map(|&e| reading.system.graph.symbols_of(e));
+    pub(crate) fn bends(&self, g: &Graph, unknowns: &[Symbol]) -> bool {
+        let symbols = self.outputs.iter().flat_map(|&e| g.symbols_of(e));
         symbols.into_iter().any(|s| unknowns.contains(&s))
     }
 
     /// Rows of slopes, with the rest behind them.
-    fn rows<C: Number>(&self, outputs: &[C]) -> Vec<Vec<C>> {
+    pub(crate) fn rows<C: Number>(&self, outputs: &[C]) -> Vec<Vec<C>> {
         let row = |i: usize| {
             let first = self.count + i * self.unknowns;
             [&outputs[first..first + self.unknowns], &[outputs[i]]].concat()
@@ -128,11 +127,10 @@ impl<'r> Frame<'r> {
         let held: Vec<Expr> = kinematic.iter().map(|s| s.expression).collect();
         moves.extend(g.total_derivatives(&held, &flow));
         moves.extend(g.total_derivatives(&slides, &flow));
-        let motion = Linear::new(reading, &moves, &unknowns, false);
-        if motion.bends(reading, &unknowns) {
-            let bent = |e: &&crate::reading::Stated| {
-                Linear::new(reading, &[e.expression], &unknowns, false).bends(reading, &unknowns)
-            };
+        let motion = Linear::new(g, &moves, &unknowns, false);
+        if motion.bends(g, &unknowns) {
+            let bent =
+                |e: &&crate::reading::Stated| Linear::new(g, &[e.expression], &unknowns, false).bends(g, &unknowns);
             return Err(reading.equations.iter().find(bent).map_or(String::new(), |e| e.text.clone()));
         }
         let parameters = reading.parameters.iter().map(|p| p.0);
@@ -141,11 +139,11 @@ impl<'r> Frame<'r> {
         let values = reading.parameters.iter().map(|p| p.1);
         let centres = values.chain(inputs[reading.parameters.len()..].iter().map(|&s| start(s))).collect();
         Ok(Frame {
-            leaf: Linear::new(reading, &leaf, &q, true),
-            velocities: Linear::new(reading, &[&constraints[..], &slides].concat(), &v, true),
-            kinematic: Linear::new(reading, &held, &states, false),
+            leaf: Linear::new(g, &leaf, &q, true),
+            velocities: Linear::new(g, &[&constraints[..], &slides].concat(), &v, true),
+            kinematic: Linear::new(g, &held, &states, false),
             kinematic_text: kinematic.iter().map(|s| s.text.clone()).collect(),
-            supplied: Linear::new(reading, &g.total_derivatives(&constraints, &flow), &a, false),
+            supplied: Linear::new(g, &g.total_derivatives(&constraints, &flow), &a, false),
             motion,
             inputs,
             centres,

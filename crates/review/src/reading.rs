@@ -109,7 +109,7 @@ impl Scope for Names<'_> {
             return Some(Value::Scalar(e));
         }
         let (stem, primes) = base(name);
-        let taken = self.known.contains_key(stem) || self.system.graph.parse(stem, &|_| None, &[]).is_ok();
+        let taken = self.known.contains_key(stem) || self.system.graph.parse(stem, &|_: &str| None).is_ok();
         if !self.open || taken || primes > 1 {
             return None;
         }
@@ -190,7 +190,7 @@ pub(crate) fn read(scene: &Scene, lines: &[Line], wheres: &[String]) -> Result<R
     names.flow = flow(system, &coordinates);
     for ((own, formula), text) in mapped.iter().zip(wheres) {
         let fault = |e: symbolic::ParseError| ReviewError::Where { text: text.clone(), what: e.kind.to_string() };
-        let mut e = g.parse_number(formula, &names).map_err(fault)?;
+        let mut e = g.parse(formula, &names).map_err(fault)?;
         for primes in ["", "'", "''"].iter().take(if is_coordinate(own) { 3 } else { 1 }) {
             map.insert(g.symbol(&format!("{own}{primes}")), e);
             e = g.total_derivative(e, &names.flow);
@@ -234,7 +234,7 @@ fn split_where<'t>(system: &System, text: &'t str) -> Result<(&'t str, &'t str),
 fn state(names: &Names, line: &Line) -> Result<Option<Stated>, ReviewError> {
     let (g, text) = (names.g, line.text.as_str());
     let parse = |part: &str, offset: usize| {
-        g.parse_number(part, names).map_err(|mut error| {
+        g.parse(part, names).map_err(|mut error| {
             error.offset += offset;
             error.text = text.into();
             error.also = Box::default();

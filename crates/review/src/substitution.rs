@@ -56,8 +56,7 @@ pub fn derive(system: &System, removal: &Removal) -> Equations {
         equations.statements.push(Statement { meaning, left: residual, right: g.zero() });
         let role = if u.coordinate.is_some() { Role::Position } else { Role::DisplacementParameter };
         for (symbol, role, rate) in [(u.symbol, role, u.rate), (u.rate, Role::ParameterRate, u.second_rate)] {
-            let (rate, start) = (g.variable(rate), g.variable(symbol));
-            equations.states.push(StateVariable { symbol, role, rate, start });
+            equations.states.push(StateVariable::of(g, symbol, role, rate, symbol));
         }
     }
     for w in &removal.memory {

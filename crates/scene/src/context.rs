@@ -3,6 +3,7 @@
 use std::collections::HashMap;
 use std::ops::Range;
 
+use bodies::Written;
 use mechanics::System;
 use symbolic::{Expr, Graph, Symbol};
 
@@ -10,7 +11,7 @@ use super::formulas::Found;
 use super::machine::Follows;
 use super::names::{Names, check_symbols};
 use super::overrides::Overrides;
-use super::section::{Entry, Section, Source, Text, Value};
+use super::section::{Entry, Section, Source, Value};
 use crate::{SceneError, SceneErrorKind, Unavailable};
 
 /// A scene half read: its names, and the system as far as it is known.
@@ -37,7 +38,7 @@ pub(super) struct Context<'a> {
 }
 
 impl Context<'_> {
-    pub(super) fn parse(&self, text: &Text) -> Result<Expr, SceneError> {
+    pub(super) fn parse(&self, text: &Written) -> Result<Expr, SceneError> {
         self.names.parse(self.source, &self.system.graph, text)
     }
 
@@ -62,7 +63,7 @@ impl Context<'_> {
         if value.is_finite() {
             return Ok(value);
         }
-        Err(self.source.error(&text.span, SceneErrorKind::NotFinite { what: what.into(), value }))
+        Err(self.source.error(&text.place, SceneErrorKind::NotFinite { what: what.into(), value }))
     }
 
     /// What stands at `entry`, as it is written.

@@ -2,11 +2,11 @@
 
 use std::collections::HashMap;
 
+use bodies::Written;
 use symbolic::{Expr, Vanishing};
 
 use super::context::{Context, unrounded};
 use super::machine::Kind;
-use super::section::Text;
 use super::start::on_position;
 use crate::{SceneError, SceneErrorKind};
 
@@ -21,7 +21,7 @@ pub(super) fn explain(context: &Context, unexplained: Vec<SceneError>) -> Result
             (Ok(symbolic::Value::Vector(v)), Kind::Vector) if matches!(v.len(), 2 | 3) => Ok(()),
             (Ok(value), _) => {
                 let expected = if *kind == Kind::Number { "a number" } else { "a vector of 2 or 3" };
-                Err(source.error(&text.span, SceneErrorKind::WrongShape { found: value.shape(), expected }))
+                Err(source.error(&text.place, SceneErrorKind::WrongShape { found: value.shape(), expected }))
             }
         };
         found |= source.note(read).is_none();
@@ -38,9 +38,9 @@ pub(super) fn rows(context: &mut Context, constraints: &mut Vec<Expr>, on_positi
         constraints.iter().enumerate().map(|(i, &f)| (f, format!("constraint {}", i + 1))).collect();
     for row in std::mem::take(&mut context.follows.made.rows) {
         let (source, g, system) = (context.source, &context.system.graph, &context.system);
-        let text = Text { text: row.text, span: row.place };
+        let text = Written { text: row.text, place: row.place };
         let Some(f) = source.note(context.names.parse(source, g, &text)) else { continue };
-        let height = row.height.map(|height| Text { text: height, span: text.span.clone() });
+        let height = row.height.map(|height| Written { text: height, place: text.place.clone() });
         let height = height.and_then(|text| source.note(context.names.parse(source, g, &text)));
         let has_velocity = system.velocities().iter().any(|&v| g.depends_on(f, v));
         let rate = if has_velocity { f } else { g.total_derivative(f, &system.flow()) };
@@ -52,7 +52,7 @@ pub(super) fn rows(context: &mut Context, constraints: &mut Vec<Expr>, on_positi
                 && on_position(0, value, &context.positions).is_err()
             {
                 let kind = bodies::FaultKind::Off { what: row.says, value };
-                source.note::<()>(Err(source.error(&text.span, SceneErrorKind::Bodies(kind))));
+                source.note::<()>(Err(source.error(&text.place, SceneErrorKind::Bodies(kind))));
             }
             continue;
         }
@@ -67,15 +67,15 @@ pub(super) fn rows(context: &mut Context, constraints: &mut Vec<Expr>, on_positi
         constraints.push(rate);
         if let Some(position) = height.or((!has_velocity).then_some(f)) {
             on_positions.push((constraints.len() - 1, position));
-            context.on_positions.push((constraints.len(), text.span.clone(), position));
+            context.on_positions.push((constraints.len(), text.place.clone(), position));
         }
-        context.places.push(text.span);
+        context.places.push(text.place);
         context.found.constraints.push(text.text);
         known.push((rate, row.says));
     }
     let g = &context.system.graph;
     for slip in std::mem::take(&mut context.follows.made.slips) {
-        let text = Text { text: slip.text, span: slip.place };
+        let text = Written { text: slip.text, place: slip.place };
         let Some(s) = context.source.note(context.names.parse(context.source, g, &text)) else { continue };
         let is_rate = context.system.velocities().iter().any(|&v| g.depends_on(s, v));
         let rate = if is_rate { s } else { g.total_derivative(s, &context.system.flow()) };
@@ -88,7 +88,7 @@ pub(super) fn rows(context: &mut Context, constraints: &mut Vec<Expr>, on_positi
 pub(super) fn works(context: &mut Context) -> Result<(), SceneError> {
     let mut touched = vec![false; context.system.dimension()];
     for work in std::mem::take(&mut context.follows.made.works) {
-        let read = |text: String| context.parse(&Text { text, span: work.place.clone() });
+        let read = |text: String| context.parse(&Written { text, place: work.place.clone() });
         let (along, force) = (read(work.along)?, read(work.force)?);
         let g = &context.system.graph;
         let force = unrounded(g, force);

@@ -7,7 +7,7 @@ use bodies::{
     Between, Body, Contact, FaultKind, Formulas, Inertia, Joint, Law, Link, LinkKind, Machine, Motion, Written,
 };
 
-use super::section::{Entry, Section, Source, Text, Value};
+use super::section::{Entry, Section, Source, Value};
 use crate::format::{self, Key};
 use crate::{SceneError, SceneErrorKind};
 
@@ -26,7 +26,7 @@ pub(super) enum Kind {
 #[derive(Default)]
 pub(super) struct Follows {
     pub(super) made: Formulas,
-    pub(super) texts: Vec<(Text, Kind)>,
+    pub(super) texts: Vec<(Written, Kind)>,
 }
 
 /// Reads the bodies of a scene, if there are any.
@@ -66,7 +66,7 @@ pub(super) fn read(source: Source, root: &Section) -> Result<Option<Follows>, Sc
 
 struct Reader<'s> {
     source: Source<'s>,
-    texts: RefCell<Vec<(Text, Kind)>>,
+    texts: RefCell<Vec<(Written, Kind)>>,
 }
 
 impl Reader<'_> {
@@ -108,13 +108,13 @@ impl Reader<'_> {
     }
 
     fn remember(&self, text: &Written, kind: Kind) {
-        self.texts.borrow_mut().push((Text { text: text.text.clone(), span: text.place.clone() }, kind));
+        self.texts.borrow_mut().push((text.clone(), kind));
     }
 
     /// A number, or an expression.
     fn number(&self, entry: &Entry) -> Result<Written, SceneError> {
         let text = match entry.value()? {
-            Value::Expression(text) => text.text,
+            Value::Expression(written) => written.text,
             Value::Number(x) => {
                 let raw = self.source.text.get(entry.span.clone()).unwrap_or_default();
                 if raw.parse() == Ok(x) { raw.to_owned() } else { format!("{x:?}") }
@@ -134,8 +134,7 @@ impl Reader<'_> {
 
     fn vector(&self, entry: &Entry) -> Result<Written, SceneError> {
         const EXPECTED: &str = "a vector: a list of two or three numbers or expressions, or an expression in quotes";
-        if let Ok(text) = entry.text(EXPECTED) {
-            let written = Written { text: text.text, place: text.span };
+        if let Ok(written) = entry.text(EXPECTED) {
             self.remember(&written, Kind::Vector);
             return Ok(written);
         }
@@ -151,18 +150,13 @@ impl Reader<'_> {
     /// An axis by its letter, or a vector.
     fn axis(&self, entry: &Entry) -> Result<Written, SceneError> {
         let letter = entry.text("").ok().filter(|text| matches!(text.text.trim(), "x" | "y" | "z"));
-        letter.map_or_else(|| self.vector(entry), |text| Ok(Written { text: text.text, place: text.span }))
+        letter.map_or_else(|| self.vector(entry), Ok)
     }
 
     fn rotation(&self, entry: &Entry) -> Result<Written, SceneError> {
-        let text = entry.text("a rotation in quotes, as in \"rotation(z, phi)\"")?;
-        let written = Written { text: text.text, place: text.span };
+        let written = entry.text("a rotation in quotes, as in \"rotation(z, phi)\"")?;
         self.remember(&written, Kind::Any);
         Ok(written)
-    }
-
-    fn word(&self, entry: &Entry, expected: &'static str) -> Result<Written, SceneError> {
-        entry.text(expected).map(|text| Written { text: text.text, place: text.span })
     }
 
     fn required(&self, s: &Section, key: &'static str, expected: &'static str) -> Result<Written, SceneError> {
@@ -178,7 +172,7 @@ impl Reader<'_> {
                     None => Vec::new(),
                 };
                 let sizes = sizes.iter().map(|size| self.number(size)).collect::<Result<_, _>>()?;
-                Some((self.word(&word, format::SHAPES)?, sizes))
+                Some((word.text(format::SHAPES)?, sizes))
             }
             (None, Some(_)) => {
                 section.require("shape", format::SHAPES)?;
@@ -206,7 +200,7 @@ impl Reader<'_> {
             mass: section.get("mass").map(|entry| self.number(&entry)).transpose()?,
             inertia: section.get("inertia").map(|entry| self.inertia(&entry)).transpose()?,
             centre: vector("mass-centre")?,
-            on: section.get("on").map(|on| self.word(&on, "the name of a body")).transpose()?,
+            on: section.get("on").map(|on| on.text("the name of a body")).transpose()?,
             joint,
             name,
         })
@@ -273,8 +267,8 @@ impl Reader<'_> {
         };
         Ok(Contact {
             name,
-            of: self.word(&s.require("of", "the name of a body")?, "the name of a body")?,
-            on: s.get("on").map(|on| self.word(&on, "the name of a body")).transpose()?,
+            of: s.require("of", "the name of a body")?.text("the name of a body")?,
+            on: s.get("on").map(|on| on.text("the name of a body")).transpose()?,
             law,
             at: vector("at")?,
             along: vector("along")?,
@@ -284,7 +278,7 @@ impl Reader<'_> {
     fn link(&self, name: Written, s: &Section, kind: LinkKind) -> Result<Link, SceneError> {
         let fault = || Err(self.source.error(&name.place, SceneErrorKind::Bodies(FaultKind::Between)));
         let between = match (s.get("joint"), s.section("between")?) {
-            (Some(joint), None) => Between::Joint(self.word(&joint, "the name of a body")?),
+            (Some(joint), None) => Between::Joint(joint.text("the name of a body")?),
             (None, Some(ends)) => {
                 let end = |entry: Entry| {
                     let name = Written { text: entry.key.to_owned(), place: entry.key_span.clone() };

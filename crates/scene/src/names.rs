@@ -3,10 +3,11 @@
 use std::collections::{HashMap, HashSet};
 use std::ops::Range;
 
+use bodies::Written;
 use mechanics::System;
 use symbolic::{Expr, Graph, ParseError, ParseErrorKind, Scope, Symbol, Value};
 
-use super::section::{Source, Text};
+use super::section::Source;
 use crate::{NameFault, SceneError, SceneErrorKind, Unavailable};
 
 /// The meaning of a name.
@@ -132,13 +133,13 @@ impl Names {
             return Err(NameFault::Reserved("time"));
         }
         let nothing = |_: &str| None;
-        match graph.parse(name, &nothing, &[]).map_err(|e| e.kind) {
+        match graph.parse(name, &nothing).map_err(|e| e.kind) {
             Err(ParseErrorKind::Undefined { name: read, .. }) if read == name => {}
             Ok(_) if name.starts_with(|c: char| c.is_alphabetic()) => return Err(NameFault::Reserved("a constant")),
             Err(ParseErrorKind::FunctionWithoutArgument { .. }) => return Err(NameFault::Reserved("a function")),
             _ => return Err(NameFault::NotIdentifier),
         }
-        match graph.parse(&format!("{name}(1)"), &nothing, &[]).map_err(|e| e.kind) {
+        match graph.parse(&format!("{name}(1)"), &nothing).map_err(|e| e.kind) {
             Err(ParseErrorKind::UnknownFunction { .. } | ParseErrorKind::VariableCalled { .. }) => {}
             Err(ParseErrorKind::Undefined { .. }) => {}
             _ => return Err(NameFault::Reserved("a function")),
@@ -170,17 +171,17 @@ impl Names {
     }
 
     /// Reads a number as an expression.
-    pub(super) fn parse(&self, source: Source, graph: &Graph, text: &Text) -> Result<Expr, SceneError> {
-        graph.parse_number(&text.text, &Known(self, graph)).map_err(|error| self.fault(source, text, error))
+    pub(super) fn parse(&self, source: Source, graph: &Graph, text: &Written) -> Result<Expr, SceneError> {
+        graph.parse(&text.text, &Known(self, graph)).map_err(|error| self.fault(source, text, error))
     }
 
     /// Reads an expression for a number, a vector or a matrix.
-    pub(super) fn parse_value(&self, source: Source, graph: &Graph, text: &Text) -> Result<Value, SceneError> {
+    pub(super) fn parse_value(&self, source: Source, graph: &Graph, text: &Written) -> Result<Value, SceneError> {
         graph.parse_value(&text.text, &Known(self, graph)).map_err(|error| self.fault(source, text, error))
     }
 
     /// The first fault of a formula; the others are noted.
-    fn fault(&self, source: Source, text: &Text, mut error: ParseError) -> SceneError {
+    fn fault(&self, source: Source, text: &Written, mut error: ParseError) -> SceneError {
         for other in std::mem::take(&mut error.also) {
             source.note::<()>(Err(self.fault(source, text, other)));
         }
@@ -234,7 +235,7 @@ fn overriding(name: &str) -> Option<NameFault> {
 pub(super) fn check_symbols(
     source: Source,
     graph: &Graph,
-    text: &Text,
+    text: &Written,
     e: Expr,
     reason: impl Fn(Symbol) -> Option<Unavailable>,
 ) -> Result<(), SceneError> {
@@ -244,7 +245,7 @@ pub(super) fn check_symbols(
             let kind = SceneErrorKind::Unavailable { name: name.clone(), reason };
             return Err(match find_name(&text.text, &name) {
                 Some(offset) => source.error_within(text, offset, name.len(), kind),
-                None => source.error(&text.span, kind),
+                None => source.error(&text.place, kind),
             });
         }
     }

@@ -3,7 +3,7 @@
 use std::fmt;
 use std::str::FromStr;
 
-use symbolic::{Graph, ParseErrorKind};
+use symbolic::{Fraction, Graph, ParseErrorKind};
 
 /// A number instead of one of a scene: a decimal, or a formula without names as in `pi/3`.
 ///
@@ -60,7 +60,7 @@ impl FromStr for Number {
             let rounded = value.is_finite() && !is_decimal_of(text, value);
             return Ok(Number { value, formula: rounded.then(|| text.to_owned()) });
         }
-        let e = g.parse(text, &|_| None, &[]).map_err(|error| error.kind)?;
+        let e = g.parse(text, &|_: &str| None).map_err(|error| error.kind)?;
         let value = g.as_number(e).or_else(|| g.evaluate(e, &std::collections::HashMap::new()).ok());
         Ok(Number { value: value.ok_or(ParseErrorKind::NotFinite)?, formula: Some(text.to_owned()) })
     }
@@ -68,17 +68,5 @@ impl FromStr for Number {
 
 /// Whether the decimal `text` is the shortest of those that are rounded to `x`, and so not rounded itself.
 pub(crate) fn is_decimal_of(text: &str, x: f64) -> bool {
-    digits(text).is_some_and(|written| digits(&format!("{x:e}")) == Some(written))
-}
-
-/// Digits from the first that is not 0 to the last, and the power of ten of the last.
-fn digits(text: &str) -> Option<(String, i64)> {
-    let (mantissa, exponent) = text.split_once(['e', 'E']).unwrap_or((text, "0"));
-    let (whole, fraction) = mantissa.split_once('.').unwrap_or((mantissa, ""));
-    let all = format!("{}{fraction}", whole.trim_start_matches(['+', '-']));
-    let short = all.trim_end_matches('0');
-    let scale = exponent.parse::<i64>().ok()? - fraction.len() as i64 + (all.len() - short.len()) as i64;
-    let short = short.trim_start_matches('0').to_owned();
-    let is_zero = short.is_empty();
-    Some((short, if is_zero { 0 } else { scale }))
+    Fraction::decimal(text).is_some_and(|written| Fraction::decimal(&format!("{x:e}")) == Some(written))
 }

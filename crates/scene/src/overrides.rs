@@ -3,7 +3,9 @@
 use std::cell::RefCell;
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::section::{Source, Text, Value, suggestion};
+use bodies::Written;
+
+use super::section::{Source, Value, suggestion};
 use crate::{Number, SceneError, SceneErrorKind};
 
 /// Overrides not asked for by anybody are misspelt: each name that is looked up is remembered.
@@ -35,7 +37,7 @@ impl Overrides {
     /// [`Self::get`] with its formula, where there is one.
     pub(super) fn written(&self, name: &str) -> Option<Value> {
         self.asked(name).map(|number| match number.formula() {
-            Some(text) => Value::Expression(Text { text: text.into(), span: 0..0 }),
+            Some(text) => Value::Expression(Written { text: text.into(), place: 0..0 }),
             None => Value::Number(number.value()),
         })
     }

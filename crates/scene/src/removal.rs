@@ -2,12 +2,13 @@
 
 use std::collections::{BTreeMap, HashMap};
 
+use bodies::Written;
 use symbolic::{Expr, Symbol};
 
 use super::constants;
 use super::context::Context;
 use super::names::{Names, Role, check_symbols};
-use super::section::{Entry, Section, Text, Value};
+use super::section::{Entry, Section, Value};
 use crate::{SceneError, SceneErrorKind, Unavailable, format};
 use mechanics::{Coordinate, DisplacementParameter, MemoryVariable, Removal, RemovalError};
 
@@ -84,10 +85,10 @@ impl<'a> Reader<'a, '_> {
         let entry = self.section.require("parameters", "an array of names: new ones, or coordinates that stay")?;
         let mut parameters: Vec<DisplacementParameter> = Vec::new();
         for element in entry.elements("an array of names")? {
-            let Text { text: name, span } = element.text("a name in quotes")?;
+            let Written { text: name, place } = element.text("a name in quotes")?;
             let coordinate = self.coordinate(&name);
             if coordinate.is_none() {
-                self.names.check(self.context.source, g, (&name, &span), Role::RemovalParameter)?;
+                self.names.check(self.context.source, g, (&name, &place), Role::RemovalParameter)?;
             }
             let symbol = g.symbol(&name);
             if parameters.iter().any(|u| u.symbol == symbol) {

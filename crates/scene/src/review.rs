@@ -111,9 +111,7 @@ struct Reviewer<'c> {
 impl<'c> Reviewer<'c> {
     fn new(context: &'c Context<'c>, start: &'c State) -> Self {
         let system = &context.system;
-        let mut values = system.parameter_values();
-        values.extend(system.values_at(start));
-        let mut reviewer = Reviewer { context, start, values, normals: Vec::new() };
+        let mut reviewer = Reviewer { context, start, values: system.values_at(start), normals: Vec::new() };
         for &f in &system.constraints {
             let row = reviewer.gradient(f, &system.velocities(), &reviewer.values);
             let length = norm(&row);

@@ -3,6 +3,7 @@
 use std::cell::RefCell;
 use std::ops::Range;
 
+use bodies::Written;
 use toml::de::{DeTable, DeValue};
 
 use crate::format::{FORMAT, Key};
@@ -35,30 +36,29 @@ impl Source<'_> {
     /// An error at bytes `offset..offset + length` of a string value.
     ///
     /// Exact where the value stands in the file as it is; at the start of the value where escapes hide it.
-    pub(super) fn error_within(&self, value: &Text, offset: usize, length: usize, kind: SceneErrorKind) -> SceneError {
-        let raw = self.text.get(value.span.clone()).unwrap_or_default();
+    pub(super) fn error_within(
+        &self,
+        value: &Written,
+        offset: usize,
+        length: usize,
+        kind: SceneErrorKind,
+    ) -> SceneError {
+        let raw = self.text.get(value.place.clone()).unwrap_or_default();
         match raw.find(&value.text) {
             Some(start) if !value.text.is_empty() => {
-                let first = value.span.start + start + offset;
+                let first = value.place.start + start + offset;
                 self.error(&(first..first + length), kind)
             }
-            _ => self.error(&value.span, kind),
+            _ => self.error(&value.place, kind),
         }
     }
-}
-
-/// A string and its place.
-#[derive(Clone, Debug)]
-pub(super) struct Text {
-    pub(super) text: String,
-    pub(super) span: Range<usize>,
 }
 
 /// A number or an expression, and its place.
 #[derive(Clone, Debug)]
 pub(super) enum Value {
     Number(f64),
-    Expression(Text),
+    Expression(Written),
 }
 
 /// A key, its place, and what it stands for.
@@ -169,9 +169,9 @@ impl<'a> Entry<'a> {
         }
     }
 
-    pub(super) fn text(&self, expected: &'static str) -> Result<Text, SceneError> {
+    pub(super) fn text(&self, expected: &'static str) -> Result<Written, SceneError> {
         match self.value {
-            DeValue::String(text) => Ok(Text { text: text.to_string(), span: self.span.clone() }),
+            DeValue::String(text) => Ok(Written { text: text.to_string(), place: self.span.clone() }),
             _ => Err(self.wrong_type(expected)),
         }
     }
@@ -216,7 +216,7 @@ impl<'a> Entry<'a> {
                 // digits that an f64 has not got stay text
                 match is_decimal_of(text, value) {
                     true => Ok(Value::Number(value)),
-                    false => Ok(Value::Expression(Text { text: text.to_owned(), span: self.span.clone() })),
+                    false => Ok(Value::Expression(Written { text: text.to_owned(), place: self.span.clone() })),
                 }
             }
             _ => Err(self.wrong_type("a number or an expression in quotes")),

@@ -2,10 +2,11 @@
 
 use std::ops::Range;
 
+use bodies::Written;
 use symbolic::Expr;
 
 use super::context::Context;
-use super::section::{Entry, Text};
+use super::section::Entry;
 use crate::{SceneError, SceneErrorKind};
 
 /// `left − right` of each equation, a vector by its components, and where it stands. Without `=` it is what
@@ -27,10 +28,10 @@ pub(super) fn read(context: &Context, entry: &Entry) -> Result<Vec<(Expr, Range<
 }
 
 fn sides(context: &Context, element: &Entry) -> Result<Vec<Expr>, SceneError> {
-    let Text { text, span } = element.text("an equation in quotes")?;
+    let Written { text, place } = element.text("an equation in quotes")?;
     let g = &context.system.graph;
     let side = |text: &str| {
-        let text = Text { text: text.into(), span: span.clone() };
+        let text = Written { text: text.into(), place: place.clone() };
         context.names.parse_value(context.source, g, &text).map(|value| value.entries().to_vec())
     };
     let Some((left, right)) = text.split_once('=') else { return side(&text) };

@@ -71,8 +71,7 @@ fn the_words_for_shapes_are_those_of_the_table() {
 /// Whether two expressions from different graphs are identical.
 fn same(left: &Scene, a: Expr, right: &Scene, b: Expr) -> bool {
     let g = &right.system.graph;
-    let scope = |name: &str| g.find_symbol(name).map(|s| g.variable(s));
-    let a = g.parse(&left.system.graph.plain(a), &scope, &[]).unwrap();
+    let a = g.parse(&left.system.graph.plain(a), g).unwrap();
     g.vanishes(g.sub(a, b), &right.system.parameter_values()).is_zero()
 }
 

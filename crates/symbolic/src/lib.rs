@@ -13,8 +13,7 @@
 //!
 //! let graph = Graph::new();
 //! let [m, x, v] = ["m", "x", "x'"].map(|name| graph.symbol(name));
-//! let scope = |name: &str| graph.find_symbol(name).map(|s| graph.variable(s));
-//! let lagrangian = graph.parse("m*x'^2/2 - m*cos(x)", &scope, &[])?;
+//! let lagrangian = graph.parse("m*x'^2/2 - m*cos(x)", &graph)?;
 //!
 //! let momentum = graph.derivative(lagrangian, v);
 //! assert_eq!(graph.plain(momentum), "m*x'");
@@ -59,7 +58,7 @@ pub use programs::evaluator::Evaluator;
 pub use programs::scalar::Scalar;
 pub use programs::tape::{Recorded, Tape, Workspace};
 pub use questions::identity::Vanishing;
-pub use questions::random::{SplitMix, Xorshift};
+pub use questions::random::SplitMix;
 pub use questions::range::Range;
 pub use questions::steep::Steep;
 pub use series::{

@@ -17,5 +17,5 @@ mod vectors;
 /// A formula in whatever names it has.
 #[track_caller]
 fn read(g: &symbolic::Graph, text: &str) -> symbolic::Expr {
-    g.parse(text, &|name| Some(g.variable(g.symbol(name))), &[]).expect(text)
+    g.parse(text, &|name: &str| Some(g.variable(g.symbol(name)))).expect(text)
 }

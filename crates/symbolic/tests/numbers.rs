@@ -4,7 +4,7 @@ use symbolic::{Expr, Graph, ParseErrorKind};
 
 /// A literal as a number of `g`; `None` where it is out of range.
 fn decimal(g: &Graph, literal: &str) -> Option<Expr> {
-    match g.parse(literal, &|_| None, &[]) {
+    match g.parse(literal, &|_: &str| None) {
         Ok(number) => Some(number),
         Err(error) if matches!(error.kind, ParseErrorKind::NumberOutOfRange { .. }) => None,
         Err(error) => panic!("{error}"),

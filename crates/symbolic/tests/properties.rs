@@ -249,7 +249,7 @@ proptest! {
         for e in [e, g.derivative(e, symbols(&g)[0])] {
             prop_assume!(g.as_number(e).is_none_or(f64::is_finite));
             let text = g.plain(e);
-            let back = g.parse(&text, &scope, &[]);
+            let back = g.parse(&text, &scope);
             prop_assert!(back == Ok(e), "{text} gave {:?}", back.map(|e| g.plain(e)));
         }
     }
@@ -325,7 +325,7 @@ proptest! {
     fn any_text_is_read_or_refused_in_its_place(text in "[-+*/^(),.x'0-9e sinq\n=φ]{0,40}") {
         let g = Graph::new();
         let scope = |name: &str| (name == "x").then(|| g.variable(g.symbol(name)));
-        if let Err(error) = g.parse(&text, &scope, &[]) {
+        if let Err(error) = g.parse(&text, &scope) {
             prop_assert!(error.offset + error.length <= text.len());
             prop_assert!(text.is_char_boundary(error.offset));
             prop_assert!(text.is_char_boundary(error.offset + error.length));

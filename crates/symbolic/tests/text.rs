@@ -1,14 +1,24 @@
 //! Formulas as text: what is refused and how, and what is printed.
 
 use crate::read;
-use symbolic::{Expr, Graph, ParseError, ParseErrorKind};
+use symbolic::{Expr, Graph, ParseError, ParseErrorKind, Scope, Value};
 
 const NAMES: [&str; 9] = ["x", "y", "phi", "x'", "phi'", "alpha", "lambda_1", "omega", "sinus"];
 
 fn parse(g: &Graph, text: &str) -> Result<Expr, ParseError> {
-    let known: Vec<String> = NAMES.iter().map(|n| (*n).to_owned()).collect();
-    let scope = |name: &str| NAMES.contains(&name).then(|| g.variable(g.symbol(name)));
-    g.parse(text, &scope, &known)
+    g.parse(text, &Names(g, NAMES.map(str::to_owned)))
+}
+
+struct Names<'a>(&'a Graph, [String; 9]);
+
+impl Scope for Names<'_> {
+    fn value(&self, name: &str) -> Option<Value> {
+        NAMES.contains(&name).then(|| Value::Scalar(self.0.variable(self.0.symbol(name))))
+    }
+
+    fn known(&self) -> &[String] {
+        &self.1
+    }
 }
 
 /// The text is refused at the given piece.
@@ -152,7 +162,7 @@ fn sugar_means_what_it_says() {
     let pi = parse(&g, "pi").unwrap();
     assert_eq!(g.as_number(pi), Some(std::f64::consts::PI));
     let tau = |name: &str| (name == "pi").then(|| g.integer(4));
-    assert_eq!(g.parse("pi", &tau, &[]), Ok(g.integer(4)), "a scope may define it");
+    assert_eq!(g.parse("pi", &tau), Ok(g.integer(4)), "a scope may define it");
 }
 
 #[track_caller]

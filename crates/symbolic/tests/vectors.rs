@@ -192,6 +192,6 @@ fn what_means_nothing_is_refused_at_its_place() {
         names.refused("step(a, b)", "step(a, b)"),
         Kind::WrongArgumentCount { expected: 4, found: 2, .. }
     ));
-    let number = names.graph.parse_number("u", &names).unwrap_err();
+    let number = names.graph.parse("u", &names).unwrap_err();
     assert!(matches!(number.kind, Kind::NotANumber { .. }), "{number}");
 }

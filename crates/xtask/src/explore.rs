@@ -9,7 +9,7 @@ use std::process::{Command, Stdio};
 
 use anyhow::{Context, Result, bail, ensure};
 
-use crate::tools::{Outcome, build, cargo, outside, succeed, target};
+use crate::tools::{Outcome, build, cargo, outside, own, succeed, target};
 
 /// The sources of the page, and of what answers it.
 const PAGE: &str = "crates/explore/page";
@@ -179,7 +179,7 @@ fn fresh(digest: &str) -> Result<(PathBuf, String)> {
     succeed(compile.env("CARGO_TARGET_WASM32_UNKNOWN_UNKNOWN_RUSTFLAGS", flags()))?;
     let (program, page) = (target.join(WASM).join("page").join("explore.wasm"), target.join("explore/explore.html"));
     let mut bundle = outside("node");
-    bundle.arg(folder.join("build.mjs")).arg(program).arg(deltaq()?).arg(&page).arg(digest);
+    bundle.arg(folder.join("build.mjs")).arg(program).arg(own("deltaq")?).arg(&page).arg(digest);
     Ok((page, said(&mut bundle)?))
 }
 
@@ -208,16 +208,12 @@ fn workshop() -> Result<PathBuf> {
     Ok(folder)
 }
 
-fn deltaq() -> Result<PathBuf> {
-    Ok(target()?.join("release").join("deltaq"))
-}
-
 /// Tries a page in a browser; what was measured.
 fn tried(browser: &Path, page: &Path, what: &str) -> Result<String> {
     let folder = workshop()?;
     let pictures = target()?.join("explore").join("pictures");
     let mut test = outside("node");
-    test.arg(folder.join(TEST)).arg(browser).arg(deltaq()?).arg(page).arg(pictures).arg(what);
+    test.arg(folder.join(TEST)).arg(browser).arg(own("deltaq")?).arg(page).arg(pictures).arg(what);
     said(&mut test)
 }
 

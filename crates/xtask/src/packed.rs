@@ -8,7 +8,7 @@ use std::time::Instant;
 
 use anyhow::{Context, Result, ensure};
 
-use crate::tools::{Outcome, cargo, outside, succeed, target};
+use crate::tools::{Outcome, cargo, output_of, outside, succeed, target};
 use crate::{dependencies, python};
 
 /// What the example of the readme prints of the disc.
@@ -44,7 +44,7 @@ pub(crate) fn used() -> Result<Outcome> {
     timed("program", &mut || {
         succeed(build().args(["install", "--quiet", "--path", "deltaq", "--root", "installed"]))?;
         let program = folder.join("installed/bin").join(format!("deltaq{}", std::env::consts::EXE_SUFFIX));
-        let answer = says(&program, &["compare", "disc-on-slope.toml"], folder)?;
+        let answer = output_of(outside(&program).args(["compare", "disc-on-slope.toml"]).current_dir(folder))?;
         ensure!(answer.starts_with("disc-on-slope: Different"), "{answer}");
         Ok(program)
     })?;
@@ -56,7 +56,7 @@ pub(crate) fn used() -> Result<Outcome> {
         fs::write(own.join("src/main.rs"), example.context("the readme shows no example")?)?;
         succeed(build().args(["build", "--quiet", "--release"]).current_dir(&own))?;
         let program = folder.join("target/release").join(format!("own{}", std::env::consts::EXE_SUFFIX));
-        let answer = says(&program, &[], folder)?;
+        let answer = output_of(&mut outside(&program))?;
         ensure!(answer.contains(SAID), "{answer}");
         Ok(program)
     })?;
@@ -75,7 +75,7 @@ pub(crate) fn used() -> Result<Outcome> {
         let wheel = only(folder, "whl")?;
         let pip = ["-m", "pip", "install", "--quiet", "--disable-pip-version-check"];
         succeed(outside(&fresh).args(pip).arg(&wheel).current_dir(folder))?;
-        let answer = says(&fresh, &["-c", ASKED], folder)?;
+        let answer = output_of(outside(&fresh).args(["-c", ASKED]).current_dir(folder))?;
         ensure!(answer.trim() == "different", "{answer}");
         Ok(wheel)
     })?;
@@ -106,13 +106,6 @@ fn unpacked(folder: &Path) -> Result<(usize, u64)> {
 /// The first block of code of a language in Markdown.
 fn block<'a>(text: &'a str, language: &str) -> Option<&'a str> {
     text.split_once(&format!("```{language}\n"))?.1.split_once("```").map(|(code, _)| code)
-}
-
-/// What a program prints; it must succeed.
-fn says(program: &Path, arguments: &[&str], folder: &Path) -> Result<String> {
-    let output = outside(program).args(arguments).current_dir(folder).output()?;
-    ensure!(output.status.success(), "{}: {}", program.display(), String::from_utf8_lossy(&output.stderr));
-    Ok(String::from_utf8_lossy(&output.stdout).into_owned())
 }
 
 /// The file with this ending.

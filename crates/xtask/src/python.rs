@@ -10,7 +10,7 @@ use std::time::Instant;
 
 use anyhow::{Context, Result, bail, ensure};
 
-use crate::tools::{Outcome, build, outside, succeed, target};
+use crate::tools::{Outcome, build, output_of, outside, succeed, target};
 
 /// The crate, from the root of the project.
 const CRATE: &str = "crates/python";
@@ -154,8 +154,8 @@ fn installed(python: &Path, wheel: &Path) -> Result<PathBuf> {
     install.args(["-m", "pip", "--quiet", "--disable-pip-version-check", "--python"]).arg(&fresh);
     succeed(install.args(["install", "--no-deps", "--no-index"]).arg(wheel))?;
     let folder = |python: &Path| -> Result<String> {
-        let ask = outside(python).args(["-c", "import sysconfig; print(sysconfig.get_path('purelib'))"]).output()?;
-        Ok(String::from_utf8(ask.stdout)?.trim().into())
+        let ask = ["-c", "import sysconfig; print(sysconfig.get_path('purelib'))"];
+        Ok(output_of(outside(python).args(ask))?.trim().into())
     };
     let link = Path::new(&folder(&fresh)?).join("others.pth");
     std::fs::write(&link, folder(python)?).with_context(|| link.display().to_string())?;

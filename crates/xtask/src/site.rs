@@ -2,9 +2,9 @@
 
 use std::path::Path;
 
-use anyhow::{Result, ensure};
+use anyhow::Result;
 
-use crate::tools::{Outcome, cargo, outside, succeed, target};
+use crate::tools::{ALL, Outcome, cargo, output_of, outside, own, succeed, target};
 use crate::{explore, python};
 
 /// What builds the pages.
@@ -25,19 +25,8 @@ const EVIDENCE: [&str; 9] = [
 
 /// Measured pages that are older than their code, a line each: they do not belong to the site.
 fn older_pages() -> Result<String> {
-    succeed(cargo().args([
-        "build",
-        "--release",
-        "--workspace",
-        "--exclude",
-        "engine",
-        "--bin",
-        "evidence",
-        "--quiet",
-    ]))?;
-    let output = outside(target()?.join("release").join("evidence")).args(["reports", "--ages"]).output()?;
-    ensure!(output.status.success(), "evidence reports --ages: {}", String::from_utf8_lossy(&output.stderr));
-    Ok(String::from_utf8(output.stdout)?)
+    succeed(cargo().arg("build").args(ALL).args(["--bin", "evidence", "--quiet"]))?;
+    output_of(outside(own("evidence")?).args(["reports", "--ages"]))
 }
 
 /// Builds it into `target/site`: the reference of Rust by `cargo doc`, all else by Sphinx. Then its pages are

@@ -1,10 +1,8 @@
 //! What must hold of the text of files.
 
-use std::process::Command;
+use anyhow::{Result, bail, ensure};
 
-use anyhow::{Context, Result, bail, ensure};
-
-use crate::tools::Outcome;
+use crate::tools::{Outcome, output_of, outside};
 
 /// Longest Rust source, in lines; widest comment in it, in columns.
 const LINES: usize = 400;
@@ -85,12 +83,7 @@ pub(crate) fn copies() -> Result<Outcome> {
 
 /// Name of every file that is tracked, or would be.
 pub(crate) fn names() -> Result<Vec<String>> {
-    let output = Command::new("git")
-        .args(["ls-files", "-z", "--cached", "--others", "--exclude-standard"])
-        .output()
-        .context("git ls-files")?;
-    ensure!(output.status.success(), "`git ls-files` ended with {}", output.status);
-    let names = String::from_utf8(output.stdout).context("a file name is not UTF-8")?;
+    let names = output_of(outside("git").args(["ls-files", "-z", "--cached", "--others", "--exclude-standard"]))?;
     Ok(names.split_terminator('\0').map(str::to_owned).collect())
 }
 

@@ -4,7 +4,7 @@ use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode};
 
-use anyhow::{Context, Result, bail};
+use anyhow::{Context, Result, bail, ensure};
 
 /// A chore that did not fail.
 pub(crate) enum Outcome {
@@ -33,14 +33,33 @@ pub(crate) fn outside(program: impl AsRef<OsStr>) -> Command {
 
 /// Runs a program that must succeed.
 pub(crate) fn succeed(command: &mut Command) -> Result<Outcome> {
-    let arguments: Vec<_> = command.get_args().map(|argument| argument.to_string_lossy().into_owned()).collect();
-    let program = Path::new(command.get_program()).file_stem().unwrap_or_default().to_string_lossy();
-    let line = format!("{program} {}", arguments.join(" "));
+    let line = line(command);
     let status = command.status().with_context(|| line.clone())?;
     if !status.success() {
         bail!("`{line}` ended with {status}");
     }
     Ok(Outcome::Passed(String::new()))
+}
+
+/// What a program prints that must succeed.
+pub(crate) fn output_of(command: &mut Command) -> Result<String> {
+    let line = line(command);
+    let output = command.output().with_context(|| line.clone())?;
+    let complaint = String::from_utf8_lossy(&output.stderr);
+    ensure!(output.status.success(), "`{line}` ended with {}: {}", output.status, complaint.trim());
+    String::from_utf8(output.stdout).context(line)
+}
+
+/// The call of a program as one would type it.
+fn line(command: &Command) -> String {
+    let arguments: Vec<_> = command.get_args().map(|argument| argument.to_string_lossy().into_owned()).collect();
+    let program = Path::new(command.get_program()).file_stem().unwrap_or_default().to_string_lossy();
+    format!("{program} {}", arguments.join(" "))
+}
+
+/// A program of the workspace, which [`build`] has made.
+pub(crate) fn own(name: &str) -> Result<PathBuf> {
+    Ok(target()?.join("release").join(name))
 }
 
 /// What checks compile: all but the physics engine, which brings fifty packages for one page

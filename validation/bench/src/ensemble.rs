@@ -15,7 +15,7 @@ use motion::{
     VAKONOMIC, choices, prepare, setting,
 };
 use scene::Scene;
-use symbolic::Xorshift;
+use symbolic::SplitMix;
 
 /// The scene whose members they are.
 pub const ENSEMBLE_SCENE: &str = "sledge";
@@ -116,7 +116,7 @@ impl Throughput {
 
 /// Sledges anywhere on the slope, any heading, ≤ 2 m/s along the blade, ≤ 2 rad/s: on the constraint exactly.
 fn starts(count: usize) -> Vec<State> {
-    let mut random = Xorshift::default();
+    let mut random = SplitMix::new(1);
     let mut number = |from: f64, to: f64| from + (to - from) * random.unit();
     let mut start = || {
         let (x, y, phi) = (number(-1.0, 1.0), number(-1.0, 1.0), number(-1.2, 1.2));

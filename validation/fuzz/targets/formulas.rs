@@ -16,10 +16,10 @@ fuzz_target!(|text: &str| {
         let symbol = g.find_symbol(name).filter(|symbol| symbols.contains(symbol));
         symbol.map(|symbol| g.variable(symbol))
     };
-    let Ok(read) = g.parse(text, &scope, &[]) else { return };
+    let Ok(read) = g.parse(text, &scope) else { return };
     let (plain, _) = (g.plain(read), g.latex(read));
     // what is printed is longer, and may be too deep to be read
-    let again = g.parse(&plain, &scope, &[]).unwrap_or(read);
+    let again = g.parse(&plain, &scope).unwrap_or(read);
     let slope = g.derivative(read, symbols[0]);
     let Ok(tape) = g.compile(&symbols, &[read, again, slope], &HashMap::new()) else { return };
     let mut values = [0.0; 3];

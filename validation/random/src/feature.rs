@@ -169,7 +169,7 @@ impl Form {
             "s" => Some(clock.unwrap_or(quarter)),
             _ => None,
         };
-        let read = g.parse(FORMS[self.which % FORMS.len()], &scope, &[]);
+        let read = g.parse(FORMS[self.which % FORMS.len()], &scope);
         read.unwrap_or_else(|fault| unreachable!("a rare function cannot be read: {fault}"))
     }
 }

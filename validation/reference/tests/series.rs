@@ -11,8 +11,7 @@ const ORDER: usize = 25;
 fn misses(formula: &str, a0: &str) -> f64 {
     let g = Graph::new();
     let [t, a, b] = ["t", "a", "b"].map(|name| g.symbol(name));
-    let scope = |name: &str| g.find_symbol(name).map(|s| g.variable(s));
-    let parse = |formula: &str| g.parse(formula, &scope, &[]).unwrap();
+    let parse = |formula: &str| g.parse(formula, &g).unwrap();
     let definitions: [(Symbol, _); 2] = [(a, parse(&format!("{a0} + t - t^2/2"))), (b, parse("3/4 + t/3"))];
     let (none, outputs) = (HashMap::new(), [parse(formula)]);
     let series = g.compile_series(&[(t, SeriesInput::Time)], &definitions, &outputs, &[], &[], &none).unwrap();

@@ -146,12 +146,6 @@ impl Context {
         }
     }
 
-    /// Names to suggest.
-    fn names(&self) -> Vec<String> {
-        let own = self.constants.iter().chain(&self.functions).chain(self.integrals.keys());
-        own.chain(self.definitions.keys()).chain(self.found.borrow().keys()).cloned().collect()
-    }
-
     /// What a name stands for.
     fn meaning(&self, name: &str, depth: usize) -> Result<Option<Expr>> {
         if depth > DEPTH {
@@ -209,7 +203,7 @@ impl Context {
                 None
             })
         };
-        let parsed = self.graph.parse(text, &scope, &self.names());
+        let parsed = self.graph.parse(text, &scope);
         match fault.into_inner() {
             Some(error) => Err(error),
             None => parsed.map_err(|error| anyhow!("{error}")),

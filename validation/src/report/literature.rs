@@ -111,7 +111,7 @@ impl Case {
         let inputs: Vec<_> = [&[system.time][..], &system.positions(), &system.velocities()].concat();
         let names: HashMap<String, _> =
             system.parameters.iter().map(|p| p.symbol).chain(inputs.clone()).map(|s| (g.name(s), s)).collect();
-        let quantity = g.parse(&along.quantity, &|name| names.get(name).map(|&s| g.variable(s)), &[])?;
+        let quantity = g.parse(&along.quantity, &|name: &str| names.get(name).map(|&s| g.variable(s)))?;
         let mut evaluator = system.evaluator::<f64>(&inputs, &[quantity])?;
         let mut inside = motion.is_complete();
         for i in 0..=SAMPLES {

@@ -25,19 +25,19 @@ impl<T: Scalar> Program<T> {
 
 /// Outputs at a state, for values of the parameters that vary.
 #[derive(Clone)]
-pub(super) struct AtState {
-    program: Program<f64>,
-    point: Vec<f64>,
+pub(super) struct AtState<T = f64> {
+    program: Program<T>,
+    point: Vec<T>,
 }
 
-impl AtState {
+impl<T: Scalar> AtState<T> {
     pub(super) fn new(system: &System, varied: &[Symbol], outputs: &[Expr]) -> Self {
         AtState { program: Program::new(system, &state_symbols(system, varied), outputs), point: Vec::new() }
     }
 
-    pub(super) fn at(&mut self, state: &State, varied: &[f64]) -> Result<&[f64], CompileError> {
+    pub(super) fn at(&mut self, state: &State, varied: &[f64]) -> Result<&[T], CompileError> {
         self.point.clear();
-        self.point.extend(state.q.iter().chain(&state.v).chain([&state.t]).chain(varied));
+        self.point.extend(numbers(state).chain(varied).map(|&x| T::from_f64(x)));
         Ok(self.program.evaluator()?.evaluate(&self.point))
     }
 }
@@ -47,7 +47,12 @@ pub(super) fn state_symbols(system: &System, varied: &[Symbol]) -> Vec<Symbol> {
     [&system.positions()[..], &system.velocities(), &[system.time], varied].concat()
 }
 
-pub(super) fn bounded(point: &[f64]) -> Vec<Bounded> {
+/// The values of the first of these.
+pub(super) fn numbers(state: &State) -> impl Iterator<Item = &f64> {
+    state.q.iter().chain(&state.v).chain([&state.t])
+}
+
+fn bounded(point: &[f64]) -> Vec<Bounded> {
     point.iter().map(|&x| Bounded::from_f64(x)).collect()
 }
 
@@ -152,7 +157,7 @@ impl Problem {
 /// The constraints, start equations and their derivatives at a state.
 #[derive(Clone)]
 pub(super) struct Residuals {
-    program: Program<Bounded>,
+    conditions: AtState<Bounded>,
     count: usize,
 }
 
@@ -168,16 +173,14 @@ impl Residuals {
     pub(super) fn new(system: &System, equations: &[Expr], varied: &[Symbol]) -> Self {
         let (symbols, conditions) = (state_symbols(system, &[]), [&system.constraints, equations].concat());
         let outputs = [&conditions[..], system.graph.jacobian(&conditions, &symbols).entries()].concat();
-        let program = Program::new(system, &[&symbols[..], varied].concat(), &outputs);
-        Residuals { program, count: conditions.len() }
+        Residuals { conditions: AtState::new(system, varied, &outputs), count: conditions.len() }
     }
 
     /// Of each constraint, then of each start equation.
     pub(super) fn at(&mut self, state: &State, varied: &[f64]) -> Result<Vec<Residual>, CompileError> {
-        let point = [&state.q[..], &state.v, &[state.t], varied].concat();
-        let n = point.len() - varied.len();
-        let (residuals, derivatives) = self.program.evaluator()?.evaluate(&bounded(&point)).split_at(self.count);
-        let x = DVector::from_column_slice(&point[..n]);
+        let x = DVector::from_vec(numbers(state).copied().collect());
+        let n = x.len();
+        let (residuals, derivatives) = self.conditions.at(state, varied)?.split_at(self.count);
         let single = |(i, r): (usize, &Bounded)| {
             let gradient = derivatives[i * n..(i + 1) * n].iter().map(|d| d.value);
             let finite = gradient.map(|d| if d.is_finite() { d } else { 0.0 });

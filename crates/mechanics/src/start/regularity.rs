@@ -5,7 +5,7 @@ use symbolic::limits::{DEPENDENT, ITERATIONS, OF_TERMS, SAME};
 use symbolic::{Bounded, Symbol};
 
 use super::error::{Quantity, StartError, check_lengths};
-use super::numeric::{AtState, Program, bounded, state_symbols};
+use super::numeric::AtState;
 use crate::newton::decompose;
 use crate::{SingularValues, State, System};
 
@@ -65,7 +65,7 @@ pub(super) struct Regularity {
     /// `L`, `f` and `Q`, one by one: faults have a name.
     finite: Vec<(Quantity, AtState)>,
     /// `A`, then `M`.
-    entries: Program<Bounded>,
+    entries: AtState<Bounded>,
     /// h and n.
     shape: (usize, usize),
 }
@@ -80,7 +80,7 @@ impl Regularity {
         let entries = [system.constraint_jacobian().entries(), system.velocity_hessian().entries()].concat();
         Regularity {
             finite: quantities.map(|(quantity, e)| (quantity, AtState::new(system, varied, &[e]))).collect(),
-            entries: Program::new(system, &state_symbols(system, varied), &entries),
+            entries: AtState::new(system, varied, &entries),
             shape: (system.constraints.len(), system.dimension()),
         }
     }
@@ -107,8 +107,7 @@ impl Regularity {
     }
 
     fn scaled(&mut self, state: &State, varied: &[f64]) -> Result<ScaledMatrices, StartError> {
-        let point = [&state.q[..], &state.v, &[state.t], varied].concat();
-        ScaledMatrices::new(self.entries.evaluator()?.evaluate(&bounded(&point)), self.shape)
+        ScaledMatrices::new(self.entries.at(state, varied)?, self.shape)
     }
 }
 

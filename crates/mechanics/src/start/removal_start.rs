@@ -7,7 +7,7 @@ use symbolic::limits::HALF_THE_DIGITS;
 use symbolic::{Bounded, Expr, Symbol};
 
 use super::error::{StartError, check_lengths};
-use super::numeric::{AtState, Problem, Program, Solved, bounded, state_symbols};
+use super::numeric::{AtState, Problem, Solved, numbers, state_symbols};
 use crate::newton::{Evaluation, NewtonOptions, Root};
 use crate::{DisplacementParameter, Removal, State, System};
 
@@ -63,7 +63,7 @@ pub struct RemovalProgram {
     given: AtState,
     problem: Problem,
     /// `f` with the sizes of its terms, and `A`.
-    constraints: Program<Bounded>,
+    constraints: AtState<Bounded>,
     /// h and n.
     shape: (usize, usize),
 }
@@ -77,8 +77,7 @@ impl RemovalProgram {
         let variables: [Vec<Symbol>; 4] = [of(|u| u.symbol), of(|u| u.rate), of(|u| u.second_rate), memory];
         let sought = [0, 1, 3].map(|i: usize| g.variables(&variables[i])).concat();
         let (given, expressions): (Vec<Symbol>, Vec<Expr>) = removal.start.iter().map(|(&s, &e)| (s, e)).unzip();
-        let at_state = state_symbols(system, varied);
-        let known = [given, at_state.clone()].concat();
+        let known = [given, state_symbols(system, varied)].concat();
         let constraints = [&system.constraints[..], system.constraint_jacobian().entries()].concat();
         RemovalProgram {
             name: removal.name.clone(),
@@ -86,7 +85,7 @@ impl RemovalProgram {
             given: AtState::new(system, varied, &expressions),
             problem: Problem::new(system, &removal.residuals(system), &sought, &known, &system.velocities()),
             known,
-            constraints: Program::new(system, &at_state, &constraints),
+            constraints: AtState::new(system, varied, &constraints),
             shape: (system.constraints.len(), system.dimension()),
         }
     }
@@ -98,7 +97,7 @@ impl RemovalProgram {
     pub fn start(&mut self, state: &State, varied: &[f64]) -> Result<RemovalStart, StartError> {
         let limit = NewtonOptions::default().limit;
         let mut known = self.given.at(state, varied)?.to_vec();
-        known.extend(state.q.iter().chain(&state.v).chain([&state.t]).chain(varied));
+        known.extend(numbers(state).chain(varied));
         let mut smallest = f64::INFINITY;
         if known.iter().all(|x| x.is_finite()) {
             let sizes = self.velocity_sizes(state, varied)?;
@@ -133,8 +132,7 @@ impl RemovalProgram {
     /// So a velocity that vanishes is known to the round-off of what cancelled in it, not to that of itself.
     fn velocity_sizes(&mut self, state: &State, varied: &[f64]) -> Result<Vec<f64>, StartError> {
         let (h, n) = self.shape;
-        let point = [&state.q[..], &state.v, &[state.t], varied].concat();
-        let (constraints, entries) = self.constraints.evaluator()?.evaluate(&bounded(&point)).split_at(h);
+        let (constraints, entries) = self.constraints.at(state, varied)?.split_at(h);
         let jacobian = DMatrix::from_row_iterator(h, n, entries.iter().map(|e| e.value));
         let residual = DVector::from_iterator(h, constraints.iter().map(|f| f.value));
         let finite = |f: &Bounded| Some(f.magnitude).filter(|size| size.is_finite()).unwrap_or(0.0);

@@ -5,15 +5,15 @@ use std::collections::{BTreeSet, HashMap, HashSet};
 
 use symbolic::{Expr, Graph, Symbol};
 
-use super::parts::{Frame, FrameConstraint, FrameVelocity, Turning};
-use super::squares::{Known, Square};
+use super::parts::{Frame, FrameVelocity, Turning};
+use super::squares::Square;
 use crate::expressions::{Sparse, products, shortest};
 use mechanics::System;
+use mechanics::elimination::LinearForms;
 
 pub(super) struct Builder<'a> {
     system: &'a System,
     g: &'a Graph,
-    pub(super) known: Known<'a>,
     /// Symbols made for frames that were tried.
     names: RefCell<HashSet<Symbol>>,
 }
@@ -41,8 +41,8 @@ impl Building {
 }
 
 impl<'a> Builder<'a> {
-    pub(super) fn new(system: &'a System, known: Known<'a>) -> Self {
-        Builder { system, g: &system.graph, known, names: RefCell::default() }
+    pub(super) fn new(system: &'a System) -> Self {
+        Builder { system, g: &system.graph, names: RefCell::default() }
     }
 
     /// The frame of the squares, turned to the constraints; `None` if these contain a singular part of it.
@@ -54,7 +54,7 @@ impl<'a> Builder<'a> {
             let transformed: Sparse = transformed.filter(|(_, e)| !g.is_zero(*e)).collect();
             let known = g.denominators(&row.values().copied().collect::<Vec<Expr>>());
             let found = g.denominators(&transformed.values().copied().collect::<Vec<Expr>>());
-            if found.iter().any(|e| !known.contains(e) && !self.known.is_constant(*e)) {
+            if found.iter().any(|e| !known.contains(e) && !self.system.is_constant(*e)) {
                 return None;
             }
             building.constraints.push(transformed);
@@ -110,7 +110,7 @@ impl<'a> Builder<'a> {
             });
         }
         let inertia = squares.iter().map(|s| s.inertia).collect();
-        let ends = squares.iter().map(|s| s.scale).filter(|&e| !self.known.is_constant(e)).collect();
+        let ends = squares.iter().map(|s| s.scale).filter(|&e| !self.system.is_constant(e)).collect();
         Building { velocities, inertia, forms, vectors, constraints: Vec::new(), ends, recursion, quotients }
     }
 
@@ -156,11 +156,11 @@ impl<'a> Builder<'a> {
     fn couple(&self, row: &Sparse, inertia: &[Expr]) -> Option<((usize, usize), (Expr, Expr))> {
         let g = self.g;
         let moving: Vec<(usize, Expr)> =
-            row.iter().map(|(&k, &e)| (k, e)).filter(|(_, e)| !self.known.is_constant(*e)).collect();
+            row.iter().map(|(&k, &e)| (k, e)).filter(|(_, e)| !self.system.is_constant(*e)).collect();
         for (i, &(first, a)) in moving.iter().enumerate() {
             for &(second, b) in &moving[i + 1..] {
                 let square = g.add(g.powi(a, 2), g.powi(b, 2));
-                if inertia[first] == inertia[second] && self.known.is_constant(square) {
+                if inertia[first] == inertia[second] && self.system.is_constant(square) {
                     let root = g.square(square, &|_| false).map(|(c, root)| g.mul(g.sqrt(c), root));
                     let length = root.unwrap_or_else(|| g.sqrt(square));
                     return Some(((first, second), (g.div(a, length), g.div(b, length))));
@@ -215,11 +215,7 @@ impl<'a> Builder<'a> {
         let (system, g) = (self.system, self.g);
         let turning = self.turning(&building);
         let Building { velocities, inertia, forms, vectors, constraints, ends, recursion, quotients } = building;
-        let at_rest: HashMap<Symbol, Expr> = system.velocities().into_iter().map(|v| (v, g.zero())).collect();
-        let offsets = g.substitute_all(&system.constraints, &at_rest);
-        let constraints = constraints.into_iter().zip(offsets);
-        let constraints =
-            constraints.map(|(row, offset)| FrameConstraint { terms: row.into_iter().collect(), offset }).collect();
+        let constraints = LinearForms { rows: constraints, offsets: system.at_rest(&system.constraints) };
         let recursion = in_order(g, recursion);
         Frame { velocities, inertia, forms, vectors, turning, constraints, ends, recursion, quotients }
     }

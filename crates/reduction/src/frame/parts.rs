@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use mechanics::elimination::LinearForms;
 use symbolic::{Expr, Graph, Symbol};
 
 use crate::expressions::Sparse;
@@ -15,15 +16,6 @@ pub struct FrameVelocity {
     pub rate: Symbol,
     /// `u` in `(q, v)`.
     pub start: Expr,
-}
-
-/// A constraint `Σ coefficient · u + offset = 0`.
-#[derive(Clone, Debug)]
-pub struct FrameConstraint {
-    /// Places in the frame, with coefficients in `(q, t)`.
-    pub terms: Vec<(usize, Expr)>,
-    /// What is left at rest.
-    pub offset: Expr,
 }
 
 /// How a form of the frame changes: `dω^form(e_a, e_b)`.
@@ -50,8 +42,8 @@ pub struct Frame {
     pub vectors: Vec<BTreeMap<usize, Expr>>,
     /// Where it is not zero.
     pub turning: Vec<Turning>,
-    /// The constraints of the system.
-    pub constraints: Vec<FrameConstraint>,
+    /// The constraints of the system in `u`, by place in the frame, with coefficients in `(q, t)`.
+    pub constraints: LinearForms,
     /// The `s_k` that are not constant: where one vanishes, so does a direction of `M`, and the frame ends.
     pub ends: Vec<Expr>,
     /// The velocities of the coordinates, and of frames on the way to this one, each in `u` and earlier ones.

@@ -1,9 +1,7 @@
 //! The shortest of a few frames.
 
-use std::collections::HashSet;
-
 use mechanics::{State, System};
-use symbolic::{Expr, Symbol};
+use symbolic::Expr;
 
 use super::builder::{Builder, Building};
 use super::parts::Frame;
@@ -44,19 +42,18 @@ impl Frame {
         }
         let momenta = g.gradient(system.lagrangian, &v);
         let mass = sparse_rows(g, &momenta, &v);
-        let parameters: HashSet<Symbol> = system.parameters.iter().map(|p| p.symbol).collect();
-        let within: HashSet<Symbol> = system.positions().into_iter().chain(parameters.iter().copied()).collect();
-        let all = |known: &HashSet<Symbol>, e: Expr| g.symbols_of(e).iter().all(|s| known.contains(s));
+        let q = system.positions();
+        let is_at_place = |e: Expr| g.symbols_of(e).into_iter().all(|s| q.contains(&s) || system.is_parameter(s));
         let entries = || mass.iter().flat_map(Sparse::values).copied();
-        if entries().all(|e| all(&parameters, e)) || !entries().all(|e| all(&within, e)) {
+        if entries().all(|e| system.is_constant(e)) || !entries().all(is_at_place) {
             return None;
         }
         let jacobian = system.linear_constraints().ok()?.rows;
-        let builder = Builder::new(system, Known { g, parameters, values: point(system, start) });
+        let (known, builder) = (Known { system, values: point(system, start) }, Builder::new(system));
         let mut best: Option<(usize, Building)> = None;
         let mut orders: Vec<Vec<usize>> = Vec::new();
         for tie in [Tie::Latest, Tie::Earliest] {
-            let Some(squares) = builder.known.squares(&mass, tie) else { continue };
+            let Some(squares) = known.squares(&mass, tie) else { continue };
             let order = squares.iter().map(|s| s.coordinate).collect();
             if orders.contains(&order) {
                 continue;

@@ -1,10 +1,11 @@
 //! A mass matrix as a sum of squares.
 
-use std::collections::{BTreeSet, HashMap, HashSet};
+use std::collections::{BTreeSet, HashMap};
 
+use mechanics::System;
 use mechanics::elimination::{Pivot, SparseMatrix};
 use symbolic::limits::{LONG, PIVOT};
-use symbolic::{Expr, Graph, Symbol};
+use symbolic::{Expr, Symbol};
 
 use crate::expressions::{Sparse, shortest};
 
@@ -29,39 +30,34 @@ pub(super) enum Tie {
 
 /// What is known at the start.
 pub(super) struct Known<'a> {
-    pub(super) g: &'a Graph,
-    pub(super) parameters: HashSet<Symbol>,
+    pub(super) system: &'a System,
     /// Values of all symbols of the system.
     pub(super) values: HashMap<Symbol, f64>,
 }
 
 impl Known<'_> {
-    pub(super) fn is_constant(&self, e: Expr) -> bool {
-        self.g.symbols_of(e).iter().all(|s| self.parameters.contains(s))
-    }
-
     /// The value at the start; NaN where it is not finite.
     fn number(&self, e: Expr) -> f64 {
-        self.g.evaluate(e, &self.values).unwrap_or(f64::NAN)
+        self.system.graph.evaluate(e, &self.values).unwrap_or(f64::NAN)
     }
 
     /// Eliminates by diagonal pivots: constant ones, then least fill. `None` where one is not a square, or an
     /// entry gets long.
     pub(super) fn squares(&self, mass: &[Sparse], tie: Tie) -> Option<Vec<Square>> {
-        let g = self.g;
+        let (system, g) = (self.system, &self.system.graph);
         let mut matrix = SparseMatrix::new(mass.to_vec());
         let mut left: BTreeSet<usize> = (0..mass.len()).collect();
         let mut squares = Vec::new();
         while !left.is_empty() {
             let score = |&k: &usize| {
                 let row = &matrix.rows()[k];
-                let constant = row.get(&k).is_some_and(|&e| self.is_constant(e));
+                let constant = row.get(&k).is_some_and(|&e| system.is_constant(e));
                 (!constant, row.len(), if tie == Tie::Latest { mass.len() - k } else { k })
             };
             let pivot = *left.iter().min_by_key(|k| score(k))?;
             left.remove(&pivot);
             let Pivot { entry: e, row: others, .. } = matrix.take(pivot, pivot)?;
-            let (inertia, scale) = g.square(e, &|s| self.parameters.contains(&s))?;
+            let (inertia, scale) = g.square(e, &|s| system.is_parameter(s))?;
             let (size, whole) = (self.number(e), self.number(mass[pivot][&pivot]));
             if !(self.number(inertia) > 0.0 && size >= PIVOT * whole.abs() && size > 0.0) {
                 return None;

@@ -57,8 +57,8 @@ impl QuasiVelocities {
 }
 
 struct Elimination<'a> {
+    system: &'a System,
     g: &'a Graph,
-    parameters: HashSet<Symbol>,
     /// Parameters, start and coefficients.
     values: HashMap<Symbol, f64>,
     /// By column.
@@ -88,16 +88,13 @@ impl<'a> Elimination<'a> {
         let velocities = velocities.into_iter().enumerate();
         let velocities =
             velocities.map(|(i, (symbol, rate, start))| QuasiVelocity { symbol, rate, start, coordinate: Some(i) });
-        let (rows, offsets) = match frame {
-            Some(frame) => frame.constraints.iter().map(|f| (f.terms.iter().copied().collect(), f.offset)).unzip(),
-            None => {
-                let LinearForms { rows, offsets } = system.linear_constraints()?;
-                (rows, offsets)
-            }
+        let LinearForms { rows, offsets } = match frame {
+            Some(frame) => frame.constraints.clone(),
+            None => system.linear_constraints()?,
         };
         let mut elimination = Elimination {
             g,
-            parameters: system.parameters.iter().map(|p| p.symbol).collect(),
+            system,
             values: point(system, start),
             velocities: velocities.collect(),
             matrix: SparseMatrix::new(Vec::new()),
@@ -111,8 +108,7 @@ impl<'a> Elimination<'a> {
             eliminated: Vec::new(),
         };
         let number = |(j, e): (usize, Expr)| (j, (e, elimination.number(e)));
-        let rows: Vec<Terms> =
-            rows.into_iter().map(|row: BTreeMap<usize, Expr>| row.into_iter().map(number).collect()).collect();
+        let rows: Vec<Terms> = rows.into_iter().map(|row| row.into_iter().map(number).collect()).collect();
         let known = |(terms, offset)| Row { offset, scale: largest(terms), searched: false, queued: Vec::new() };
         elimination.rows = rows.iter().zip(offsets).map(known).collect();
         elimination.matrix = SparseMatrix::new(rows);
@@ -260,7 +256,7 @@ impl<'a> Elimination<'a> {
         }
         let terms = &self.matrix.rows()[row];
         let faint = DEPENDENT * largest(terms);
-        let constants = terms.iter().filter(|(_, (e, x))| x.abs() >= faint && *x != 0.0 && self.is_constant(*e));
+        let constants = terms.iter().filter(|(_, (e, x))| x.abs() >= faint && *x != 0.0 && self.system.is_constant(*e));
         let constants: Vec<(usize, f64)> = constants.map(|(&column, (_, x))| (column, x.abs())).collect();
         let limit = constants.iter().fold(0.0, |limit: f64, (_, x)| limit.max(PIVOT * x));
         let large = constants.into_iter().filter(|(_, x)| *x >= limit);
@@ -286,7 +282,7 @@ impl<'a> Elimination<'a> {
                 for &(second, b, y) in &terms[i + 1..] {
                     let square = self.g.add(self.g.powi(a, 2), self.g.powi(b, 2));
                     let length = x.hypot(y);
-                    if self.is_constant(square) && length > PIVOT * largest(&self.matrix.rows()[row]) {
+                    if self.system.is_constant(square) && length > PIVOT * largest(&self.matrix.rows()[row]) {
                         return Some((row, Couple { columns: (first, second), coefficients: (a, b), square }));
                     }
                 }
@@ -325,10 +321,6 @@ impl<'a> Elimination<'a> {
     /// The value at the start; NaN where it is not finite.
     fn number(&self, e: Expr) -> f64 {
         self.g.evaluate(e, &self.values).unwrap_or(f64::NAN)
-    }
-
-    fn is_constant(&self, e: Expr) -> bool {
-        self.g.symbols_of(e).iter().all(|s| self.parameters.contains(s))
     }
 }
 

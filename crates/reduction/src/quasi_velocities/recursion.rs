@@ -1,6 +1,6 @@
 //! Quasi-velocities, and the dependent velocities as a recursion in them.
 
-use std::collections::{BTreeSet, HashMap};
+use std::collections::HashMap;
 
 use equations::{Chart, Definitions, Equations, Statement};
 use mechanics::System;
@@ -83,11 +83,8 @@ impl QuasiVelocities {
     /// The dependent velocities that are a constant multiple of another one, as such.
     pub fn multiples(&self, system: &System) -> HashMap<Symbol, Expr> {
         let g = &system.graph;
-        let parameters: BTreeSet<Symbol> = system.parameters.iter().map(|p| p.symbol).collect();
         let multiple = |d: &DependentVelocity| match d.terms[..] {
-            [(s, e)] if g.is_zero(d.offset) && g.symbols_of(e).is_subset(&parameters) => {
-                Some((d.symbol, g.mul(e, g.variable(s))))
-            }
+            [(s, e)] if g.is_zero(d.offset) && system.is_constant(e) => Some((d.symbol, g.mul(e, g.variable(s)))),
             _ => None,
         };
         self.dependent.iter().filter_map(multiple).collect()

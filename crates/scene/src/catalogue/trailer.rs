@@ -90,9 +90,8 @@ pub fn scene(trailers: usize, coordinates: Coordinates) -> Result<Scene, ParseEr
     let g = &system.graph;
     system.parameters =
         PARAMETERS.map(|(name, value)| Parameter { symbol: g.symbol(name), value, formula: None }).into();
-    let scope = |name: &str| g.find_symbol(name).map(|s| g.variable(s));
-    system.lagrangian = g.parse(&train.lagrangian, &scope, &[])?;
-    system.constraints = train.constraints.iter().map(|f| g.parse(f, &scope, &[])).collect::<Result<Vec<Expr>, _>>()?;
+    system.lagrangian = g.parse(&train.lagrangian, g)?;
+    system.constraints = train.constraints.iter().map(|f| g.parse(f, g)).collect::<Result<Vec<Expr>, _>>()?;
     let state = State {
         t: 0.0,
         q: train.coordinates.iter().map(|c| c.2).collect(),

@@ -155,32 +155,20 @@ impl Arena {
 
     /// Calls that are terms of a sum or factors of its terms, or the whole.
     fn top_calls(&self, e: Expr) -> Vec<Expr> {
-        let terms = match self.node(e) {
-            Node::Sum(_, terms) => terms.iter().map(|(t, _)| *t).collect(),
-            _ => vec![e],
-        };
-        let factors = |t: Expr| match self.node(t) {
-            Node::Product(factors) => factors.iter().map(|(b, _)| *b).collect(),
-            _ => vec![t],
-        };
-        terms.into_iter().flat_map(factors).filter(|f| matches!(self.node(*f), Node::Call(..))).collect()
+        let factors = self.terms_of(e).1.into_iter().flat_map(|(t, _)| self.factors_of(t));
+        factors.map(|(base, _)| base).filter(|f| matches!(self.node(*f), Node::Call(..))).collect()
     }
 
     fn group(&self, scale: Scale, unit: Unit, factors: &[(Expr, Rational)], taken: &[bool]) -> Option<Group> {
         let mut involved = Vec::new();
         let mut powers = [Rational::integer(0); 2];
         for (place, (base, exponent)) in factors.iter().enumerate().filter(|(place, _)| !taken[*place]) {
-            let terms = match self.node(*base) {
-                Node::Sum(constant, terms) => {
-                    let mut all: Vec<ScaledTerm> =
-                        terms.iter().map(|(t, c)| self.scaled_term(scale, unit, *t, *c)).collect();
-                    if !constant.is_zero() {
-                        all.push(ScaledTerm { number: *constant, rest: Vec::new(), degrees: Degrees::default() });
-                    }
-                    all
-                }
-                _ => vec![self.scaled_term(scale, unit, *base, Number::ONE)],
-            };
+            let (constant, terms) = self.terms_of(*base);
+            let mut terms: Vec<ScaledTerm> =
+                terms.into_iter().map(|(t, c)| self.scaled_term(scale, unit, t, c)).collect();
+            if !constant.is_zero() {
+                terms.push(ScaledTerm { number: constant, rest: Vec::new(), degrees: Degrees::default() });
+            }
             if terms.iter().all(ScaledTerm::is_free) {
                 continue;
             }
@@ -203,12 +191,8 @@ impl Arena {
     /// well.
     fn scaled_term(&self, scale: Scale, unit: Unit, e: Expr, number: Number) -> ScaledTerm {
         let whole = || ScaledTerm { number, rest: vec![(e, Rational::ONE)], degrees: Degrees::default() };
-        let factors = match self.node(e) {
-            Node::Product(factors) => factors.to_vec(),
-            _ => vec![(e, Rational::ONE)],
-        };
         let (mut rest, mut degrees) = (Vec::new(), Degrees::default());
-        for (base, exponent) in factors {
+        for (base, exponent) in self.factors_of(e) {
             match self.degrees(scale, unit, base) {
                 Some(found) => {
                     let Some(n) = exponent.as_integer() else { return whole() };
@@ -268,13 +252,5 @@ impl Arena {
             }
         }
         found
-    }
-
-    fn terms_of(&self, e: Expr) -> (Number, Vec<(Expr, Number)>) {
-        match self.node(e) {
-            Node::Number(n) => (*n, Vec::new()),
-            Node::Sum(constant, terms) => (*constant, terms.to_vec()),
-            _ => (Number::ZERO, vec![(e, Number::ONE)]),
-        }
     }
 }

@@ -1,6 +1,6 @@
 //! Queries on expressions: symbols, denominators, roots, size.
 
-use crate::store::arena::Node;
+use crate::store::arena::{Arena, Node};
 use crate::store::number::{Number, Rational};
 use crate::{Expr, Function, Graph, Symbol, faults};
 use std::collections::BTreeSet;
@@ -40,21 +40,22 @@ impl Graph {
     /// assert_eq!(g.denominators(&[tangent]), [g.call(symbolic::Function::Cos, x)]);
     /// ```
     pub fn denominators(&self, es: &[Expr]) -> Vec<Expr> {
+        let bases = self.divided_by(es, Arena::leads_negative);
+        bases.into_iter().filter(|b| self.as_number(*b).is_none()).collect()
+    }
+
+    /// Bases in `es` of negative powers, and of powers with such an exponent among those that are no
+    /// numbers; the cosine under a tangent.
+    pub(crate) fn divided_by(&self, es: &[Expr], exponent: impl Fn(&Arena, Expr) -> bool) -> BTreeSet<Expr> {
         let tangents = self.arguments_of(Function::Tan, es).into_iter().map(|e| self.call(Function::Cos, e));
-        let mut bases: BTreeSet<Expr> = tangents.collect();
+        let mut bases: BTreeSet<Expr> = self.bases(es, |r| r.is_negative()).into_iter().chain(tangents).collect();
         let arena = self.arena.borrow();
-        for e in arena.reachable(es, |_| true) {
-            match arena.node(e) {
-                Node::Product(factors) => {
-                    bases.extend(factors.iter().filter(|(_, r)| r.is_negative()).map(|(b, _)| *b));
-                }
-                Node::Power(base, exponent) if arena.leads_negative(*exponent) => {
-                    bases.insert(*base);
-                }
-                _ => {}
-            }
-        }
-        bases.into_iter().filter(|b| arena.as_number(*b).is_none()).collect()
+        let power = |e| match arena.node(e) {
+            Node::Power(base, x) if exponent(&arena, *x) => Some(*base),
+            _ => None,
+        };
+        bases.extend(arena.reachable(es, |_| true).into_iter().filter_map(power));
+        bases
     }
 
     /// Whether every number in `es` is an exact fraction.
@@ -102,8 +103,7 @@ impl Graph {
 
     /// Every distinct base of a power that is not an integer, in `es`.
     pub fn under_roots(&self, es: &[Expr]) -> BTreeSet<Expr> {
-        let reachable = self.arena.borrow().reachable(es, |_| true);
-        reachable.into_iter().flat_map(|e| self.bases(e, |r| r.as_integer().is_none())).collect()
+        self.bases(es, |r| r.as_integer().is_none())
     }
 
     /// Every distinct power in `es` whose exponent is not an integer, as (base, power).
@@ -115,20 +115,14 @@ impl Graph {
     /// assert_eq!(g.roots(&[g.mul(g.powi(y, 2), root)]), [(g.add(x, y), root)]);
     /// ```
     pub fn roots(&self, es: &[Expr]) -> Vec<(Expr, Expr)> {
-        let reachable = self.arena.borrow().reachable(es, |_| true);
-        let powers = |e: Expr| match self.arena.borrow().node(e) {
-            Node::Product(factors) => factors.iter().filter(|(_, r)| r.as_integer().is_none()).copied().collect(),
-            _ => Vec::new(),
-        };
-        let powers: BTreeSet<(Expr, Rational)> = reachable.into_iter().flat_map(powers).collect();
-        powers
-            .into_iter()
-            .map(|(base, r)| (base, self.arena.borrow_mut().power_product(Number::ONE, vec![(base, r)])))
-            .collect()
+        let powers = self.powers(es, |r| r.as_integer().is_none()).into_iter();
+        powers.map(|(base, r)| (base, self.arena.borrow_mut().power_product(Number::ONE, vec![(base, r)]))).collect()
     }
 
     fn even_bases(&self, radicand: Expr) -> Vec<Expr> {
-        self.bases(radicand, |r| r.as_integer().is_some_and(|n| n % 2 == 0))
+        let arena = self.arena.borrow();
+        let Node::Product(factors) = arena.node(radicand) else { return Vec::new() };
+        factors.iter().filter(|(_, r)| r.as_integer().is_some_and(|n| n % 2 == 0)).map(|(base, _)| *base).collect()
     }
 
     /// Every distinct sum that stands squared in `e`.
@@ -140,9 +134,7 @@ impl Graph {
     /// assert_eq!(g.squared_sums(g.add(g.powi(both, 2), g.powi(x, 2))), [both]);
     /// ```
     pub fn squared_sums(&self, e: Expr) -> Vec<Expr> {
-        let reachable = self.arena.borrow().reachable(&[e], |_| true);
-        let squared = reachable.into_iter().flat_map(|e| self.bases(e, |r| r.as_integer() == Some(2)));
-        let squared: BTreeSet<Expr> = squared.collect();
+        let squared = self.bases(&[e], |r| r.as_integer() == Some(2));
         squared.into_iter().filter(|&e| self.arena.borrow().term_count(e) > 1).collect()
     }
 
@@ -178,12 +170,19 @@ impl Graph {
         }
     }
 
-    /// The factors of a product that have such an exponent in it.
-    fn bases(&self, e: Expr, wanted: impl Fn(&Rational) -> bool) -> Vec<Expr> {
-        match self.arena.borrow().node(e) {
-            Node::Product(factors) => factors.iter().filter(|(_, r)| wanted(r)).map(|(b, _)| *b).collect(),
-            _ => Vec::new(),
-        }
+    /// The factors of products in `es` that have such an exponent there, each with it.
+    pub(crate) fn powers(&self, es: &[Expr], wanted: impl Fn(&Rational) -> bool) -> BTreeSet<(Expr, Rational)> {
+        let arena = self.arena.borrow();
+        let factors = |e| match arena.node(e) {
+            Node::Product(factors) => &factors[..],
+            _ => &[],
+        };
+        arena.reachable(es, |_| true).into_iter().flat_map(factors).filter(|(_, r)| wanted(r)).copied().collect()
+    }
+
+    /// [`Graph::powers`] without their exponents.
+    fn bases(&self, es: &[Expr], wanted: impl Fn(&Rational) -> bool) -> BTreeSet<Expr> {
+        self.powers(es, wanted).into_iter().map(|(base, _)| base).collect()
     }
 
     /// Arguments of every call of `function` in `es`.

@@ -26,45 +26,6 @@ impl SplitMix {
 
     /// The next number in [0, 1).
     pub fn unit(&mut self) -> f64 {
-        unit(self.bits())
+        (self.bits() >> 11) as f64 / (1_u64 << 53) as f64
     }
-}
-
-/// George Marsaglia's xorshift of 64 bits.
-///
-/// ```
-/// let mut random = symbolic::Xorshift::default();
-/// assert!((0..100).all(|_| (0.0..1.0).contains(&random.unit())));
-/// ```
-#[derive(Clone, Debug)]
-pub struct Xorshift(u64);
-
-impl Default for Xorshift {
-    fn default() -> Self {
-        Xorshift::new(0)
-    }
-}
-
-impl Xorshift {
-    /// The sequence of this number.
-    pub fn new(number: u64) -> Self {
-        Xorshift(number.wrapping_add(1).wrapping_mul(0x9e37_79b9_7f4a_7c15))
-    }
-
-    /// The next 64 bits.
-    pub fn bits(&mut self) -> u64 {
-        self.0 ^= self.0 << 13;
-        self.0 ^= self.0 >> 7;
-        self.0 ^= self.0 << 17;
-        self.0
-    }
-
-    /// The next number in [0, 1).
-    pub fn unit(&mut self) -> f64 {
-        unit(self.bits())
-    }
-}
-
-fn unit(bits: u64) -> f64 {
-    (bits >> 11) as f64 / (1_u64 << 53) as f64
 }

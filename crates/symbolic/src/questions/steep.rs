@@ -138,20 +138,13 @@ impl Graph {
     /// The highest power in `es` of what has no bounds, from 20 on; 0 where there is none. `(4x(1 − x))⁴⁰` is
     /// nothing except for a part `1/√40` of where `x` passes it, and to order 39 nothing at both ends.
     pub fn highest_power(&self, es: &[Expr], known: &HashMap<Symbol, Range>) -> f64 {
-        let arena = self.arena.borrow();
-        let products = arena.reachable(es, |_| true).into_iter();
-        let factors = products.flat_map(|e| match arena.node(e) {
-            Node::Product(factors) => factors.to_vec(),
-            _ => Vec::new(),
-        });
-        let high: Vec<(Expr, f64)> = factors.map(|(base, n)| (base, n.to_f64())).filter(|(_, n)| *n >= HIGH).collect();
-        drop(arena);
+        let high = self.powers(es, |n| n.to_f64() >= HIGH);
         let mut ranges = FxHashMap::default();
         let mut is_unbounded = |base: Expr| {
             let Range { low, high } = self.range_among(base, known, &mut ranges);
             !(low.is_finite() && high.is_finite())
         };
-        high.into_iter().filter(|(base, _)| is_unbounded(*base)).fold(0.0, |most, (_, n)| most.max(n))
+        high.into_iter().filter(|(base, _)| is_unbounded(*base)).fold(0.0, |most, (_, n)| most.max(n.to_f64()))
     }
 
     /// The angles of points in `es`: each jumps by 2π where its point passes behind the origin.

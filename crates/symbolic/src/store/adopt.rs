@@ -2,8 +2,7 @@
 
 use rustc_hash::FxHashMap;
 
-use crate::store::arena::{Arena, Node};
-use crate::store::number::Number;
+use crate::store::arena::Node;
 use crate::{Expr, Graph};
 
 impl Graph {
@@ -20,28 +19,15 @@ impl Graph {
         let mut own = self.arena.borrow_mut();
         let mut image: FxHashMap<Expr, Expr> = FxHashMap::default();
         for n in theirs.reachable(es, |_| true) {
-            let adopted = own.adopted(&theirs, n, &image);
+            let adopted = match theirs.node(n) {
+                Node::Symbol(s) => {
+                    let symbol = own.symbol(theirs.name(*s));
+                    own.intern(Node::Symbol(symbol))
+                }
+                node => own.with_children(node.clone(), |child| image[child]),
+            };
             image.insert(n, adopted);
         }
         es.iter().map(|e| image[e]).collect()
-    }
-}
-
-impl Arena {
-    fn adopted(&mut self, theirs: &Arena, n: Expr, image: &FxHashMap<Expr, Expr>) -> Expr {
-        match theirs.node(n) {
-            Node::Number(x) => self.number(*x),
-            Node::Symbol(s) => {
-                let symbol = self.symbol(theirs.name(*s));
-                self.intern(Node::Symbol(symbol))
-            }
-            Node::Sum(constant, terms) => self.linear(*constant, terms.iter().map(|(t, c)| (image[t], *c)).collect()),
-            Node::Product(factors) => {
-                self.power_product(Number::ONE, factors.iter().map(|(b, r)| (image[b], *r)).collect())
-            }
-            Node::Power(base, exponent) => self.pow(image[base], image[exponent]),
-            Node::Call(function, argument) => self.call(*function, image[argument]),
-            Node::Atan2(y, x) => self.atan2(image[y], image[x]),
-        }
     }
 }

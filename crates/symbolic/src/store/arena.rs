@@ -151,6 +151,23 @@ impl Arena {
         &self.names[self.symbol_marks.place_of_symbol(s)]
     }
 
+    /// `e` as a sum: a constant, and terms with their coefficients.
+    pub(crate) fn terms_of(&self, e: Expr) -> (Number, Vec<(Expr, Number)>) {
+        match self.node(e) {
+            Node::Number(n) => (*n, Vec::new()),
+            Node::Sum(constant, terms) => (*constant, terms.to_vec()),
+            _ => (Number::ZERO, vec![(e, Number::ONE)]),
+        }
+    }
+
+    /// `e` as a product: factors with their exponents.
+    pub(crate) fn factors_of(&self, e: Expr) -> Vec<(Expr, Rational)> {
+        match self.node(e) {
+            Node::Product(factors) => factors.to_vec(),
+            _ => vec![(e, Rational::ONE)],
+        }
+    }
+
     /// The symbols `e` depends on, sorted.
     pub(crate) fn dependencies(&self, e: Expr) -> &[Symbol] {
         &self.sets[self.dependencies[self.marks.place_of(e)] as usize]
@@ -250,9 +267,17 @@ impl Arena {
 
     /// `e` with its children replaced by what `image` says, simplified again.
     pub(crate) fn rebuild(&mut self, e: Expr, image: &FxHashMap<Expr, Expr>) -> Expr {
-        let of = |c: &Expr| image.get(c).copied().unwrap_or(*c);
         match self.node(e).clone() {
             Node::Number(_) | Node::Symbol(_) => e,
+            node => self.with_children(node, |c| image.get(c).copied().unwrap_or(*c)),
+        }
+    }
+
+    /// A node, of this graph or of another one, with the children that `of` says, simplified.
+    pub(crate) fn with_children(&mut self, node: Node, of: impl Fn(&Expr) -> Expr) -> Expr {
+        match node {
+            Node::Number(n) => self.number(n),
+            Node::Symbol(s) => self.intern(Node::Symbol(s)),
             Node::Sum(constant, terms) => {
                 let parts = terms.iter().map(|(t, c)| (of(t), *c)).collect();
                 self.linear(constant, parts)

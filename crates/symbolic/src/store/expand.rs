@@ -120,35 +120,17 @@ impl Arena {
         counts[&e]
     }
 
-    fn summands(&self, e: Expr) -> Vec<(Option<Expr>, Number)> {
-        match self.node(e) {
-            Node::Sum(constant, terms) => {
-                let mut all: Vec<_> = terms.iter().map(|(t, c)| (Some(*t), *c)).collect();
-                if !constant.is_zero() {
-                    all.push((None, *constant));
-                }
-                all
-            }
-            Node::Number(n) => vec![(None, *n)],
-            _ => vec![(Some(e), Number::ONE)],
-        }
-    }
-
     pub(crate) fn multiply_out(&mut self, a: Expr, b: Expr) -> Expr {
-        let (left, right) = (self.summands(a), self.summands(b));
-        let mut constant = Number::ZERO;
-        let mut parts = Vec::with_capacity(left.len() * right.len());
+        let ((k, left), (l, right)) = (self.terms_of(a), self.terms_of(b));
+        let mut parts = Vec::with_capacity((left.len() + 1) * (right.len() + 1));
         for (s, c) in &left {
             for (t, d) in &right {
-                let coefficient = c.mul(*d);
-                match (s, t) {
-                    (None, None) => constant = constant.add(coefficient),
-                    (Some(e), None) | (None, Some(e)) => parts.push((*e, coefficient)),
-                    (Some(s), Some(t)) => parts.push((self.times(&[*s, *t]), coefficient)),
-                }
+                parts.push((self.times(&[*s, *t]), c.mul(*d)));
             }
         }
-        self.linear(constant, parts)
+        parts.extend(left.into_iter().filter(|_| !l.is_zero()).map(|(s, c)| (s, c.mul(l))));
+        parts.extend(right.into_iter().filter(|_| !k.is_zero()).map(|(t, d)| (t, k.mul(d))));
+        self.linear(k.mul(l), parts)
     }
 }
 

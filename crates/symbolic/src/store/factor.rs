@@ -93,12 +93,11 @@ impl Arena {
     fn monomial(&self, e: Expr) -> (Number, Vec<(Expr, Rational)>) {
         match self.node(e) {
             Node::Number(n) => (*n, Vec::new()),
-            Node::Product(factors) => (Number::ONE, factors.to_vec()),
             Node::Sum(constant, terms) if terms.len() == 1 && constant.is_zero() => {
                 let (term, coefficient) = terms[0];
                 (coefficient, self.monomial(term).1)
             }
-            _ => (Number::ONE, vec![(e, Rational::ONE)]),
+            _ => (Number::ONE, self.factors_of(e)),
         }
     }
 

@@ -15,7 +15,8 @@ pub struct Fraction {
 /// Exponents of more are not followed.
 const LARGEST: u32 = 30_000;
 
-fn divisor(a: i128, b: i128) -> i128 {
+/// The greatest common divisor.
+pub(crate) fn divisor(a: i128, b: i128) -> i128 {
     let (mut a, mut b) = (a.abs(), b.abs());
     while b != 0 {
         // a long division takes ten times as long

@@ -1,6 +1,7 @@
 //! Signs and common factors of sums.
 
 use crate::limits::FRACTION;
+use crate::store::fraction::divisor;
 use crate::store::number::{Number, Rational};
 use crate::{Expr, Fraction};
 
@@ -36,7 +37,7 @@ pub(crate) fn content(constant: Number, terms: &[(Expr, Number)]) -> Number {
         return *c;
     }
     let sign = if sign_is_negative(terms) { Number::MINUS_ONE } else { Number::ONE };
-    let mut numerator = 0_i64;
+    let mut numerator = 0;
     let mut denominator = 1_i64;
     // powers of two and five of their own come out first
     let (mut twos, mut fives) = (0, 0);
@@ -49,23 +50,15 @@ pub(crate) fn content(constant: Number, terms: &[(Expr, Number)]) -> Number {
     let unit = Number::integer(2).powi(twos.into()).mul(Number::integer(5).powi(fives.into()));
     for c in numbers() {
         let Number::Exact(r) = (if unit.is_one() { c } else { c.mul(unit.recip()) }) else { return sign };
-        numerator = greatest_common_divisor(numerator, r.numerator());
-        let shared = greatest_common_divisor(denominator, r.denominator());
+        numerator = divisor(numerator, r.numerator().into());
+        let shared = divisor(denominator.into(), r.denominator().into()) as i64;
         match (denominator / shared).checked_mul(r.denominator()) {
             Some(multiple) if multiple <= FRACTION => denominator = multiple,
             _ => return sign,
         }
     }
-    let content = sign.mul(Number::ratio(numerator, denominator)).mul(unit);
+    let content = sign.mul(Number::ratio(numerator as i64, denominator)).mul(unit);
     // What remains has to fit as well.
     let exact = |n: Number| matches!(n.mul(content.recip()), Number::Exact(_));
     if numbers().all(exact) { content } else { sign }
-}
-
-fn greatest_common_divisor(a: i64, b: i64) -> i64 {
-    let (mut a, mut b) = (a.abs(), b.abs());
-    while b != 0 {
-        (a, b) = (b, a % b);
-    }
-    a
 }

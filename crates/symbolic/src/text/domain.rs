@@ -33,9 +33,9 @@ impl Graph {
     /// ```
     /// let g = symbolic::Graph::new();
     /// let z = g.variable(g.symbol("z"));
-    /// let e = g.parse("sqrt(z)^2 + 1", &|_| Some(z), &[])?;
+    /// let e = g.parse("sqrt(z)^2 + 1", &|_: &str| Some(z))?;
     /// assert_eq!((g.plain(e), g.lost_domains(&[e])), ("z + 1".into(), vec![z]));
-    /// let root = g.parse("sqrt(z)^3", &|_| Some(z), &[])?;
+    /// let root = g.parse("sqrt(z)^3", &|_: &str| Some(z))?;
     /// assert_eq!(g.lost_domains(&[root]), []);
     /// # Ok::<(), symbolic::ParseError>(())
     /// ```

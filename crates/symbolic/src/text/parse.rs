@@ -14,30 +14,15 @@ impl Graph {
     /// `ln`, `sec`, `csc`, `cot`, `atan2(y, x)`, `pow(a, b)`, `step(t, a, b, width)`; the constant `pi`; and
     /// what [`Graph::parse_value`] reads, as far as a number comes of it.
     ///
-    /// `scope` maps a name (with primes) to an expression, if defined; `known` are names to suggest instead.
-    ///
     /// # Errors
     /// A [`ParseError`] with the place and, where there is one, a hint.
     ///
     /// ```
     /// let g = symbolic::Graph::new();
     /// let nothing = |_: &str| None;
-    /// assert_eq!(g.parse("-2^2 + 1e-3*2", &nothing, &[]), Ok(g.number(-3.998)));
+    /// assert_eq!(g.parse("-2^2 + 1e-3*2", &nothing), Ok(g.number(-3.998)));
     /// ```
-    pub fn parse(
-        &self,
-        text: &str,
-        scope: &dyn Fn(&str) -> Option<Expr>,
-        known: &[String],
-    ) -> Result<Expr, ParseError> {
-        self.parse_number(text, &Scalars { scope, known })
-    }
-
-    /// [`Graph::parse_value`] of a formula for a number.
-    ///
-    /// # Errors
-    /// As there, and [`ParseErrorKind::NotANumber`].
-    pub fn parse_number(&self, text: &str, scope: &dyn Scope) -> Result<Expr, ParseError> {
+    pub fn parse(&self, text: &str, scope: &dyn Scope) -> Result<Expr, ParseError> {
         let value = self.parse_value(text, scope)?;
         let kind = ParseErrorKind::NotANumber { found: value.shape() };
         let whole = || ParseError { kind, text: text.into(), offset: 0, length: text.len(), also: Box::default() };
@@ -78,26 +63,6 @@ impl Graph {
         let mut errors = faults.into_iter().map(error);
         let first = errors.next().expect("there is a fault");
         Err(ParseError { also: errors.collect(), ..first })
-    }
-}
-
-/// Names that stand for numbers, without time.
-struct Scalars<'a> {
-    scope: &'a dyn Fn(&str) -> Option<Expr>,
-    known: &'a [String],
-}
-
-impl Scope for Scalars<'_> {
-    fn value(&self, name: &str) -> Option<Value> {
-        (self.scope)(name).map(Value::Scalar)
-    }
-
-    fn rate(&self, _: Expr) -> Option<Expr> {
-        None
-    }
-
-    fn known(&self) -> &[String] {
-        self.known
     }
 }
 

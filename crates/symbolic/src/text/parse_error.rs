@@ -9,9 +9,8 @@ use crate::text::excerpt::excerpt;
 /// ```
 /// use symbolic::{Graph, ParseErrorKind};
 /// let g = Graph::new();
-/// let x = g.variable(g.symbol("x"));
-/// let scope = |name: &str| (name == "x").then_some(x);
-/// let error = g.parse("1 + 2 x", &scope, &["x".into()]).unwrap_err();
+/// g.symbol("x");
+/// let error = g.parse("1 + 2 x", &g).unwrap_err();
 /// assert!(matches!(error.kind, ParseErrorKind::ImplicitMultiplication { .. }));
 /// assert_eq!((error.line(), error.column()), (1, 7));
 /// ```

@@ -111,8 +111,7 @@ impl Arena {
                 let negative = number.is_negative();
                 return Term { negative, number: number.abs(), factors: Vec::new() };
             }
-            Node::Product(factors) => self.sorted_factors(factors),
-            _ => vec![(t, Rational::ONE)],
+            _ => self.sorted_factors(&self.factors_of(t)),
         };
         let mut factors: Vec<Factor> =
             factors.into_iter().map(|(base, exponent)| Factor { base, exponent, negated: false }).collect();

@@ -51,16 +51,11 @@ impl Arena {
         of_b.len().cmp(&of_a.len()).then(a.cmp(&b))
     }
 
+    /// By class and id only: a full sort here would compare again at every depth.
     fn as_factors(&self, e: Expr) -> Vec<(Expr, Rational)> {
-        match self.node(e) {
-            Node::Product(factors) => {
-                let mut factors = factors.to_vec();
-                // By class and id only: a full sort here would compare again at every depth.
-                factors.sort_by_key(|(b, _)| (self.class(*b), *b));
-                factors
-            }
-            _ => vec![(e, Rational::ONE)],
-        }
+        let mut factors = self.factors_of(e);
+        factors.sort_by_key(|(b, _)| (self.class(*b), *b));
+        factors
     }
 
     fn compare_factors(&self, a: (Expr, Rational), b: (Expr, Rational), depth: u8) -> Ordering {

@@ -30,10 +30,28 @@ pub trait Scope {
     fn value(&self, name: &str) -> Option<Value>;
 
     /// `de/dt`, where it can be written: with velocities, without accelerations.
-    fn rate(&self, e: Expr) -> Option<Expr>;
+    fn rate(&self, _: Expr) -> Option<Expr> {
+        None
+    }
 
     /// Names that may have been meant by one that stands for nothing.
-    fn known(&self) -> &[String];
+    fn known(&self) -> &[String] {
+        &[]
+    }
+}
+
+/// Names that stand for numbers.
+impl<F: Fn(&str) -> Option<Expr>> Scope for F {
+    fn value(&self, name: &str) -> Option<Value> {
+        self(name).map(Value::Scalar)
+    }
+}
+
+/// The names of its symbols.
+impl Scope for Graph {
+    fn value(&self, name: &str) -> Option<Value> {
+        self.find_symbol(name).map(|symbol| Value::Scalar(self.variable(symbol)))
+    }
 }
 
 impl Value {
