@@ -62,7 +62,8 @@ pub use questions::random::SplitMix;
 pub use questions::range::Range;
 pub use questions::steep::Steep;
 pub use series::{
-    Correct, Dual, LANES, Lanes, Product, SeriesInput, SeriesScalar, SeriesTape, SeriesWorkspace, Store, Task, Weights,
+    Correct, Dual, LANES, Lanes, Packs, Product, Products, SeriesInput, SeriesScalar, SeriesTape, SeriesWorkspace,
+    Store, Task,
 };
 #[doc(hidden)]
 pub use store::faults;

@@ -11,7 +11,7 @@ pub use dual::Dual;
 use expansion::Expansion;
 pub use lanes::{LANES, Lanes};
 use scalar::Place;
-pub use scalar::{Product, SeriesScalar, Store, Task, Weights, Window};
+pub use scalar::{Packs, Product, Products, SeriesScalar, Store, Task, Window};
 
 /// What an input of a [`SeriesTape`] is as a function of time.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -38,28 +38,31 @@ pub(crate) enum Source {
     Steady(Slot),
 }
 
-/// `target += scale · left · right`, orders 0 left out.
+/// The products of the coefficients of two series, orders 0 left out, are a series as well.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Bilinear {
-    pub(crate) scale: Slot,
-    pub(crate) target: Row,
     pub(crate) left: Row,
     pub(crate) right: Row,
 }
 
-/// `target = start + Σ weight · row`, of the same order, or `weight · unit · row` of the order before where a
-/// term is late. Two terms each: a longer sum starts from what is in its target already, without a loop.
+/// Terms of an addition with and without weights.
+pub(crate) const TERMS: usize = 4;
+
+/// `target = Σ plain + Σ weight · row`, of the same order, or `weight · unit · row` of the order before where a
+/// term is late. A longer sum goes on from what is in its target already.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Addition {
     pub(crate) target: Row,
-    /// Where products are added up, a row of zeros, or the target.
-    pub(crate) start: Row,
-    pub(crate) terms: [Term; 2],
+    /// How many there are of each.
+    pub(crate) counts: [usize; 2],
+    pub(crate) plain: [Row; TERMS],
+    pub(crate) terms: [Term; TERMS],
 }
 
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Term {
     pub(crate) weight: Slot,
+    /// A series, or a product, numbered from the number of series on, in the order of the groups.
     pub(crate) row: Row,
     pub(crate) late: bool,
 }
@@ -101,7 +104,8 @@ pub(crate) struct Implicit {
 /// `c = a/b`, from `b c = a`, `w = (1/b₀, −c₀/b₀)` and the pair `(b, c)` with `−1/b₀`; `e = exp a`, from
 /// `e' = a' e`, `w = e₀` and the pair `(τ a', e)` with `1/k`. The other functions satisfy such equations,
 /// too, some with a hidden series (`1 + tan²`, `√(1 − a²)`). So two loops, without dispatch on operations, do
-/// all: over pairs (of orders below `k`, so none waits for another) and over the linear terms.
+/// all: over pairs (of orders below `k`, so none waits for another, and a pair that several values need is
+/// multiplied once) and over sums.
 ///
 /// A factor linear in time, as a state with a constant rate, has two coefficients: `(a b)_k = a₀ b_k + a₁
 /// b_{k−1}`. A function of a linear combination of states is integrated, `(sin φ)' = φ' cos φ`: equations of
@@ -137,6 +141,8 @@ pub struct SeriesTape {
     /// One order ahead; all others.
     pub(crate) groups: [Group; 2],
     pub(crate) additions: Vec<Addition>,
+    /// Linear terms, an odd one in a sum counted twice.
+    pub(crate) linear: usize,
     /// Ends of the additions one order ahead, without time derivatives, without unknowns, with those of block
     /// 0, of block 1 …
     pub(crate) stages: Vec<usize>,
@@ -151,6 +157,7 @@ pub struct SeriesWorkspace<T: SeriesScalar> {
     rows: Vec<T>,
     /// Number of these coefficients in use.
     used: usize,
+    packs: Packs,
     plan: Plan<T>,
 }
 
@@ -167,8 +174,6 @@ struct Plan<T> {
     derivatives: Vec<(Place, Place)>,
     /// 1/unit
     frequency: T,
-    /// Weights of pairs, `stride` a newest order, without and with 1/k.
-    halves: [Vec<T>; 2],
     /// k and 1/k
     orders: Vec<(T, T)>,
     residual: Vec<T>,
@@ -178,7 +183,7 @@ struct Plan<T> {
 struct PlacedGroup<T> {
     /// State, rate, and the factor of the latter over the unit of time.
     states: Vec<(Place, Place, T)>,
-    products: [Vec<Product<T>>; 2],
+    products: [Products; 2],
     slopes: Vec<(Place, Place)>,
 }
 
@@ -186,8 +191,11 @@ struct PlacedGroup<T> {
 #[derive(Clone, Copy, Debug)]
 struct Placed<T> {
     target: Place,
-    start: Place,
-    terms: [(T, Place); 2],
+    /// [`Addition::counts`] as one number.
+    kind: u8,
+    plain: [Place; TERMS],
+    terms: [Place; TERMS],
+    weights: [T; TERMS],
 }
 
 /// Most of the room is never touched; nor is it by a copy.
@@ -195,7 +203,7 @@ impl<T: SeriesScalar> Clone for SeriesWorkspace<T> {
     fn clone(&self) -> Self {
         let mut rows = zeros::<T>(self.rows.len());
         rows[..self.used].copy_from_slice(&self.rows[..self.used]);
-        SeriesWorkspace { rows, used: self.used, plan: self.plan.clone() }
+        SeriesWorkspace { rows, used: self.used, packs: self.packs.clone(), plan: self.plan.clone() }
     }
 }
 
@@ -252,14 +260,13 @@ impl SeriesTape {
     /// What one order costs: products of series, and linear terms (an odd one in a sum counts as two).
     pub fn work(&self) -> (usize, usize) {
         let products = self.groups.iter().flat_map(|group| &group.products);
-        (products.map(Vec::len).sum(), 2 * self.additions.len())
+        (products.map(Vec::len).sum(), self.linear)
     }
 
     /// Room for states up to `order ≥ 1` (other values: one less).
     pub fn workspace<T: SeriesScalar>(&self, order: usize) -> SeriesWorkspace<T> {
-        let plan = self.plan(order);
-        let rows = zeros(T::room(self.rows, plan.stride));
-        SeriesWorkspace { rows, used: self.rows * plan.stride, plan }
+        let (plan, used) = self.plan(order);
+        SeriesWorkspace { rows: zeros(T::room(used, plan.stride)), used, packs: Packs::default(), plan }
     }
 
     /// The same room for this order, if it is for another one.
@@ -267,55 +274,73 @@ impl SeriesTape {
         if workspace.order() == order {
             return;
         }
-        let (plan, zero) = (self.plan(order), T::from_f64(0.0));
+        let ((plan, used), zero) = (self.plan(order), T::from_f64(0.0));
         workspace.rows[..workspace.used].fill(zero);
-        let room = T::room(self.rows, plan.stride).max(workspace.rows.len());
+        let room = T::room(used, plan.stride).max(workspace.rows.len());
         workspace.rows.resize(room, zero);
-        (workspace.used, workspace.plan) = (self.rows * plan.stride, plan);
+        (workspace.used, workspace.plan) = (used, plan);
     }
 
-    fn plan<T: SeriesScalar>(&self, order: usize) -> Plan<T> {
+    /// The plan, and the number of coefficients that it uses.
+    fn plan<T: SeriesScalar>(&self, order: usize) -> (Plan<T>, usize) {
         let order = order.max(1);
         let stride = (order + 1 + T::GROUP).next_multiple_of(T::GROUP);
         let zero = T::from_f64(0.0);
         let stride_of_places = Place::try_from(stride).expect("an order below 2^32");
-        let at = |row: Row| row * stride_of_places;
-        let place = |p: &Bilinear| Product { scale: zero, target: at(p.target), left: at(p.left), right: at(p.right) };
-        let mut halves = [vec![zero; order * stride], vec![zero; order * stride]];
-        for newest in 1..order {
-            for j in 1..=newest {
-                let half = if j == newest { T::from_f64(0.5) } else { T::from_f64(1.0) };
-                halves[0][newest * stride + j] = half;
-                halves[1][newest * stride + j] = half / T::from_f64((newest + j) as f64);
-            }
-        }
-        let placed = |a: &Addition| {
-            let terms = a.terms.map(|t| (zero, at(t.row) + Place::from(!t.late)));
-            Placed { target: at(a.target) + 1, start: at(a.start) + 1, terms }
+        // products of a list side by side, as many as a group takes
+        let mut places: Vec<Place> = (0..self.rows as Place).map(|row| row * stride_of_places).collect();
+        let mut used = self.rows as Place;
+        let mut products = |list: &Vec<Bilinear>| {
+            let first = places.len();
+            let target = |i: usize| (used + (i / T::GROUP) as Place) * stride_of_places + (i % T::GROUP) as Place;
+            places.extend((0..list.len()).map(target));
+            let mut placed: Vec<Product> = list
+                .iter()
+                .zip(&places[first..])
+                .map(|(p, target)| Product {
+                    target: *target,
+                    left: places[p.left as usize],
+                    right: places[p.right as usize],
+                })
+                .collect();
+            // what a group lacks is multiplied for nothing
+            let groups = list.len().div_ceil(T::GROUP);
+            placed.resize(groups * T::GROUP, Product::default());
+            let from = used as usize - self.rows;
+            used += groups as Place;
+            Products { list: placed, from }
         };
-        let pair = |&(a, b): &(Row, Row)| (at(a), at(b));
+        let pair = |&(a, b): &(Row, Row)| (a * stride_of_places, b * stride_of_places);
         let moving = |state: &State| match state.rate {
-            Source::Row(rate) => Some((at(state.row), at(rate), zero)),
+            Source::Row(rate) => Some((state.row * stride_of_places, rate * stride_of_places, zero)),
             Source::Steady(_) => None,
         };
-        let group = |group: &Group| PlacedGroup {
+        let groups = self.groups.each_ref().map(|group| PlacedGroup {
             states: group.states.iter().filter_map(moving).collect(),
-            products: group.products.each_ref().map(|products| products.iter().map(place).collect()),
+            products: group.products.each_ref().map(&mut products),
             slopes: group.slopes.iter().map(pair).collect(),
+        });
+        let at = |row: &Row| places[*row as usize] + 1;
+        let placed = |a: &Addition| Placed {
+            target: at(&a.target),
+            kind: (a.counts[0] * (TERMS + 1) + a.counts[1]) as u8,
+            plain: a.plain.each_ref().map(at),
+            terms: a.terms.each_ref().map(|term| at(&term.row) - Place::from(term.late)),
+            weights: [zero; TERMS],
         };
-        Plan {
+        let plan = Plan {
             order,
             stride,
             registers: self.first.workspace(),
             values: vec![zero; self.first.outputs()],
-            groups: self.groups.each_ref().map(group),
+            groups,
             additions: self.additions.iter().map(placed).collect(),
             derivatives: self.derivatives.iter().map(pair).collect(),
             frequency: zero,
-            halves,
             orders: (0..=order + 1).map(|k| T::from_f64(k as f64)).map(|k| (k, T::from_f64(1.0) / k)).collect(),
             residual: vec![zero; self.blocks.iter().map(|b| b.residuals.len()).max().unwrap_or(0)],
-        }
+        };
+        (plan, used as usize * stride)
     }
 
     /// Computes all orders from the inputs at order 0, where unknowns must solve their equations.
@@ -335,13 +360,13 @@ impl SeriesTape {
         sweeps: usize,
         correct: Correct<T>,
     ) {
-        let SeriesWorkspace { rows, used, plan } = workspace;
+        let SeriesWorkspace { rows, used, packs, plan } = workspace;
         assert!(
             plan.values.len() == self.first.outputs() && plan.additions.len() == self.additions.len(),
             "the workspace of another tape"
         );
         self.start(inputs, unit, rows, plan);
-        T::dispatch(rows, *used, Expansion { tape: self, plan, sweeps, correct });
+        T::dispatch(rows, *used, (packs, plan.order), Expansion { tape: self, plan, sweeps, correct });
     }
 
     /// The coefficients of an input, orders 0 to that of the workspace; `None` if it is constant in time.
@@ -363,7 +388,6 @@ impl SeriesTape {
         self.first.evaluate(inputs, &mut plan.registers, &mut plan.values);
         let values = &plan.values;
         let rows = &mut rows[..self.rows * plan.stride];
-        rows.fill(T::from_f64(0.0));
         for (row, value) in rows.chunks_exact_mut(plan.stride).zip(values) {
             row[0] = *value;
         }
@@ -379,15 +403,11 @@ impl SeriesTape {
                     Source::Row(_) => moving.next().expect("a place for each").2 = values[*factor as usize] * unit,
                 }
             }
-            let products = placed.products.iter_mut().flatten();
-            for (placed, product) in products.zip(group.products.iter().flatten()) {
-                placed.scale = values[product.scale as usize];
-            }
         }
         for (placed, addition) in plan.additions.iter_mut().zip(&self.additions) {
-            for (placed, term) in placed.terms.iter_mut().zip(&addition.terms) {
+            for (placed, term) in placed.weights.iter_mut().zip(&addition.terms[..addition.counts[1]]) {
                 let weight = values[term.weight as usize];
-                placed.0 = if term.late { weight * unit } else { weight };
+                *placed = if term.late { weight * unit } else { weight };
             }
         }
     }

@@ -4,7 +4,7 @@ use std::array::from_fn;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
 use super::lanes::{LANES, Lanes};
-use super::scalar::{Product, SeriesScalar, Store, Task, Weights};
+use super::scalar::{Packs, Product, Products, SeriesScalar, Store, Task};
 use crate::{Fraction, Scalar};
 
 /// `x + Σ_l ẋ_l ε_l` with `ε_l ε_m = 0`: what is computed from such numbers has its exact derivatives.
@@ -155,7 +155,7 @@ impl Scalar for Dual {
 }
 
 impl SeriesScalar for Dual {
-    fn dispatch<F: Task<Dual>>(rows: &mut [Dual], _: usize, task: F) {
+    fn dispatch<F: Task<Dual>>(rows: &mut [Dual], _: usize, _: (&mut Packs, usize), task: F) {
         pulp::Arch::new().dispatch(
             #[inline(always)]
             move || task.run(&mut Rows(rows)),
@@ -175,11 +175,11 @@ impl Store<Dual> for Rows<'_> {
     }
 
     #[inline(always)]
-    fn multiply(&mut self, products: &[Product<Dual>], weights: Weights<Dual>, newest: usize, _: usize) {
-        for Product { scale, target, left, right } in products {
+    fn multiply(&mut self, products: &Products, k: usize, share: Option<Dual>) {
+        for Product { target, left, right } in &products.list {
             let square = left == right;
             let [target, left, right] = [target, left, right].map(|p| *p as usize);
-            let (x, y) = (&self.0[left + 1..][..newest], &self.0[right + 1..][..newest]);
+            let (x, y) = (&self.0[left + 1..left + k], &self.0[right + 1..right + k]);
             let (mut value, mut sums) = (0.0, [Lanes([0.0; LANES]); 2]);
             for (a, b) in x.iter().zip(y.iter().rev()) {
                 value += a.value * b.value;
@@ -189,9 +189,8 @@ impl Store<Dual> for Rows<'_> {
                 }
             }
             let tangents = sums[0] + if square { sums[0] } else { sums[1] };
-            let sum = Dual { value, tangents } * *scale;
-            let target = &mut self.0[target + newest + 1];
-            *target = *target + if weights.plain { sum } else { sum * weights.next[0] };
+            let sum = Dual { value, tangents };
+            self.0[target + k] = share.map_or(sum, |share| sum * share);
         }
     }
 }

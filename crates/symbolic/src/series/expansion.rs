@@ -1,21 +1,40 @@
 //! Computation of the orders after the first, one by one.
 
 use super::scalar::Place;
-use super::{Correct, Implicit, Placed, Plan, SeriesScalar, SeriesTape, Source, Store, Task, Weights, Window};
+use super::{Correct, Implicit, Placed, Plan, SeriesScalar, SeriesTape, Source, Store, TERMS, Task, Window};
+
+impl<T: SeriesScalar> Placed<T> {
+    /// The sum of `P` plain and `N` weighted terms, in pairs; the last, for which it may have to wait, last.
+    #[inline(always)]
+    fn sum<const P: usize, const N: usize>(&self, rows: &(impl Window<T> + ?Sized)) -> T {
+        let term = |i: usize| match i < P {
+            true => rows.get(self.plain[i]),
+            false => self.weights[i - P] * rows.get(self.terms[i - P]),
+        };
+        let count = P + N;
+        if count < 2 {
+            return if count == 0 { T::from_f64(0.0) } else { term(0) };
+        }
+        let mut sum = if count == 2 { term(0) } else { term(0) + term(1) };
+        let mut next = 2;
+        while next + 2 < count {
+            sum = sum + (term(next) + term(next + 1));
+            next += 2;
+        }
+        if next + 2 == count {
+            sum = sum + term(next);
+        }
+        sum + term(count - 1)
+    }
+}
 
 impl<T: SeriesScalar> Plan<T> {
-    /// Pairs of a group with a coefficient of order `k − 1`, in targets up to `last`.
+    /// Order `k` of the products of a group.
     #[inline(always)]
-    fn multiply<S: Store<T> + ?Sized>(&self, rows: &mut S, group: usize, k: usize, last: usize) {
-        let newest = k - 1;
-        if newest == 0 {
-            return;
-        }
-        for i in 0..2 {
-            let of = &self.halves[i][newest * self.stride..][..self.stride];
-            let weights = Weights { of, plain: i == 0, next: [self.orders[k].1, self.orders[k + 1].1] };
-            rows.multiply(&self.groups[group].products[i], weights, newest, last);
-        }
+    fn multiply<S: Store<T> + ?Sized>(&self, rows: &mut S, group: usize, k: usize) {
+        let [plain, over] = &self.groups[group].products;
+        rows.multiply(plain, k, None);
+        rows.multiply(over, k, Some(self.orders[k].1));
     }
 
     /// Order `k` of the states of a group.
@@ -31,9 +50,21 @@ impl<T: SeriesScalar> Plan<T> {
     #[inline(always)]
     fn add<S: Store<T> + ?Sized>(rows: &mut S, k: usize, additions: &[Placed<T>]) {
         let rows = rows.window(k - 1);
-        for Placed { target, start, terms: [(v, a), (w, b)] } in additions {
-            rows.set(*target, rows.get(*start) + *v * rows.get(*a) + *w * rows.get(*b));
+        macro_rules! kinds {
+            ($($kind:literal $plain:literal $weighted:literal,)*) => {
+                for addition in additions {
+                    let sum = match addition.kind {
+                        $($kind => addition.sum::<$plain, $weighted>(rows),)*
+                        _ => addition.sum::<TERMS, TERMS>(rows),
+                    };
+                    rows.set(addition.target, sum);
+                }
+            };
         }
+        kinds!(
+            0 0 0, 1 0 1, 2 0 2, 3 0 3, 4 0 4, 5 1 0, 6 1 1, 7 1 2, 8 1 3, 9 1 4, 10 2 0, 11 2 1, 12 2 2, 13 2 3,
+            14 2 4, 15 3 0, 16 3 1, 17 3 2, 18 3 3, 19 3 4, 20 4 0, 21 4 1, 22 4 2, 23 4 3,
+        );
     }
 
     /// Order `k` of `τ x'`.
@@ -48,7 +79,7 @@ impl<T: SeriesScalar> Plan<T> {
     /// Order `k ≥ 1` of what is computed one order ahead.
     #[inline(always)]
     fn lead<S: Store<T> + ?Sized>(&self, rows: &mut S, k: usize, additions: usize) {
-        self.multiply(rows, AHEAD, k, self.order);
+        self.multiply(rows, AHEAD, k);
         self.integrate(rows, AHEAD, k);
         Plan::add(rows, k, &self.additions[..additions]);
         self.slopes(rows, AHEAD, k);
@@ -82,9 +113,11 @@ impl<T: SeriesScalar> Expansion<'_, '_, T> {
         let (tape, plan) = (self.tape, &mut *self.plan);
         let (from, to) = (tape.stages[2 + block], tape.stages[3 + block]);
         let Implicit { unknowns, residuals } = &tape.blocks[block];
+        let (newest, stride) = (rows.window(k), plan.stride as Place);
+        unknowns.iter().for_each(|unknown| newest.set(unknown * stride, T::from_f64(0.0)));
         for _ in 0..self.sweeps {
             Plan::add(rows, k, &plan.additions[from..to]);
-            let (newest, stride) = (rows.window(k), plan.stride as Place);
+            let newest = rows.window(k);
             for (residual, source) in plan.residual.iter_mut().zip(residuals) {
                 *residual = match source {
                     Source::Row(row) => newest.get(row * stride),
@@ -111,7 +144,7 @@ impl<T: SeriesScalar> Task<T> for Expansion<'_, '_, T> {
         }
         for k in 1..=order {
             if k < order {
-                self.plan.multiply(rows, OTHERS, k, order - 1);
+                self.plan.multiply(rows, OTHERS, k);
             }
             // Only now, so that no product waits for a coefficient that was just written.
             self.plan.integrate(rows, OTHERS, k);

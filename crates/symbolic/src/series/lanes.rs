@@ -2,7 +2,6 @@
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-use super::scalar::{Product, SeriesScalar, Store, Task, Weights};
 use crate::Scalar;
 
 /// Number of [`Lanes`].
@@ -100,55 +99,5 @@ impl Scalar for Lanes {
 
     fn vectorize<F: FnOnce()>(task: F) {
         pulp::Arch::new().dispatch(task);
-    }
-}
-
-impl SeriesScalar for Lanes {
-    fn dispatch<F: Task<Lanes>>(rows: &mut [Lanes], _: usize, task: F) {
-        pulp::Arch::new().dispatch(
-            #[inline(always)]
-            move || task.run(&mut Rows(rows)),
-        );
-    }
-}
-
-/// Rows of lanes. A vector is filled already, so that an order is added up at once, in a register.
-struct Rows<'a>(&'a mut [Lanes]);
-
-impl Store<Lanes> for Rows<'_> {
-    type Window = [Lanes];
-
-    #[inline(always)]
-    fn window(&mut self, first: usize) -> &mut [Lanes] {
-        &mut self.0[first..]
-    }
-
-    /// Two orders at once from an odd `newest` on: coefficients are read once for both. What the second still
-    /// waits for then, the two terms with the newest coefficients, is added when it is due.
-    #[inline(always)]
-    fn multiply(&mut self, products: &[Product<Lanes>], weights: Weights<Lanes>, newest: usize, _: usize) {
-        let weigh = |sum: Lanes, weight: Lanes| if weights.plain { sum } else { sum * weight };
-        for Product { scale, target, left, right } in products {
-            let [target, left, right] = [target, left, right].map(|p| *p as usize);
-            let (x, y) = (&self.0[left + 1..][..newest], &self.0[right + 1..][..newest]);
-            let mut sum = x[0] * y[newest - 1];
-            if newest.is_multiple_of(2) {
-                sum = sum + x[newest - 1] * y[0];
-            } else {
-                let (mut sums, mut before) = ([Lanes([0.0; LANES]); 3], y[newest - 1]);
-                for (x, y) in x[1..].chunks_exact(2).zip(y[..newest - 1].rchunks_exact(2)) {
-                    sum = sum + x[0] * y[1];
-                    sums[0] = sums[0] + x[1] * y[0];
-                    sums[1] = sums[1] + x[0] * before;
-                    sums[2] = sums[2] + x[1] * y[1];
-                    before = y[0];
-                }
-                sum = sum + sums[0];
-                let second = &mut self.0[target + newest + 2];
-                *second = *second + weigh((sums[1] + sums[2]) * *scale, weights.next[1]);
-            }
-            let first = &mut self.0[target + newest + 1];
-            *first = *first + weigh(sum * *scale, weights.next[0]);
-        }
     }
 }

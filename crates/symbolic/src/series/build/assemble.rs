@@ -4,7 +4,9 @@ use super::ahead::{AHEAD, DERIVED, STEADY, Stage};
 use super::{Builder, Part};
 use crate::programs::program::{Id, Value};
 use crate::programs::tape::Tape;
-use crate::series::{Addition, Bilinear, Group, Implicit, Row, SeriesInput, SeriesTape, Slot, Source, State, Term};
+use crate::series::{
+    Addition, Bilinear, Group, Implicit, Row, SeriesInput, SeriesTape, Slot, Source, State, TERMS, Term,
+};
 use crate::store::number::Number;
 use rustc_hash::FxHashMap;
 
@@ -31,14 +33,47 @@ impl Builder<'_> {
         for (slope, of) in &self.slope_list {
             known[*slope as usize] = known[*of as usize];
         }
-        let none = self.fresh(None);
-        let mut totals: Vec<Row> = Vec::new();
-        for (_, sum) in &mut definitions {
-            let bare = sum.pairs.is_empty() && sum.pairs_over_k.is_empty();
-            totals.push(if bare { none } else { self.fresh(None) });
+        // Products, each once: those whose factors are known last stand last.
+        let rows = self.of_row.len();
+        let mut groups = [Group::default(), Group::default()];
+        let mut products: FxHashMap<(usize, usize, Row, Row), Row> = FxHashMap::default();
+        for (row, sum) in &definitions {
+            let group = self.group(*row);
+            for (list, pairs) in [&sum.pairs, &sum.pairs_over_k].into_iter().enumerate() {
+                for (_, left, right) in pairs {
+                    let (left, right) = (*left.min(right), *left.max(right));
+                    products.entry((group, list, left, right)).or_insert_with(|| {
+                        groups[group].products[list].push(Bilinear { left, right });
+                        0
+                    });
+                }
+            }
+        }
+        let mut next = rows;
+        for (group, lists) in groups.iter_mut().enumerate() {
+            for (list, all) in lists.products.iter_mut().enumerate() {
+                all.sort_by_key(|p| known[p.left as usize].max(known[p.right as usize]));
+                for p in all {
+                    products.insert((group, list, p.left, p.right), Row::try_from(next).expect("fewer than 2^32"));
+                    next += 1;
+                }
+            }
+        }
+        let mut linear = 0;
+        for (row, sum) in &mut definitions {
+            let group = self.group(*row);
             let terms = std::mem::take(&mut sum.terms);
             sum.terms = self.merged(terms);
-            sum.terms.sort_by_key(|term| if term.late { 0 } else { known[term.row as usize] });
+            linear += 2 * sum.terms.len().div_ceil(2).max(1);
+            let pairs = [std::mem::take(&mut sum.pairs), std::mem::take(&mut sum.pairs_over_k)];
+            for (list, pairs) in pairs.into_iter().enumerate() {
+                let product = |l: Row, r: Row| products[&(group, list, l.min(r), l.max(r))];
+                sum.terms.extend(pairs.into_iter().map(|(weight, l, r)| Part::of(weight, product(l, r))));
+            }
+            let terms = std::mem::take(&mut sum.terms);
+            sum.terms = self.merged(terms);
+            let waits = |term: &Part| known.get(term.row as usize).copied().filter(|_| !term.late).unwrap_or(0);
+            sum.terms.sort_by_key(waits);
         }
         let zero = self.push(Value::Constant(Number::ZERO));
         let mut first: Vec<Id> = self.of_row.iter().map(|id| id.unwrap_or(zero)).collect();
@@ -49,40 +84,40 @@ impl Builder<'_> {
                 Slot::try_from(first.len() - 1).expect("fewer than 2^32 values")
             })
         };
-        let mut groups = [Group::default(), Group::default()];
         let (mut additions, mut places) = (Vec::new(), vec![0]);
-        let nothing = Term { weight: slot(zero), row: none, late: false };
-        for ((row, sum), total) in definitions.iter().zip(&totals) {
-            let mut terms: Vec<Term> =
-                sum.terms.iter().map(|t| Term { weight: slot(t.weight), row: t.row, late: t.late }).collect();
-            // what is known last stays last
-            let missing = if terms.is_empty() { 2 } else { terms.len() % 2 };
-            terms.splice(..0, vec![nothing; missing]);
-            let mut start = *total;
-            for pair in terms.as_chunks().0 {
-                additions.push(Addition { target: *row, start, terms: *pair });
-                start = *row;
+        for (target, sum) in &definitions {
+            let is_plain = |term: &Part| term.weight == self.one && !term.late;
+            let plain: Vec<Row> = sum.terms.iter().filter(|t| is_plain(t)).map(|t| t.row).collect();
+            let others = sum.terms.iter().filter(|t| !is_plain(t));
+            let terms: Vec<Term> = others.map(|t| Term { weight: slot(t.weight), row: t.row, late: t.late }).collect();
+            // what is known last comes last, in a full addition
+            let (mut plain, mut terms) = (&plain[..], &terms[..]);
+            let mut addition =
+                Addition { target: *target, counts: [0; 2], plain: [0; TERMS], terms: [Term::default(); TERMS] };
+            loop {
+                let begun = addition.counts[0];
+                let taken =
+                    [plain.len().min(TERMS - begun), terms.len() - terms.len().saturating_sub(1) / TERMS * TERMS];
+                let (some, rest) = plain.split_at(taken[0]);
+                let (weighted, others) = terms.split_at(taken[1]);
+                addition.plain[begun..begun + some.len()].copy_from_slice(some);
+                addition.terms[..weighted.len()].copy_from_slice(weighted);
+                addition.counts = [begun + some.len(), weighted.len()];
+                additions.push(addition);
+                (plain, terms) = (rest, others);
+                if plain.is_empty() && terms.is_empty() {
+                    break;
+                }
+                addition.plain[0] = *target;
+                addition.counts[0] = 1;
             }
             places.push(additions.len());
-            for (list, pairs) in groups[self.group(*row)].products.iter_mut().zip([&sum.pairs, &sum.pairs_over_k]) {
-                list.extend(pairs.iter().map(|(scale, left, right)| Bilinear {
-                    scale: slot(*scale),
-                    target: *total,
-                    left: *left,
-                    right: *right,
-                }));
-            }
-        }
-        // So that coefficients have been written for a while when they are read in groups.
-        for list in groups.iter_mut().flat_map(|group| &mut group.products) {
-            list.sort_by_key(|product: &Bilinear| known[product.left as usize].max(known[product.right as usize]));
         }
         let sources: Vec<Source> = outputs
             .iter()
             .zip(&of_outputs)
             .map(|(id, row)| row.map_or_else(|| Source::Steady(slot(*id)), Source::Row))
             .collect();
-        let rows = self.of_row.len();
         let one = slot(self.one);
         let integrated = self.integrated.iter().map(|(id, i)| State {
             row: self.rows[id],
@@ -128,6 +163,7 @@ impl Builder<'_> {
             blocks: implicit,
             groups,
             additions,
+            linear,
             stages: ends.into_iter().map(|end| places[end]).collect(),
             derivatives,
         }
