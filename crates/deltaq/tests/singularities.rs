@@ -45,7 +45,7 @@ fn a_bicycle_that_falls_flat_stops_soon_and_in_its_own_names() {
 fn a_removal_by_coordinates_stops_where_the_front_wheel_is_flat() {
     let removed = ["--times", "0", "-f", "removed-constraint", "--removal", "coordinates"];
     let by = [&["solve"], &BICYCLE[..], &removed].concat();
-    for steered in [vec![], vec!["--set", "lean=0.05", "--set", "steer=0.1"]] {
+    for steered in [vec![], vec!["--set", "lean=0.1", "--set", "steer=0.05"]] {
         let value = json(&[&by[..], &steered].concat(), 3);
         let cause = value["cause"].as_str().expect("a cause");
         assert!(cause.contains("the rank of ∂f/∂v falls there") && value["end"].as_f64().is_some_and(|t| t > 2.0));
