@@ -128,7 +128,7 @@ fn the_tables_of_a_scene_say_what_its_rows_are() {
     for run in &mut sledge.runs {
         let Ok(motion) = &mut run.outcome else { continue };
         let Some(row) = rows.iter().find(|row| row["motion"] == run.choice.label) else { continue };
-        let times = motion.grid(400);
+        let times = motion.grid(motion::band::SAMPLES);
         let mut residuals = Vec::new();
         let mut values: Vec<Vec<f64>> = Vec::new();
         for &t in &times {
