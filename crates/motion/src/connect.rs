@@ -39,7 +39,7 @@ use mechanics::{ConstantsRule, State};
 use scene::Scene;
 use symbolic::limits::{HALF_THE_DIGITS, SAME};
 
-use crate::band::{RESIDUAL, SEARCH_STEPS};
+use crate::band::{NEARLY_ZERO, RESIDUAL, SEARCH_STEPS};
 use crate::constants::constant_names;
 use crate::shooting::{BEGINNING, Minimum, distinct};
 use crate::variational::{VariationalRun, Which};
@@ -117,10 +117,6 @@ impl Connection {
         self.condition < HALF_THE_DIGITS.recip()
     }
 }
-
-/// A motion that is found by way of shorter ones is given up where it can be followed by less than this part
-/// of the time. Every second guess goes that way first.
-const LEAST: f64 = 1e-3;
 
 /// The motions of `choice` from the start of `scene` that end where `aim` says, as far as its starts lead to
 /// them. Constants of the choice are a first guess; costates that its rule makes zero, and that never move,
@@ -227,7 +223,7 @@ fn search(problem: &mut TwoPoint, guess: &[f64], settings: &Settings) -> Result<
     Ok(shoot(problem, guess, &ShootOptions::with_tolerance(RESIDUAL * TIGHTER * settings.tolerance))?.unknowns)
 }
 
-/// The same where a motion that takes less time is found first, and followed as it takes more and more: what
+/// The same, which every second guess tries first, where a motion that takes less time is found first, and followed as it takes more and more: what
 /// a long motion folds, a short one does not. Velocities go as one over the time.
 fn grown(problem: &mut TwoPoint, guess: &[f64], settings: &Settings) -> Option<Vec<f64>> {
     let (start, end) = (problem.scene_start.t, problem.aim.t);
@@ -244,7 +240,7 @@ fn grown(problem: &mut TwoPoint, guess: &[f64], settings: &Settings) -> Option<V
             None => step *= 0.5,
         }
         problem.aim.t = start + part * (end - start);
-        if step < LEAST {
+        if step < NEARLY_ZERO * BEGINNING {
             found = None;
         }
     }

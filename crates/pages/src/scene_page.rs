@@ -16,7 +16,7 @@ use crate::table::Table;
 use crate::{DataPackage, membership, tables, tex};
 
 /// Rows of the table of pairs, and equations, that a page shows.
-pub(crate) const PAIRS: usize = 5;
+pub(crate) const ROWS: usize = 5;
 const EQUATIONS: usize = 3;
 
 /// A formula of more letters than this stands in the file of equations only.
@@ -72,7 +72,7 @@ fn page(comparison: &Comparison, moving: Option<&File>, still: &[File], data: &D
     }
     let _ = writeln!(page, "\n{sure}\n\n{why}");
     let pairs = tables::pairs(comparison, principal(comparison), true).only(&tables::SHOWN);
-    let (shown, all) = (pairs.first(PAIRS), comparison.pairs.len());
+    let (shown, all) = (pairs.first(ROWS), comparison.pairs.len());
     if !shown.is_empty() {
         let _ = writeln!(
             page,

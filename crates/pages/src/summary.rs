@@ -6,7 +6,7 @@ use anyhow::Result;
 use comparison::{Comparison, Pair, Verdict};
 use motion::{CHETAEV, Ending, VAKONOMIC, error_estimate, setting};
 
-use crate::scene_page::PAIRS;
+use crate::scene_page::ROWS;
 use crate::tables::{is_seen, largest};
 use comparison::words::{Headline, answer, or_dash, rows, short};
 use picture::{Axis, Curve, Picture, Style};
@@ -103,7 +103,7 @@ fn pairs(comparison: &Comparison, plotted: &[&Pair]) -> String {
 fn plot(comparison: &Comparison, width: usize) -> Result<(String, Vec<&Pair>)> {
     let first = rows(comparison).map(|p| p.first).min();
     let of_first = rows(comparison).filter(|p| p.gap.shows() && Some(p.first) == first);
-    let mut plotted: Vec<&Pair> = of_first.take(PAIRS).collect();
+    let mut plotted: Vec<&Pair> = of_first.take(ROWS).collect();
     while !plotted.is_empty() {
         let text = drawn(comparison, &plotted, width)?;
         let canvas: String =

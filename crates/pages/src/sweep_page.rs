@@ -6,6 +6,7 @@ use anyhow::Result;
 use picture::{Axis, Curve, HeatMap, Picture, Style};
 
 use crate::markdown::inert;
+use crate::scene_page::ROWS;
 use comparison::words::short;
 use program::File;
 use scene::{Scene, Table, TableError};
@@ -120,13 +121,12 @@ fn page(title: &str, mark: &str, ranges: &[Swept], points: &[Point]) -> String {
         number(""),
         some.len(),
     );
-    const SHOWN: usize = 10;
-    for point in some.iter().take(SHOWN) {
+    for point in some.iter().take(ROWS) {
         let at: Vec<String> = names.iter().zip(&point.at).map(|(name, x)| format!("{name} = {x}")).collect();
         let _ = write!(text, "\n- {}: {}", at.join(", "), point.answer);
     }
-    if some.len() > SHOWN {
-        let _ = write!(text, "\n- and {} more", some.len() - SHOWN);
+    if some.len() > ROWS {
+        let _ = write!(text, "\n- and {} more", some.len() - ROWS);
     }
     text + "\n\n"
 }

@@ -4,11 +4,9 @@ use integrate::{BoundaryError, Options, Residuals, ShootOptions, Shot, Status, f
 use nalgebra::DVector;
 
 use super::{CLOSE, COARSE, Differences};
+use motion::band::NEARLY_ZERO;
 use motion::{Settings, TIGHTER};
 use motion::{VariationalRun, Which};
-
-/// The coarse search is done where an iteration brings less than this part.
-const GAIN: f64 = 1e-2;
 
 /// Which sum is minimized: `Σ |r_k|^p`, `r_k` at every `stride`-th instant, by the squares of `w_k r_k` with
 /// `w_k = (|r_k|/s)^(p/2 − 1)`.
@@ -36,7 +34,7 @@ impl Differences {
     pub(super) fn squares(&mut self, guess: &[f64], settings: &Settings) -> Option<Vec<f64>> {
         let coarse = self.coarse.clone();
         let squares = Power { power: 2.0, scale: 1.0, stride: COARSE, part: 1.0 };
-        let found = self.least((self.tolerance, GAIN), &coarse, guess, &squares)?;
+        let found = self.least((self.tolerance, NEARLY_ZERO), &coarse, guess, &squares)?;
         let close = found.residual < CLOSE * self.way(1.0, squares.stride);
         let fine = (settings.tolerance * TIGHTER, 0.0);
         let refined = if close { self.least(fine, settings, &found.unknowns, &squares) } else { None };
@@ -46,10 +44,10 @@ impl Differences {
     /// The constants of a minimum of such a sum near `guess`; these where nothing is found.
     pub(super) fn minimum(&mut self, guess: &[f64], power: &Power) -> Vec<f64> {
         let coarse = self.coarse.clone();
-        self.least((self.tolerance, GAIN), &coarse, guess, power).map_or(guess.to_vec(), |found| found.unknowns)
+        self.least((self.tolerance, NEARLY_ZERO), &coarse, guess, power).map_or(guess.to_vec(), |found| found.unknowns)
     }
 
-    /// The minimum at this tolerance.
+    /// The minimum at this tolerance, as soon as an iteration brings less than this part.
     pub fn least(
         &mut self,
         (tolerance, least_gain): (f64, f64),

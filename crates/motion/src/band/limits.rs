@@ -30,7 +30,7 @@ pub(crate) const BETWEEN: f64 = 8.0;
 pub const BEFORE_THE_END: f64 = 0.9;
 
 /// A quantity is nearly zero under this part of the largest that it was, or than it is beside.
-pub(crate) const NEARLY_ZERO: f64 = 1e-2;
+pub const NEARLY_ZERO: f64 = 1e-2;
 
 /// Residual of a boundary value that is accepted, over the tolerance of the kept run and its size.
 pub const RESIDUAL: f64 = 1e3;

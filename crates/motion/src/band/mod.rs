@@ -55,7 +55,8 @@ pub use estimate_failure::Doubt;
 pub use invariant_monitor::Breach;
 pub use known::{Answer, Known, NoInformation, ask, ask_alone};
 pub use limits::{
-    BEFORE_THE_END, CERTAINTY, CHUNK, INSTANTS, LOOKS, RESIDUAL, SAME_ESTIMATE, SAMPLES, SEARCH_STEPS, SOME, TRUSTED,
+    BEFORE_THE_END, CERTAINTY, CHUNK, INSTANTS, LOOKS, NEARLY_ZERO, RESIDUAL, SAME_ESTIMATE, SAMPLES, SEARCH_STEPS,
+    SOME, TRUSTED,
 };
 pub(crate) use runs::TwoRuns;
 

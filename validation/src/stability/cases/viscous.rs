@@ -8,8 +8,6 @@ use crate::stability::reference::Reference;
 use random::equations;
 use random::realization::with_friction;
 
-const DURATION: f64 = 10.0;
-
 pub(super) fn questions(strength: f64) -> Vec<Question> {
     let subject = move || {
         let scene = scene::catalogue::find("sledge", &[]).map_err(|error| error.to_string())?;
@@ -19,7 +17,7 @@ pub(super) fn questions(strength: f64) -> Vec<Question> {
         Ok(Subject {
             system,
             start: scene.start.clone(),
-            end: DURATION,
+            end: scene.duration,
             equations,
             constants: mechanics::ConstantsRule::Zero,
             choice: None,
