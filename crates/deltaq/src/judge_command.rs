@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use anyhow::{Context, Result, bail};
 use indexmap::IndexMap;
-use judge::{Drift, Judgement, Law, Left, Misfit, Number, Order, Samples, judge, order};
+use judge::{Judgement, Law, Number, Order, Residual, Samples, judge, order};
 use program::{Answer, TextOrJson, typed};
 use scene::table_text;
 use schemars::JsonSchema;
@@ -103,7 +103,7 @@ fn table(file: &str, j: &Judgement) -> String {
             }
         };
     }
-    for (i, (largest, rms, parts)) in j.constraints.iter().enumerate() {
+    for (i, Residual { largest, rms, parts }) in j.constraints.iter().enumerate() {
         let _ = writeln!(text, "  f_{:<12} largest {largest:.3e}, rms {rms:.3e}; rms of its parts {parts:.3e}", i + 1);
     }
     for d in &j.drifts {
@@ -124,52 +124,17 @@ pub(crate) struct AllJudged<'a> {
 #[derive(Serialize, JsonSchema)]
 struct Judged<'a> {
     file: &'a str,
-    /// That were looked at.
-    samples: usize,
-    /// Mean distance of two samples.
-    step: f64,
     /// The first of those that fit; null for none.
     law: Option<Law>,
-    /// Laws that these samples cannot tell from one another.
-    fitting: &'a [Law],
-    laws: &'a [Left],
-    /// Forces, rms, in the metric of the masses.
-    scale: f64,
-    /// By how much two orders of differences differ.
-    noise: f64,
     /// Null where the motion does not show it.
     numbers: IndexMap<&'static str, Option<Number>>,
-    /// Parameters that are off, by this part of themselves, and forces that the scene lacks, in their units,
-    /// where one alone leaves less by far than the numbers of Chetaev's law.
-    misfits: &'a [Misfit],
-    constraints: Vec<Constraint>,
-    drifts: &'a [Drift],
-}
-
-#[derive(Serialize, JsonSchema)]
-struct Constraint {
-    largest: f64,
-    rms: f64,
-    /// Of its parts, rms.
-    parts: f64,
+    #[serde(flatten)]
+    judgement: &'a Judgement,
 }
 
 impl<'a> Judged<'a> {
-    fn of(file: &'a str, j: &'a Judgement) -> Self {
-        let constraint = |&(largest, rms, parts): &(f64, f64, f64)| Constraint { largest, rms, parts };
-        Judged {
-            file,
-            samples: j.samples,
-            step: j.step,
-            law: j.law(),
-            fitting: &j.fitting,
-            laws: &j.laws,
-            scale: j.scale,
-            noise: j.noise,
-            numbers: numbers(j).into_iter().map(|(name, _, number)| (name, number)).collect(),
-            misfits: &j.misfits,
-            constraints: j.constraints.iter().map(constraint).collect(),
-            drifts: &j.drifts,
-        }
+    fn of(file: &'a str, judgement: &'a Judgement) -> Self {
+        let numbers = numbers(judgement).into_iter().map(|(name, _, number)| (name, number)).collect();
+        Judged { file, law: judgement.law(), numbers, judgement }
     }
 }

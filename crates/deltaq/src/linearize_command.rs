@@ -1,7 +1,7 @@
 //! `deltaq linearize`: steady motions to first order, and their eigenvalues.
 
 use anyhow::{Result, bail};
-use linear::{Sweep, SweepPoint, find_steady, linearize, linearize_at, sweep};
+use linear::{Change, Linearization, Part, Sweep, SweepPoint, find_steady, linearize, linearize_at, sweep};
 use mechanics::State;
 use motion::{Settings, setting};
 use scene::Scene;
@@ -57,13 +57,14 @@ pub(crate) fn run(arguments: &LinearizeArguments) -> Result<String> {
         TableFormat::Csv => csv(&sweep)?,
         TableFormat::Json => {
             let formulation = choice.formulation.name;
+            let changed = |change| Changed { change, state: named_state(&scene, &change.state) };
             typed(&Linearized {
                 scene: &scene.name,
                 formulation,
                 free,
                 sweep: &sweep.name,
                 points: sweep.points.iter().map(|point| Point::of(&scene, point)).collect(),
-                changes: sweep.changes.iter().map(|change| Change::of(&scene, change)).collect(),
+                changes: sweep.changes.iter().map(changed).collect(),
             })?
         }
     })
@@ -100,7 +101,7 @@ pub(crate) struct Linearized<'a> {
     sweep: &'a str,
     points: Vec<Point<'a>>,
     /// Where the number of eigenvalues with a positive real part changes.
-    changes: Vec<Change>,
+    changes: Vec<Changed<'a>>,
 }
 
 #[derive(Serialize, JsonSchema)]
@@ -111,119 +112,39 @@ struct Point<'a> {
     asked: f64,
     /// Coordinates and velocities of the steady motion, or of the start.
     state: Numbers,
-    t: f64,
-    /// The form of the formulation whose states these are.
-    form: &'a str,
-    /// Whether the motion is steady; the eigenvalues are frozen otherwise.
-    steady: bool,
-    states: &'a [String],
-    /// Of the states.
-    values: &'a [f64],
-    /// Rates of coordinates on which no rate depends.
-    carried: Numbers,
-    /// Rates of deviations of the states, row by row.
-    matrix: Vec<Vec<f64>>,
+    #[serde(flatten)]
+    linearization: &'a Linearization,
     /// States whose eigenvalues these are.
     of: Vec<&'a str>,
-    /// Other than zero, by falling real part.
-    eigenvalues: Vec<Eigenvalue>,
-    /// Further eigenvalues, all zero.
-    zeros: usize,
-    /// How far these may be from zero.
-    zero_error: f64,
-    /// Independent eigenvectors of all zeros; fewer where deviations grow as powers of time.
-    zero_vectors: usize,
+    #[serde(flatten)]
+    part: &'a Part,
     /// Eigenvalues with a real part above their error.
     unstable: usize,
     /// The same number, 'or more' where errors leave others open; 'like t^j' where an eigenvalue on the
     /// imaginary axis has too few eigenvectors; 'undecided' where errors leave it open or all eigenvalues
     /// are zero.
     growing: String,
-    /// Eigenvalues on the imaginary axis that cannot be told from a multiple one with too few eigenvectors.
-    chains: Vec<Chain>,
 }
 
 #[derive(Serialize, JsonSchema)]
-struct Eigenvalue {
-    real: f64,
-    imaginary: f64,
-    error: f64,
-}
-
-#[derive(Serialize, JsonSchema)]
-struct Chain {
-    real: f64,
-    imaginary: f64,
-    /// How many they are.
-    size: usize,
-    /// They are so close to this value.
-    radius: f64,
-    /// Deviations grow like this power of time until about 1/radius; 0 where none is shown.
-    power: usize,
-    /// Whether they do so for ever; otherwise it is undecided how deviations go on.
-    exact: bool,
-}
-
-#[derive(Serialize, JsonSchema)]
-struct Change {
-    /// In the steady motion there.
-    value: f64,
-    /// Of the interval in which it changes.
-    width: f64,
-    /// In the start from which that motion was found.
-    asked: f64,
+struct Changed<'a> {
+    #[serde(flatten)]
+    change: &'a Change,
     /// Coordinates and velocities of a steady motion just behind.
     state: Numbers,
-    /// Below and above.
-    unstable: [usize; 2],
-    /// Imaginary part of the eigenvalue that crosses.
-    frequency: f64,
 }
 
 impl<'a> Point<'a> {
-    fn of(scene: &Scene, SweepPoint { value, asked, state, linearization: l, part }: &'a SweepPoint) -> Self {
-        let eigenvalue =
-            |e: &linear::Eigenvalue| Eigenvalue { real: e.value.re, imaginary: e.value.im, error: e.error };
-        let chain = |c: &linear::Chain| Chain {
-            real: c.value.re,
-            imaginary: c.value.im,
-            size: c.size,
-            radius: c.radius,
-            power: c.power,
-            exact: c.is_exact,
-        };
+    fn of(scene: &Scene, SweepPoint { value, asked, state, linearization, part }: &'a SweepPoint) -> Self {
         Point {
             value: *value,
             asked: *asked,
             state: named_state(scene, state),
-            t: l.t,
-            form: l.form,
-            steady: l.is_steady,
-            states: &l.states,
-            values: &l.values,
-            carried: l.carried.iter().map(|c| (c.name.clone(), c.rate)).collect(),
-            matrix: l.matrix.row_iter().map(|row| row.iter().copied().collect()).collect(),
-            of: part.states.iter().map(|&i| &l.states[i][..]).collect(),
-            eigenvalues: part.eigenvalues.iter().map(eigenvalue).collect(),
-            zeros: part.zeros,
-            zero_error: part.zero_error,
-            zero_vectors: l.spectrum.zero_vectors,
+            linearization,
+            of: part.states.iter().map(|&i| &linearization.states[i][..]).collect(),
+            part,
             unstable: part.unstable(),
             growing: part.growth().to_string(),
-            chains: part.chains.iter().map(chain).collect(),
-        }
-    }
-}
-
-impl Change {
-    fn of(scene: &Scene, change: &linear::Change) -> Self {
-        Change {
-            value: change.value,
-            width: change.width,
-            asked: change.asked,
-            state: named_state(scene, &change.state),
-            unstable: change.unstable,
-            frequency: change.frequency,
         }
     }
 }

@@ -34,8 +34,19 @@ pub struct Drift {
     pub largest: f64,
 }
 
+/// How far one constraint is off.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, JsonSchema)]
+pub struct Residual {
+    /// Largest `|f|`.
+    pub largest: f64,
+    /// The rms of it.
+    pub rms: f64,
+    /// The rms of its parts `Aᵢⱼ vⱼ`.
+    pub parts: f64,
+}
+
 /// The judgement on one table.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct Judgement {
     /// Mean distance of two samples.
     pub step: f64,
@@ -55,15 +66,19 @@ pub struct Judgement {
     pub misfits: Vec<Misfit>,
     /// `ε`, in `T`; as slip and drag only where it is a number of the law: what is left is noise, or much
     /// more would be left without it, or it is zero within its error.
+    #[serde(skip)]
     pub epsilon: Option<Number>,
     /// `1/N`, in `T [f]²/E`.
+    #[serde(skip)]
     pub slip: Option<Number>,
     /// `γ` of `−γ M v`, in `1/T`.
+    #[serde(skip)]
     pub drag: Option<Number>,
     /// The part of `ḟ − A a` that is left out: 1 where the constraint is not differentiated as it is.
+    #[serde(skip)]
     pub left_out: Option<Number>,
-    /// Largest `|f|` of each constraint, and the rms of its parts `Aᵢⱼ vⱼ`.
-    pub constraints: Vec<(f64, f64, f64)>,
+    /// By constraint.
+    pub constraints: Vec<Residual>,
     /// Energy where it should be kept, and what the scene says is constant.
     pub drifts: Vec<Drift>,
 }
@@ -72,7 +87,8 @@ impl Judgement {
     /// What of it is not a finite number.
     fn not_finite(&self) -> Option<String> {
         let laws = self.laws.iter().map(|left| (left.law.name().into(), left.residual));
-        let constraints = (1..).zip(&self.constraints).map(|(i, &(m, r, p))| (format!("f_{i}"), m.hypot(r).hypot(p)));
+        let size = |r: &Residual| r.largest.hypot(r.rms).hypot(r.parts);
+        let constraints = (1..).zip(&self.constraints).map(|(i, r)| (format!("f_{i}"), size(r)));
         let drifts = self.drifts.iter().map(|d| (d.name.clone(), d.start.abs() + d.largest));
         let step = ("the step".to_owned(), self.step);
         [step]
@@ -125,7 +141,8 @@ pub fn judge(scene: &Scene, samples: &Samples, tolerance: f64) -> Result<Judgeme
     let fitting = laws.iter().filter(fits).map(|l| l.law).collect();
     let constraint = |c: usize| {
         let values = || fine.iter().map(move |i| i.constraint[c]);
-        (values().fold(0.0, |m: f64, f| m.max(f.abs())), rms(values()), rms(fine.iter().map(|i| i.parts[c])))
+        let largest = values().fold(0.0, |m: f64, f| m.max(f.abs()));
+        Residual { largest, rms: rms(values()), parts: rms(fine.iter().map(|i| i.parts[c])) }
     };
     let coordinates: Vec<String> = scene.system.coordinates.iter().map(|c| c.name.clone()).collect();
     let mut misfits = misfits(&fine, &balance.parameters, &coordinates);

@@ -44,7 +44,7 @@ mod substituted;
 pub use balance::{Balance, Instant, inputs};
 pub use differences::{derivative, halfway};
 pub use error::JudgeError;
-pub use judgement::{Drift, Judgement, Left, judge};
+pub use judgement::{Drift, Judgement, Left, Residual, judge};
 pub use laws::Misfit;
 pub use order::{Order, order};
 pub use regression::Number;

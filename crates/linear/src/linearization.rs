@@ -1,10 +1,13 @@
 //! Equations of motion to first order about a motion.
 
+use std::collections::BTreeMap;
 use std::fmt;
 
 use equations::Role;
 use motion::{Choice, Ending, Form, Setting, Settings, solve_from};
 use nalgebra::DMatrix;
+use schemars::JsonSchema;
+use serde::{Serialize, Serializer};
 use symbolic::limits::NOTHING;
 use symbolic::question;
 
@@ -21,27 +24,43 @@ pub struct Carried {
     pub rate: f64,
 }
 
+fn by_name<S: Serializer>(carried: &[Carried], to: S) -> Result<S::Ok, S::Error> {
+    to.collect_map(carried.iter().map(|c| (&c.name, c.rate)))
+}
+
+fn by_rows<S: Serializer>(matrix: &DMatrix<f64>, to: S) -> Result<S::Ok, S::Error> {
+    to.collect_seq(matrix.row_iter().map(|row| row.iter().copied().collect::<Vec<f64>>()))
+}
+
 /// `δ̇ = J δ` about a steady motion, or about an instant of any other.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct Linearization {
     /// Name of the form of the formulation whose states they are.
     pub form: &'static str,
     /// Time.
     pub t: f64,
     /// Whether `J` is that of a steady motion; frozen otherwise.
+    #[serde(rename = "steady")]
     pub is_steady: bool,
     /// Names of the states, length N.
     pub states: Vec<String>,
     /// Their values.
     pub values: Vec<f64>,
-    /// The other states: coordinates that are carried along.
+    /// The other states: rates of coordinates that are carried along.
+    #[serde(serialize_with = "by_name")]
+    #[schemars(with = "BTreeMap<String, f64>")]
     pub carried: Vec<Carried>,
-    /// `J`, N×N.
+    /// `J`, N×N, row by row.
+    #[serde(serialize_with = "by_rows")]
+    #[schemars(with = "Vec<Vec<f64>>")]
     pub matrix: DMatrix<f64>,
     /// The eigenvalues, with their errors.
+    #[serde(flatten)]
     pub spectrum: Spectrum,
     /// Places in `states` of coordinates, and of velocities or what replaces them.
+    #[serde(skip)]
     coordinates: Vec<usize>,
+    #[serde(skip)]
     velocities: Vec<usize>,
 }
 
@@ -202,9 +221,10 @@ pub(crate) fn moving(
 }
 
 /// Eigenvalues of some of the states.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct Part {
     /// Places in [`Linearization::states`].
+    #[serde(skip)]
     pub states: Vec<usize>,
     /// Eigenvalues other than zero, by falling real part.
     pub eigenvalues: Vec<Eigenvalue>,

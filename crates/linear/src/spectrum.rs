@@ -3,15 +3,30 @@
 use mechanics::SingularValues;
 use nalgebra::{DMatrix, Scalar};
 use num_complex::Complex;
+use schemars::JsonSchema;
+use serde::{Serialize, Serializer};
 use symbolic::limits::HALF_THE_DIGITS;
 
 use crate::core::{Core, allowed, balanced, nullity, structural_rank};
 use crate::discs::Discs;
 
+/// A complex number as JSON has it.
+#[derive(Serialize, JsonSchema)]
+struct Parts {
+    real: f64,
+    imaginary: f64,
+}
+
+fn parts<S: Serializer>(value: &Complex<f64>, to: S) -> Result<S::Ok, S::Error> {
+    Parts { real: value.re, imaginary: value.im }.serialize(to)
+}
+
 /// One eigenvalue.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct Eigenvalue {
     /// `s` of `e^(s t)`, in 1 over the unit of time.
+    #[serde(flatten, serialize_with = "parts")]
+    #[schemars(with = "Parts")]
     pub value: Complex<f64>,
     /// Change of the eigenvalue when the matrix changes by its error: see [`Spectrum`].
     pub error: f64,
@@ -39,9 +54,11 @@ pub struct Block {
 
 /// Eigenvalues that equal, within errors, a multiple one on the imaginary axis with too few eigenvectors:
 /// deviations grow as powers of time, at least at first.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct Chain {
     /// Their mean; its imaginary part is that of those above the real axis.
+    #[serde(flatten, serialize_with = "parts")]
+    #[schemars(with = "Parts")]
     pub value: Complex<f64>,
     /// How many there are.
     pub size: usize,
@@ -51,8 +68,10 @@ pub struct Chain {
     pub power: usize,
     /// Whether they are equal and do so for ever: they are exact zeros, or belong to equal blocks without an
     /// error, coupled in one direction only. Otherwise it is undecided how deviations go on.
+    #[serde(rename = "exact")]
     pub is_exact: bool,
     /// Places in [`Spectrum::blocks`].
+    #[serde(skip)]
     pub blocks: Vec<usize>,
 }
 
@@ -68,14 +87,16 @@ pub struct Chain {
 /// 4 ε of the largest eigenvalue. For `k` eigenvalues close to a multiple one it is about the `k`-th root of
 /// the error of the matrix. Only structural zeros, which every matrix with the same pattern of entries has,
 /// are exact.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct Spectrum {
     /// Blocks, by their first places.
+    #[serde(skip)]
     pub blocks: Vec<Block>,
     /// Independent eigenvectors of the eigenvalue zero; less than the zeros where deviations grow as powers
     /// of time.
     pub zero_vectors: usize,
     /// Groups of eigenvalues for which deviations grow as powers of time, or may do so.
+    #[serde(skip)]
     pub chains: Vec<Chain>,
 }
 

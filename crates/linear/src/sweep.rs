@@ -36,7 +36,7 @@ pub struct SweepPoint {
 }
 
 /// A value at which stability changes.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, serde::Serialize, schemars::JsonSchema)]
 pub struct Change {
     /// The value, in the steady motion there.
     pub value: f64,
@@ -45,6 +45,7 @@ pub struct Change {
     /// The value in the start from which that motion was found; the same where none is looked for.
     pub asked: f64,
     /// A steady motion just behind it.
+    #[serde(skip)]
     pub state: State,
     /// Eigenvalues with a positive real part below it and above.
     pub unstable: [usize; 2],

@@ -184,7 +184,6 @@ impl System {
     }
 
     /// What `deltaq.sweep` finds at some points: columns by name.
-    #[expect(clippy::too_many_arguments, reason = "named in Python")]
     fn _sweep_points<'py>(
         &self,
         py: Python<'py>,

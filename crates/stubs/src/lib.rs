@@ -22,7 +22,7 @@ pub fn stubbed(_: TokenStream, item: TokenStream) -> TokenStream {
 }
 
 /// A class of fields that Python reads, those of the stubs, by which it is pickled: `#[answer] struct State;`.
-/// What Rust adds as a field has its default value when it is read again. `#[answer("<deltaq.State t={t}>")]`
+/// What Rust adds as a field has its default value when it is read again. `#[answer("<State t={t}>")]`
 /// says how it is printed.
 #[proc_macro_attribute]
 pub fn answer(printed: TokenStream, item: TokenStream) -> TokenStream {

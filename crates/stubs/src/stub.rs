@@ -65,8 +65,9 @@ fn entries(text: &str) -> Vec<Entry> {
                 doc += "\n";
                 doc += next.get(indent..).unwrap_or_default();
             }
-            let doc = doc.trim_end_matches(QUOTES).trim_end();
-            entries.iter_mut().next_back().into_iter().for_each(|entry| doc.clone_into(&mut entry.doc));
+            if let Some(entry) = entries.last_mut() {
+                doc.trim_end_matches(QUOTES).trim_end().clone_into(&mut entry.doc);
+            }
             continue;
         }
         // a signature goes on until its brackets are closed
@@ -115,15 +116,12 @@ pub(crate) fn signature(said: &str, is_method: bool) -> String {
         let (part, default) = part.rsplit_once(" = ").map_or((part, None), |(part, default)| (part, Some(default)));
         let name = part.split(':').next().unwrap_or_default();
         let raw = if name == "virtual" { "r#" } else { "" };
-        let default = default.map(|default| {
-            match default {
-                "True" => "=true",
-                "False" => "=false",
-                other => return format!("={other}"),
-            }
-            .to_owned()
-        });
-        format!("{raw}{name}{}", default.unwrap_or_default())
+        match default {
+            None => format!("{raw}{name}"),
+            Some("True") => format!("{raw}{name}=true"),
+            Some("False") => format!("{raw}{name}=false"),
+            Some(other) => format!("{raw}{name}={other}"),
+        }
     };
     let parts: Vec<String> = split(inside, ',').into_iter().skip(usize::from(is_method)).map(one).collect();
     format!("({})", parts.join(", "))
@@ -136,9 +134,7 @@ pub(crate) fn rust(kind: &str) -> String {
         let some: Vec<&str> = either.into_iter().filter(|own| *own != "None").collect();
         return format!("Option<{}>", rust(&some.join(" | ")));
     }
-    let (of, inner) = kind.split_once('[').map_or((kind, ""), |(of, inner)| (of, inner.trim_end_matches(']')));
-    // a bracket of what is inside may have gone with that of the whole
-    let inner = inner.to_owned() + &"]".repeat(depth(inner).max(0) as usize);
+    let (of, inner) = kind.strip_suffix(']').and_then(|kind| kind.split_once('[')).unwrap_or((kind, ""));
     match of {
         "float" => "f64".into(),
         "int" => "usize".into(),
@@ -147,8 +143,8 @@ pub(crate) fn rust(kind: &str) -> String {
         "_Array" => "pyo3::Py<numpy::PyArrayDyn<f64>>".into(),
         "npt.NDArray" => "pyo3::Py<numpy::PyArrayDyn<numpy::Complex64>>".into(),
         "dict" => "pyo3::Py<pyo3::types::PyDict>".into(),
-        "list" => format!("Vec<{}>", rust(&inner)),
-        "tuple" => format!("({})", split(&inner, ',').into_iter().map(rust).collect::<Vec<_>>().join(", ")),
+        "list" => format!("Vec<{}>", rust(inner)),
+        "tuple" => format!("({})", split(inner, ',').into_iter().map(rust).collect::<Vec<_>>().join(", ")),
         class => format!("pyo3::Py<{class}>"),
     }
 }
