@@ -47,9 +47,6 @@ pub struct Question {
     /// Equal steps in which motions are sampled, of the whole duration.
     #[serde(default)]
     pub steps: usize,
-    /// Tolerance of the looser run of every motion; 0 for that of a comparison.
-    #[serde(default)]
-    pub tolerance: f64,
     /// Integrals are polynomials in the velocities up to this degree.
     #[serde(default)]
     pub degree: usize,

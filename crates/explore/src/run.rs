@@ -12,13 +12,12 @@ use crate::question::Question;
 /// Steps of one run at most, and of one at a glance.
 const MAX_STEPS: [usize; 2] = [200_000, 5_000];
 
-/// How motions are integrated: as those that `deltaq compare` compares, unless a tolerance is asked for.
+/// How motions are integrated: as those that `deltaq compare` compares.
 pub(crate) fn settings(question: &Question) -> Settings {
-    let of = |tolerance: f64, max_steps: usize| Settings { tolerance, max_steps, ..Settings::default() };
-    match question.tolerance {
-        _ if question.glance => of(SAME, MAX_STEPS[1]),
-        tolerance if tolerance > 0.0 => of(tolerance, MAX_STEPS[0]),
-        _ => of(Settings::default().tolerance, MAX_STEPS[0]),
+    let [max_steps, at_a_glance] = MAX_STEPS;
+    match question.glance {
+        true => Settings { tolerance: SAME, max_steps: at_a_glance, ..Settings::default() },
+        false => Settings { max_steps, ..Settings::default() },
     }
 }
 

@@ -58,7 +58,7 @@ pub(crate) fn nullity(svd: &SingularValues, error: f64) -> usize {
     svd.values.iter().filter(|&&s| s <= limit).count()
 }
 
-/// A matrix in units in which its rows are about as large as its columns, its errors in the same, and these units.
+/// A matrix in units in which its rows are about as large as its columns, its errors in them, and the units.
 pub(crate) fn balanced(mut matrix: DMatrix<f64>, noise: DMatrix<f64>) -> (DMatrix<f64>, DMatrix<f64>, DVector<f64>) {
     let units = balance_parlett_reinsch(&mut matrix);
     let noise = in_units(noise, &units);

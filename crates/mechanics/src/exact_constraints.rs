@@ -97,8 +97,8 @@ impl System {
         Ok((rest, State { t: state.t, q: of(&state.q), v: of(&state.v) }))
     }
 
-    /// Whether `Σ a_j dq_j + b dt` is closed, exactly: `∂a_j/∂q_k = ∂a_k/∂q_j`. Of `row`, `a_j` by `j` and `b`
-    /// by `n`.
+    /// Whether `Σ a_j dq_j + b dt` is closed, exactly: `∂a_j/∂q_k = ∂a_k/∂q_j`. Of `row`, `a_j` by `j` and
+    /// `b` by `n`.
     pub fn is_total_derivative(&self, row: &BTreeMap<usize, Expr>) -> bool {
         let (g, places) = (&self.graph, [self.positions(), vec![self.time]].concat());
         g.are_exact(&row.values().copied().collect::<Vec<_>>())

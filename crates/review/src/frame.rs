@@ -1,6 +1,7 @@
 //! Points `(q, v, t, parameters)` on the constraints, and what their equations say there of `q̈`.
 
 use decision::exact::Flaw;
+use mechanics::State;
 use symbolic::{Evaluator, Expr, Graph, SplitMix, Symbol};
 
 use crate::number::{At, Number, constants, eliminate, values};
@@ -100,7 +101,7 @@ impl<'r> Frame<'r> {
     ///
     /// # Errors
     /// The text of an equation that is not linear in accelerations and unknowns.
-    pub(crate) fn new(reading: &'r Reading, start: &dyn Fn(Symbol) -> f64) -> Result<Self, String> {
+    pub(crate) fn new(reading: &'r Reading, start: &State) -> Result<Self, String> {
         let g = &reading.system.graph;
         let column = |k: usize| reading.coordinates.iter().map(|c| c[k]).collect::<Vec<Symbol>>();
         let (q, v, a) = (column(0), column(1), column(2));
@@ -137,7 +138,9 @@ impl<'r> Frame<'r> {
         let inputs: Vec<Symbol> =
             parameters.chain([reading.system.time]).chain(q.clone()).chain(v.clone()).chain(states.clone()).collect();
         let values = reading.parameters.iter().map(|p| p.1);
-        let centres = values.chain(inputs[reading.parameters.len()..].iter().map(|&s| start(s))).collect();
+        let start = reading.system.values_at(start);
+        let centre = |s: &Symbol| start.get(s).copied().unwrap_or(0.7);
+        let centres = values.chain(inputs[reading.parameters.len()..].iter().map(centre)).collect();
         Ok(Frame {
             leaf: Linear::new(g, &leaf, &q, true),
             velocities: Linear::new(g, &[&constraints[..], &slides].concat(), &v, true),

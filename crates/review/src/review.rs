@@ -130,7 +130,7 @@ pub(crate) fn review(
         unknowns: reading.multipliers.iter().chain(reading.states.iter().map(|s| &s[0])).map(name).collect(),
         notes: Vec::new(),
     };
-    let frame = match Frame::new(&reading, &|s| start_of(scene, s)) {
+    let frame = match Frame::new(&reading, &scene.start) {
         Ok(frame) => frame,
         Err(text) => {
             review.notes.push(format!("`{text}` is not linear in accelerations and multipliers"));
@@ -203,7 +203,7 @@ pub(crate) struct Row {
 /// its accelerations.
 pub fn states(scene: &Scene) -> Vec<mechanics::State> {
     let Ok(reading) = read(scene, &[], &[]) else { return Vec::new() };
-    let Ok(frame) = Frame::new(&reading, &|s| start_of(scene, s)) else { return Vec::new() };
+    let Ok(frame) = Frame::new(&reading, &scene.start) else { return Vec::new() };
     let (first, n) = (reading.parameters.len(), scene.system.dimension());
     let numbers = |seed: u64| {
         let drawn = frame.draw::<Bounded>(seed, u32::from(seed > 0), true).ok()?;
@@ -211,14 +211,6 @@ pub fn states(scene: &Scene) -> Vec<mechanics::State> {
         Some(mechanics::State { t: x[0], q: x[1..=n].to_vec(), v: x[n + 1..].to_vec() })
     };
     (0..40).filter_map(numbers).take(8).collect()
-}
-
-/// The number of the scene's start that a symbol has, or one in its place.
-fn start_of(scene: &Scene, s: Symbol) -> f64 {
-    let (system, start) = (&scene.system, &scene.start);
-    let of = |symbols: Vec<Symbol>, values: &[f64]| symbols.iter().position(|&own| own == s).map(|i| values[i]);
-    let time = (s == system.time).then_some(start.t);
-    of(system.positions(), &start.q).or_else(|| of(system.velocities(), &start.v)).or(time).unwrap_or(0.7)
 }
 
 /// What they are held against.
