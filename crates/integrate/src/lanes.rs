@@ -20,7 +20,7 @@ use crate::options::{Options, Projection};
 use crate::stall_detector::StallDetector;
 use crate::status::{ProjectionReport, Work};
 use crate::stepper::shortest_step;
-use crate::taylor_step::{Ends, longest_step, once, order};
+use crate::taylor_step::{Ends, each, longest_step, once, order};
 use crate::time_loop::HALVINGS;
 use defect_check::finite;
 use divisor_zeros::LaneDivisorZeros;
@@ -185,7 +185,7 @@ impl<'a, P: LaneProblem> Lanes<'a, P> {
     fn expand(&mut self) {
         let problem = &mut *self.problem;
         self.trusted = problem.taylor(&self.taken_to, &self.candidate, &self.next_unit, &mut self.next_coefficients);
-        let (coefficients, share) = (&self.next_coefficients, from_fn(|l| self.taken[l] / self.next_unit[l]));
+        let (coefficients, share) = (&self.next_coefficients, each(|l| self.taken[l] / self.next_unit[l]));
         let (reached, candidate, slope) = (&self.reached, &self.candidate, &self.slope);
         let ends = Ends { reached, candidate, slope, next_coefficients: coefficients, share };
         let (absolute, relative) = (&self.absolute_tolerances, self.options.relative_tolerance);
@@ -194,7 +194,7 @@ impl<'a, P: LaneProblem> Lanes<'a, P> {
             move || {
                 let ends = once(ends);
                 let defect = ends.defect(absolute, relative);
-                (finite(coefficients), from_fn(|l| defect.component(l).is_none() && !defect.is_far(l)))
+                (finite(coefficients), each(|l| defect.component(l).is_none() && !defect.is_far(l)))
             },
         );
     }
@@ -292,7 +292,7 @@ impl<'a, P: LaneProblem> Lanes<'a, P> {
         let (absolute, relative, sizes) = (&self.absolute_tolerances, self.options.relative_tolerance, &mut self.sizes);
         if lanes.contains(&false) {
             for (c, next) in coefficients.iter_mut().zip(next) {
-                *c = from_fn(|l| if lanes[l] { next[l] } else { c[l] });
+                *c = each(|l| if lanes[l] { next[l] } else { c[l] });
             }
         } else {
             std::mem::swap(coefficients, &mut self.next_coefficients);
@@ -330,9 +330,25 @@ impl<'a, P: LaneProblem> Lanes<'a, P> {
         }
     }
 
+    /// The states inside the step, at this share of the unit of time.
+    fn look_inside(&mut self, share: &Lane) {
+        let rows = self.inner.iter_mut().zip(self.coefficients.chunks_exact(self.orders));
+        pulp::Arch::new().dispatch(
+            #[inline(always)]
+            move || {
+                for (y, row) in once(rows) {
+                    *y = [0.0; LANES];
+                    for c in row.iter().rev() {
+                        *y = each(|l| c[l] + share[l] * y[l]);
+                    }
+                }
+            },
+        );
+    }
+
     /// The candidates: the polynomials at the ends of the steps, projected.
     fn advance(&mut self) {
-        let theta: Lane = from_fn(|l| self.taken[l] / self.unit[l]);
+        let theta: Lane = each(|l| self.taken[l] / self.unit[l]);
         let (powers, coefficients) = (&mut self.powers, &self.coefficients);
         let (reached, slope) = (&mut self.reached, &mut self.slope);
         pulp::Arch::new().dispatch(
@@ -355,7 +371,7 @@ fn evaluate(coefficients: &[Lane], theta: &Lane, powers: &mut [Lane], values: &m
     let mut power = [1.0; LANES];
     for x in powers.iter_mut() {
         *x = power;
-        power = from_fn(|l| power[l] * theta[l]);
+        power = each(|l| power[l] * theta[l]);
     }
     let rows = coefficients.chunks_exact(powers.len());
     for ((row, value), slope) in rows.zip(values).zip(slopes) {
@@ -368,7 +384,7 @@ fn evaluate(coefficients: &[Lane], theta: &Lane, powers: &mut [Lane], values: &m
                 weighted[l] += term * k;
             }
         }
-        *value = from_fn(|l| row[0][l] + sum[l]);
+        *value = each(|l| row[0][l] + sum[l]);
         *slope = weighted;
     }
 }

@@ -1,7 +1,5 @@
 //! Order and step of a Taylor series, and whether to trust it: for one motion or several, one per lane.
 
-use std::array::from_fn;
-
 /// Tolerances below are for the order as this one.
 const TIGHTEST: f64 = 1e-18;
 const LEAST_ORDER: f64 = 4.0;
@@ -35,16 +33,16 @@ pub(crate) fn longest_step<const N: usize>(
 ) -> [f64; N] {
     sizes.fill([0.0; N]);
     for (row, absolute) in coefficients.chunks_exact(sizes.len()).zip(absolute_tolerances) {
-        let scale: [f64; N] = from_fn(|l| 1.0 / (absolute[l] + relative_tolerance * row[0][l].abs()));
-        let grow = |(size, c): (&mut [f64; N], &[f64; N])| {
-            let scaled: [f64; N] = from_fn(|l| c[l].abs() * scale[l]);
-            *size = from_fn(|l| if scaled[l] > size[l] { scaled[l] } else { size[l] });
-        };
-        if N == 1 {
-            sizes.iter_mut().zip(row).for_each(grow);
-        } else {
-            // a vector holds lanes: in pairs, orders are not gathered into one
-            sizes.chunks_mut(2).zip(row.chunks(2)).for_each(|(sizes, row)| sizes.iter_mut().zip(row).for_each(grow));
+        let scale: [f64; N] = each(|l| 1.0 / (absolute[l] + relative_tolerance * row[0][l].abs()));
+        // a vector holds lanes: in pairs, orders are not gathered into one
+        let part = if N == 1 { sizes.len() } else { 2 };
+        for (sizes, row) in sizes.chunks_mut(part).zip(row.chunks(part)) {
+            for (size, c) in sizes.iter_mut().zip(row) {
+                for l in 0..N {
+                    let scaled = c[l].abs() * scale[l];
+                    size[l] = if scaled > size[l] { scaled } else { size[l] };
+                }
+            }
         }
     }
     let p = sizes.len() - 1;
@@ -52,10 +50,10 @@ pub(crate) fn longest_step<const N: usize>(
     let root = |size: f64, k: usize| (-size.ln() / k as f64).exp();
     let shorter = (-0.7 / (p - 1) as f64).exp();
     let last = |l: usize| root(sizes[p][l] / LAST, p).min(root(sizes[p - 1][l] * fall / LAST, p - 1));
-    let mut theta: [f64; N] = from_fn(|l| last(l) * shorter);
+    let mut theta: [f64; N] = each(|l| last(l) * shorter);
     // Terms may be so large: size · (theta/fall)^k ≤ bound. It is rare that one is over.
     let bound = SLACK * LAST / fall.powi(p as i32);
-    if !any_over(&sizes[1..p - 1], from_fn(|l| theta[l] / fall), bound) {
+    if !any_over(&sizes[1..p - 1], each(|l| theta[l] / fall), bound) {
         return theta;
     }
     let mut allowed = bound * fall;
@@ -73,13 +71,24 @@ pub(crate) fn longest_step<const N: usize>(
     theta
 }
 
+/// A number for every lane, by a loop: closures of the library's array functions are not always inlined, and
+/// then take no vector instructions.
+#[inline(always)]
+pub(crate) fn each<T: Copy + Default, const N: usize>(of_lane: impl Fn(usize) -> T) -> [T; N] {
+    let mut all = [T::default(); N];
+    for (l, x) in all.iter_mut().enumerate() {
+        *x = of_lane(l);
+    }
+    all
+}
+
 /// Number of independent products at a time.
 pub(crate) const GROUP: usize = 8;
 
 /// The first powers `x⁰ … x⁷`, and `x⁸`.
 #[inline(always)]
 pub(crate) fn first_powers<const N: usize>(x: [f64; N]) -> ([[f64; N]; GROUP], [f64; N]) {
-    let times = |a: [f64; N], b: [f64; N]| -> [f64; N] { from_fn(|l| a[l] * b[l]) };
+    let times = |a: [f64; N], b: [f64; N]| -> [f64; N] { each(|l| a[l] * b[l]) };
     let (x2, one) = (times(x, x), [1.0; N]);
     let (x3, x4) = (times(x2, x), times(x2, x2));
     ([one, x, x2, x3, x4, times(x4, x), times(x4, x2), times(x4, x3)], times(x4, x4))
@@ -100,7 +109,7 @@ fn any_over<const N: usize>(sizes: &[[f64; N]], x: [f64; N], bound: f64) -> bool
     let (groups, rest) = sizes.as_chunks::<GROUP>();
     for group in groups {
         look(group, &scale);
-        scale = from_fn(|l| scale[l] * step[l]);
+        scale = each(|l| scale[l] * step[l]);
     }
     look(rest, &scale);
     over

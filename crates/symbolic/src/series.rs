@@ -31,10 +31,10 @@ pub(crate) type Slot = u32;
 /// A series.
 pub(crate) type Row = u32;
 
-/// What is known of an output: a series, or a value that is constant in time.
+/// What is known of an output: a multiple of a series, or a value that is constant in time.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Source {
-    Row(Row),
+    Row(Row, Slot),
     Steady(Slot),
 }
 
@@ -67,12 +67,11 @@ pub(crate) struct Term {
     pub(crate) late: bool,
 }
 
-/// A series whose rate is `factor · rate`: a state, or a function of states.
+/// A series whose rate is known: a state, or a function of states.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct State {
     pub(crate) row: Row,
     pub(crate) rate: Source,
-    pub(crate) factor: Slot,
 }
 
 /// Series whose coefficients of one order are computed one after the other.
@@ -312,7 +311,7 @@ impl SeriesTape {
         };
         let pair = |&(a, b): &(Row, Row)| (a * stride_of_places, b * stride_of_places);
         let moving = |state: &State| match state.rate {
-            Source::Row(rate) => Some((state.row * stride_of_places, rate * stride_of_places, zero)),
+            Source::Row(rate, _) => Some((state.row * stride_of_places, rate * stride_of_places, zero)),
             Source::Steady(_) => None,
         };
         let groups = self.groups.each_ref().map(|group| PlacedGroup {
@@ -377,7 +376,7 @@ impl SeriesTape {
     /// The coefficient of an output; orders up to one less than that of the workspace.
     pub fn output<T: SeriesScalar>(&self, index: usize, order: usize, workspace: &SeriesWorkspace<T>) -> T {
         match self.outputs[index] {
-            Source::Row(row) => workspace.row(row)[order],
+            Source::Row(row, factor) => workspace.row(row)[order] * workspace.plan.values[factor as usize],
             Source::Steady(slot) if order == 0 => workspace.plan.values[slot as usize],
             Source::Steady(_) => T::from_f64(0.0),
         }
@@ -397,10 +396,12 @@ impl SeriesTape {
         plan.frequency = T::from_f64(1.0) / unit;
         for (placed, group) in plan.groups.iter_mut().zip(&self.groups) {
             let mut moving = placed.states.iter_mut();
-            for State { row, rate, factor } in &group.states {
+            for State { row, rate } in &group.states {
                 match rate {
                     Source::Steady(slot) => rows[*row as usize * plan.stride + 1] = values[*slot as usize] * unit,
-                    Source::Row(_) => moving.next().expect("a place for each").2 = values[*factor as usize] * unit,
+                    Source::Row(_, factor) => {
+                        moving.next().expect("a place for each").2 = values[*factor as usize] * unit;
+                    }
                 }
             }
         }

@@ -1,9 +1,8 @@
 //! Divisors that may vanish within a step.
 
-use std::array::from_fn;
-
 use super::{LANES, Lane, LaneProblem, Lanes};
 use crate::divisor_zeros::may_vanish;
+use crate::taylor_step::each;
 
 /// Divisors at the time reached and along the step, and the lanes in which one may vanish.
 pub(super) struct LaneDivisorZeros {
@@ -22,7 +21,7 @@ impl LaneDivisorZeros {
     /// Goes on from the ends of the steps of these lanes.
     pub(super) fn adopt(&mut self, lanes: &[bool; LANES]) {
         for (reached, end) in self.reached.iter_mut().zip(&self.end) {
-            *reached = from_fn(|l| if lanes[l] { end[l] } else { reached[l] });
+            *reached = each(|l| if lanes[l] { end[l] } else { reached[l] });
         }
     }
 }
@@ -34,17 +33,8 @@ impl<P: LaneProblem> Lanes<'_, P> {
         if self.poles.reached.is_empty() {
             return;
         }
-        let t: Lane = from_fn(|l| self.t[l] + 0.5 * self.taken[l]);
-        let share: Lane = from_fn(|l| 0.5 * self.taken[l] / self.unit[l]);
-        let rows = self.inner.iter_mut().zip(self.coefficients.chunks_exact(self.orders));
-        pulp::Arch::new().dispatch(
-            #[inline(always)]
-            move || {
-                for (y, row) in rows {
-                    *y = row.iter().rev().fold([0.0; LANES], |sum, c| from_fn(|l| c[l] + share[l] * sum[l]));
-                }
-            },
-        );
+        let t: Lane = each(|l| self.t[l] + 0.5 * self.taken[l]);
+        self.look_inside(&each(|l| 0.5 * self.taken[l] / self.unit[l]));
         let LaneDivisorZeros { reached, middle, end, suspected } = &mut self.poles;
         self.problem.divided(&t, &self.inner, middle);
         self.problem.divided(&self.taken_to, &self.candidate, end);

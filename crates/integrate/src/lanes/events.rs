@@ -1,9 +1,8 @@
 //! Where an event function may change its sign or touch zero within a step.
 
-use std::array::from_fn;
-
 use super::{LANES, Lane, LaneProblem, Lanes};
 use crate::events::{PARTS, TOUCH};
+use crate::taylor_step::each;
 
 /// A function that touches zero with a finite curvature is at most this part of what it is to one side, at
 /// that of the places looked at where it is least: 1/9 where these are equally far apart.
@@ -60,30 +59,23 @@ impl<P: LaneProblem> Lanes<'_, P> {
     /// Looks at event functions in parts of the step; a lane in which one may vanish is left to a single
     /// motion, which looks closer.
     pub(super) fn look_at_events(&mut self) {
-        let events = &mut self.events;
-        if events.reached.is_empty() {
+        if self.events.reached.is_empty() {
             return;
         }
+        let events = &mut self.events;
         events.none = [true; LANES];
         events.older.copy_from_slice(&events.before);
         events.previous.copy_from_slice(&events.reached);
-        let (candidate, reached) = (&self.candidate, &self.reached);
         for part in 1..=PARTS {
             let theta = part as f64 / PARTS as f64;
-            let share: Lane = from_fn(|l| theta * self.taken[l] / self.unit[l]);
-            let t = if part == PARTS { self.taken_to } else { from_fn(|l| self.t[l] + theta * self.taken[l]) };
-            let (coefficients, inner) = (&self.coefficients, &mut self.inner);
+            let t = if part == PARTS { self.taken_to } else { each(|l| self.t[l] + theta * self.taken[l]) };
+            self.look_inside(&each(|l| theta * self.taken[l] / self.unit[l]));
             let last = theta.powi(self.orders as i32 - 1);
-            pulp::Arch::new().dispatch(
-                #[inline(always)]
-                || {
-                    for ((y, row), i) in inner.iter_mut().zip(coefficients.chunks_exact(self.orders)).zip(0..) {
-                        *y = row.iter().rev().fold([0.0; LANES], |sum, c| from_fn(|l| c[l] + share[l] * sum[l]));
-                        *y = from_fn(|l| y[l] + last * (candidate[i][l] - reached[i][l]));
-                    }
-                },
-            );
-            self.problem.event_values(&t, inner, &mut events.current);
+            for ((y, candidate), reached) in self.inner.iter_mut().zip(&self.candidate).zip(&self.reached) {
+                *y = each(|l| y[l] + last * (candidate[l] - reached[l]));
+            }
+            let events = &mut self.events;
+            self.problem.event_values(&t, &self.inner, &mut events.current);
             events.judge();
             std::mem::swap(&mut events.older, &mut events.previous);
             std::mem::swap(&mut events.previous, &mut events.current);

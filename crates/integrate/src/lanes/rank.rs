@@ -4,6 +4,7 @@ use std::array::from_fn;
 
 use super::{LANES, Lane, LaneProblem, Lanes};
 use crate::rank::{may_lose, orthonormal};
+use crate::taylor_step::each;
 
 /// A lane in which the minors have come under this part of the largest ones is left to a single motion.
 const LOW: f64 = 0.05;
@@ -65,16 +66,13 @@ impl<P: LaneProblem> Lanes<'_, P> {
         if self.ranks.h == 0 {
             return;
         }
+        self.look_inside(&each(|l| 0.5 * self.taken[l] / self.unit[l]));
         let Ranks { h, entries, reached, end, middle, largest, suspected } = &mut self.ranks;
         self.problem.rows(&self.taken_to, &self.candidate, entries);
         for (l, end) in end.iter_mut().enumerate() {
             end.set(entries, l, *h);
         }
-        let t: Lane = from_fn(|l| self.t[l] + 0.5 * self.taken[l]);
-        let share: Lane = from_fn(|l| 0.5 * self.taken[l] / self.unit[l]);
-        for (y, row) in self.inner.iter_mut().zip(self.coefficients.chunks_exact(self.orders)) {
-            *y = row.iter().rev().fold([0.0; LANES], |sum, c| from_fn(|l| c[l] + share[l] * sum[l]));
-        }
+        let t: Lane = each(|l| self.t[l] + 0.5 * self.taken[l]);
         self.problem.rows(&t, &self.inner, entries);
         for l in 0..LANES {
             middle.set(entries, l, *h);

@@ -53,7 +53,7 @@ enum Decision {
     Row,
     /// Its terms go into the one sum that uses it.
     Absorbed,
-    /// A multiple of a value; products that use it take over the factor.
+    /// A multiple of a value; what uses it takes over the factor.
     Peeled,
 }
 
@@ -238,6 +238,7 @@ impl<'i> Builder<'i> {
                 continue;
             }
             if !whole && !self.is_absorbed(id) {
+                let (id, weight) = self.peel(id, weight);
                 let row = self.row(id);
                 sum.push(weight, row);
                 continue;

@@ -120,7 +120,7 @@ impl<T: SeriesScalar> Expansion<'_, '_, T> {
             let newest = rows.window(k);
             for (residual, source) in plan.residual.iter_mut().zip(residuals) {
                 *residual = match source {
-                    Source::Row(row) => newest.get(row * stride),
+                    Source::Row(row, factor) => newest.get(row * stride) * plan.values[*factor as usize],
                     Source::Steady(_) => T::from_f64(0.0),
                 };
             }

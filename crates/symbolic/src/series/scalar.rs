@@ -64,11 +64,14 @@ pub trait Store<T> {
     fn multiply(&mut self, products: &Products, k: usize, share: Option<T>);
 }
 
-/// `Σ_i left[i] right[n - 1 - i]` of n numbers each, in four sums.
+/// `Σ_i left[i] right[n - 1 - i]` of n numbers each: the newest, which are waited for, last.
 #[inline(always)]
 fn convolved<T: Scalar>(left: &[T], right: &[T]) -> T {
-    let (fours, rest) = left.as_chunks::<4>();
-    let (rest_of_right, fours_of_right) = right.as_rchunks::<4>();
+    let ([x, older @ .., last], [y, older_of_right @ .., last_of_right]) = (left, right) else {
+        return if left.is_empty() { T::from_f64(0.0) } else { left[0] * right[0] };
+    };
+    let (fours, rest) = older.as_chunks::<4>();
+    let (rest_of_right, fours_of_right) = older_of_right.as_rchunks::<4>();
     let mut sums = [T::from_f64(0.0); 4];
     for (x, y) in fours.iter().zip(fours_of_right.iter().rev()) {
         for l in 0..4 {
@@ -78,7 +81,7 @@ fn convolved<T: Scalar>(left: &[T], right: &[T]) -> T {
     for (x, y) in rest.iter().zip(rest_of_right.iter().rev()) {
         sums[0] = sums[0] + *x * *y;
     }
-    (sums[0] + sums[1]) + (sums[2] + sums[3])
+    ((sums[0] + sums[1]) + (sums[2] + sums[3])) + (*x * *last_of_right + *last * *y)
 }
 
 impl<T: Scalar> Window<T> for [T] {

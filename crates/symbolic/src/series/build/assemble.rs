@@ -1,7 +1,7 @@
 //! From definitions of series to the tape.
 
 use super::ahead::{AHEAD, DERIVED, STEADY, Stage};
-use super::{Builder, Part};
+use super::{Builder, Integrated, Part};
 use crate::programs::program::{Id, Value};
 use crate::programs::tape::Tape;
 use crate::series::{
@@ -16,8 +16,16 @@ impl Builder<'_> {
         let input_ids: Vec<Id> = (0..inputs.len()).map(|i| self.push(Value::Input(i as u32))).collect();
         let input_rows: Vec<Option<Row>> =
             input_ids.iter().map(|id| if self.varies(*id) { Some(self.row(*id)) } else { None }).collect();
-        let of_outputs: Vec<Option<Row>> =
-            outputs.iter().map(|id| if self.varies(*id) { Some(self.row(*id)) } else { None }).collect();
+        let one = self.one;
+        let multiple = |builder: &mut Self, id: Id, factor: Id| {
+            let (id, factor) = builder.peel(id, factor);
+            (builder.row(id), factor)
+        };
+        let of_outputs: Vec<Option<(Row, Id)>> =
+            outputs.iter().map(|&id| if self.varies(id) { Some(multiple(&mut self, id, one)) } else { None }).collect();
+        let integrated: Vec<(Id, Integrated)> = self.integrated.iter().map(|(id, i)| (*id, *i)).collect();
+        let integrated: Vec<(Row, (Row, Id))> =
+            integrated.into_iter().map(|(id, i)| (self.rows[&id], multiple(&mut self, i.rate, i.factor))).collect();
 
         // By stage; within one as they were made, operands first.
         let mut definitions = std::mem::take(&mut self.definitions);
@@ -116,15 +124,15 @@ impl Builder<'_> {
         let sources: Vec<Source> = outputs
             .iter()
             .zip(&of_outputs)
-            .map(|(id, row)| row.map_or_else(|| Source::Steady(slot(*id)), Source::Row))
+            .map(|(id, row)| match row {
+                Some((row, factor)) => Source::Row(*row, slot(*factor)),
+                None => Source::Steady(slot(*id)),
+            })
             .collect();
-        let one = slot(self.one);
-        let integrated = self.integrated.iter().map(|(id, i)| State {
-            row: self.rows[id],
-            rate: Source::Row(self.rows[&i.rate]),
-            factor: slot(i.factor),
-        });
-        let integrated: Vec<State> = integrated.collect();
+        let integrated: Vec<State> = integrated
+            .into_iter()
+            .map(|(row, (rate, factor))| State { row, rate: Source::Row(rate, slot(factor)) })
+            .collect();
         self.program.fuse(&first);
         let mut states: Vec<State> = Vec::new();
         let mut time = None;
@@ -136,7 +144,7 @@ impl Builder<'_> {
         }
         for (input, row) in inputs.iter().zip(&input_rows) {
             match (*input, *row) {
-                (SeriesInput::State(rate), Some(row)) => states.push(State { row, rate: sources[rate], factor: one }),
+                (SeriesInput::State(rate), Some(row)) => states.push(State { row, rate: sources[rate] }),
                 (SeriesInput::Unknown(block), Some(row)) => implicit[block].unknowns.push(row),
                 (SeriesInput::Time, row) => time = row,
                 _ => {}

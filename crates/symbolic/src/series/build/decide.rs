@@ -12,7 +12,7 @@ impl Builder<'_> {
         for o in self.outputs {
             linear[*o as usize] += 2;
         }
-        let mut integrated = vec![false; n];
+        let (mut integrated, mut kept) = (vec![false; n], vec![false; n]);
         for (id, i) in &self.integrated {
             integrated[*id as usize] = true;
             linear[i.rate as usize] += 2;
@@ -25,6 +25,7 @@ impl Builder<'_> {
             if let Some(of) = self.derivatives.get(&(id as Id)) {
                 self.decisions[id] = Decision::Row;
                 linear[*of as usize] += 2;
+                kept[*of as usize] = true;
                 continue;
             }
             let value = self.program.value(id as Id);
@@ -33,14 +34,17 @@ impl Builder<'_> {
                 || matches!(value, Value::Add(..) | Value::Sub(..) | Value::Mul(..) | Value::Square(_));
             self.decisions[id] = if bilinear && terms == 1 && factors == 0 {
                 Decision::Absorbed
-            } else if multiple.is_some() && terms == 0 {
+            } else if multiple.is_some() && !kept[id] {
                 Decision::Peeled
             } else {
                 Decision::Row
             };
             if let Some((_, a)) = multiple {
                 match self.decisions[id] {
-                    Decision::Peeled => factor[a as usize] += factors,
+                    Decision::Peeled => {
+                        factor[a as usize] += factors;
+                        linear[a as usize] += terms;
+                    }
                     _ => linear[a as usize] += 1,
                 }
                 continue;
