@@ -188,31 +188,6 @@ fn constants_that_are_decided_beside_their_motion() {
     assert!(found(&disc).ends_with("but with those found there is no motion: singular"));
 }
 
-/// Motions that grow without bound: the costates that make a removed constraint's motion the vakonomic one are
-/// decided to four digits, its own motion ends before that, and the one with these digits is another one.
-#[test]
-fn constants_that_are_decided_to_few_digits() {
-    let scene = r#"
-title = "growing"
-coordinates = { x = { start = 7 }, y = { start = 0.4 }, z = { start = 0.4 } }
-definitions = { R = "rotation(zxz, x*x, 0.1 + x, 0.3^y)", W = "angular_velocity(R)" }
-system = { lagrangian = "(x'^2 + y'^2 + z'^2)/2 + dot(W, W)/5", constraints = ["x' - 0.001*y' - (1 + y^2)^pi"] }
-start = { project = true, velocities = { "y'" = 0.5, "z'" = 0 } }
-run = { duration = 0.5 }
-"#;
-    let mut growing = compared("growing", scene);
-    growing.fit(comparison::Fits::All, &Settings::default()).expect("fits");
-    assert_eq!(growing.contradictions(), Vec::new());
-    let [coordinates, vakonomic] = [REMOVED_CONSTRAINT, VAKONOMIC].map(|own| growing.run(own));
-    let identity = growing.fits.iter().find(|fit| (Some(fit.run), Some(fit.target)) == (coordinates, vakonomic));
-    let fitted = identity.and_then(|fit| fit.fitted.as_ref()).expect("an identity");
-    assert!((fitted.constants[0].1 + 125.819).abs() < 1e-3, "{:?}", fitted.constants);
-    let quasi = growing.decided.iter().filter_map(|decided| decided.witness.as_ref());
-    let open =
-        quasi.filter(|witness| witness.as_ref().is_ok_and(|w| matches!(w.gap.verdict, Verdict::Undecided { .. })));
-    assert_eq!(open.count(), 1);
-}
-
 #[test]
 fn none_beside_constants_that_a_search_found() {
     let mut sledge = sledge();

@@ -39,9 +39,15 @@ fn the_constants_of_a_search_are_known_to_ten_digits_and_those_of_an_identity_to
     let found = unknown(&scene, &mut motion, &[2.0 * 1e-10], &mut metric, &settings()).expect("a gap");
     let known = 2.0 * 1e-10 * slope;
     assert!((found - known).abs() < 0.05 * known, "{found:e}, {known:e}");
-    for (off, starts, word) in [(0.3, 7, "undecided"), (0.3, 0, "different"), (4.0, 7, "different")] {
+    let cases = [
+        (0.3, 7, 0.0, "undecided"),
+        (0.3, 0, 0.0, "different"),
+        (4.0, 7, 0.0, "different"),
+        (4.0, 0, 1e-9, "undecided"),
+    ];
+    for (off, starts, open, word) in cases {
         let mut runs = [run(&scene, 1.5), run(&scene, 2.0)];
-        let start = Start::Known(Found { starts, ..Found::given(vec![2.0 * (1.0 + off * 1e-10)]) });
+        let start = Start::Known(Found { starts, open: vec![open], ..Found::given(vec![2.0 * (1.0 + off * 1e-10)]) });
         let fitted = fit_run(&scene, &mut runs, 0, 1, start, &mut metric, &settings()).expect("no error");
         let fitted = fitted.expect("a constant").expect("a motion");
         assert_eq!(fitted.gap.verdict.word(), word, "{off}, {starts}: {:?}", fitted.gap.verdict);
@@ -61,10 +67,14 @@ fn constants_that_a_search_has_found_stay_only_where_they_come_closer() {
         let fitted = FittedMotion { constants: vec![("mu0_1".into(), 0.625)], by_half: gap.largest, gap, starts: 3 };
         Fit { run, target, fitted: Some(fitted), by_identity: false }
     };
-    comparison.fits = vec![fit(0.5 * own.largest), fit(2.0 * own.largest)];
+    comparison.fits = (0..4).map(|i| fit([0.5, 2.0, 2.0, 2.0][i] * own.largest)).collect();
+    // another time, and a gap of errors, say nothing of which comes closer
+    comparison.fits[2].fitted.as_mut().expect("a motion").gap.end *= 0.5;
+    comparison.fits[3].fitted.as_mut().expect("a motion").gap.verdict = Verdict::Same;
     keep_closer(&mut comparison);
     let found = |i: usize| comparison.fits[i].fitted.as_ref().map(|f| (f.constants[0].1, f.gap.largest));
     assert_eq!((found(0), found(1)), (Some((0.625, 0.5 * own.largest)), Some((0.0, own.largest))));
+    assert_eq!((found(2), found(3)), (Some((0.625, 2.0 * own.largest)), Some((0.625, 2.0 * own.largest))));
 }
 
 /// A gap of nothing, which no search comes under.

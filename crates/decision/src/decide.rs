@@ -271,16 +271,20 @@ fn judged(fine: &mut Transport, coarse: &mut Transport, paths: &[Path; 2]) -> Re
     }
 }
 
-/// Where panels begin and end: equally long ones, or the steps where these are more, short where much
-/// happens.
+/// Where panels begin and end: the steps, short where much happens, in parts no longer than one of [`PANELS`].
 fn bounds(path: &Path, start: f64, way: f64) -> Vec<f64> {
-    let steps = path.dense.as_ref().map_or(&[][..], DenseOutput::step_times);
-    if steps.len() <= PANELS {
-        return (0..=PANELS).map(|i| start + way * i as f64 / PANELS as f64).collect();
-    }
     let end = start + way;
-    let before = steps.iter().copied().filter(|t| (end - t) * way.signum() > 0.0);
-    before.chain([end]).collect()
+    let steps = path.dense.as_ref().map_or(&[][..], DenseOutput::step_times);
+    let inside = steps.iter().copied().filter(|t| (t - start) * way > 0.0 && (end - t) * way > 0.0);
+    let mut bounds = vec![start];
+    for to in inside.chain([end]) {
+        let from = bounds[bounds.len() - 1];
+        let count = ((to - from) / way * PANELS as f64).ceil().max(1.0);
+        bounds.extend(
+            (1..=count as usize).map(|i| if i as f64 == count { to } else { from + (to - from) * i as f64 / count }),
+        );
+    }
+    bounds
 }
 
 /// [`decide`] for a curve that is integrated beside the transport of the constants.

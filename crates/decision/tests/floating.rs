@@ -252,3 +252,34 @@ fn constants_that_do_for_a_moment_do_not_do() {
     assert_eq!(decision.verdict, Verdict::NotContained);
     assert!(near(decision.least, 0.0227, 0.02), "{}", decision.least);
 }
+
+/// A change of a constant by what is open leaves a mismatch within the noise; by a hundred times that, not.
+#[test]
+fn how_far_constants_are_open() {
+    let decision = is_vakonomic(&built_in("disc", &[]));
+    let (point, open) = (&decision.set.point, decision.open());
+    assert!(!point.is_empty() && decision.verdict == Verdict::Contained && decision.set.dimension() == 0);
+    for (i, by) in open.iter().enumerate() {
+        let moved = |times: f64| (0..point.len()).map(|j| point[j] + if i == j { times * by } else { 0.0 }).collect();
+        let admits = |times: f64| decision.admits(&Vec::<f64>::from_iter::<Vec<f64>>(moved(times)));
+        assert!(*by > 0.0 && *by < 1e-6 && admits(0.1) && !admits(100.0), "{i}: {open:?}");
+    }
+}
+
+/// What the constraint does in the first millisecond, which 40 parts of a second pass over.
+#[test]
+fn a_switch_at_the_start_is_seen() {
+    let text = r#"
+title = "A switch at the start"
+coordinates = { x = { start = 0.4 }, y = { start = 1.1 } }
+[system]
+lagrangian = "1.1*x'^2 + y'^2/2"
+constraints = ["x' - (x + 0.1)*y' - step(x, 0.1, 0.4, 1e-3)"]
+forces = { y = "(0.5)^(1/2)" }
+[start]
+velocities = { "y'" = 0.5 }
+[run]
+duration = 1
+"#;
+    assert_eq!(is_vakonomic(&written(text, &[])).verdict, Verdict::NotContained);
+}
