@@ -194,14 +194,14 @@ fn natural_costates_vanish() {
     let even = particle(0.0, " - y", 0.0);
     let costate = natural(&even);
     assert!((costate.abs() - 2.0).abs() < 1e-9, "{costate}");
-    on_both_sides(claim, 1e-7, |off| found(said_natural(&even, costate * (1.0 + off), &exact()), 0, claim));
+    on_both_sides(claim, 1e-9, |off| found(said_natural(&even, costate * (1.0 + off), &exact()), 0, claim));
     let bent = particle(0.0, " - y*cos(x)", 0.0);
     let costate = natural(&bent);
     assert!((costate.abs() - 2_f64.sin()).abs() < 1e-9, "{costate}");
     let mut motion = said_natural(&bent, costate, &loose()).natural.expect("a motion");
     let (kept, looser) = motion.at_in_both_runs(2.0).expect("the end");
     let apart = kept.multipliers.iter().zip(&looser.multipliers).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
-    on_both_sides(claim, 10.0 * (1e-8 + apart), |off| found(said_natural(&bent, costate + off, &loose()), 0, claim));
+    on_both_sides(claim, 10.0 * (1e-10 + apart), |off| found(said_natural(&bent, costate + off, &loose()), 0, claim));
     // one that is 10⁻¹³ of what momentum there is, twice what is natural: `4 w` in a run of 2
     for (part, word) in [(0.3, Word::Holds), (3.0, Word::Fails)] {
         let rate = part * 1e-13 / 4.0;
