@@ -127,6 +127,7 @@ struct Point<'a> {
 }
 
 #[derive(Serialize, JsonSchema)]
+#[schemars(rename = "Change")]
 struct Changed<'a> {
     #[serde(flatten)]
     change: &'a Change,

@@ -41,19 +41,22 @@ pub struct Printed {
 }
 
 /// The integrals found in an ansatz.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, serde::Serialize, schemars::JsonSchema)]
 pub struct Ansatz {
     /// Functions that are independent on `f = 0`, the number 1 not among them.
     pub functions: usize,
     /// Dimension of the integrals among their combinations, products of others included.
     pub dimension: usize,
     /// Integrals given as formulas; none is a combination of products of earlier ones.
+    #[serde(skip)]
     pub printed: Vec<Printed>,
     /// Number of other integrals, whose coefficients are not fractions of moderate size.
     pub unprinted: usize,
     /// Coordinates that the functions contain.
+    #[serde(rename = "coordinates")]
     pub names: Vec<String>,
     /// Highest degree in these, or in their sines and cosines.
+    #[serde(rename = "spatial_degree")]
     pub spatial: usize,
 }
 

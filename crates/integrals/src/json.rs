@@ -5,7 +5,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::words::{density_words, factor_words, kind, names};
-use crate::{Cyclic, Found, Integrals, Measure, Multiplier, Open, Printed, Reduction};
+use crate::{Ansatz, Cyclic, Found, Integrals, Measure, Multiplier, Open, Printed, Reduction};
 
 /// Invariant measures and first integrals: `deltaq integrals --format json`.
 #[derive(Serialize, JsonSchema)]
@@ -23,7 +23,7 @@ pub struct Answer<'a> {
     multipliers: Option<OrOpen<Vec<AnswerOfMultiplier>>>,
     /// Integrals that are polynomials in the velocities, near almost every point, degree by degree; null for
     /// another formulation than Chetaev's.
-    polynomials: Option<Vec<Polynomials>>,
+    polynomials: Option<Vec<Polynomials<'a>>>,
     ansatz: OrOpen<AnswerOfAnsatz<'a>>,
     /// The scene's own, or why none was tried.
     invariants: OrOpen<Vec<Invariant<'a>>>,
@@ -76,11 +76,11 @@ enum AnswerOfMultiplier {
 }
 
 #[derive(Serialize, JsonSchema)]
-struct Polynomials {
+struct Polynomials<'a> {
     degree: usize,
     answer: Count,
     #[serde(flatten)]
-    numbers: Option<Numbers>,
+    numbers: Option<&'a Found>,
     #[serde(skip_serializing_if = "Option::is_none")]
     reason: Option<String>,
 }
@@ -96,25 +96,10 @@ enum Count {
 }
 
 #[derive(Serialize, JsonSchema)]
-struct Numbers {
-    /// Bound for their number, proved.
-    at_most: usize,
-    /// How many of these the energy, constants and products of lower ones make.
-    trivial: usize,
-    /// Weight of the Taylor coefficients that were looked at.
-    order: usize,
-}
-
-#[derive(Serialize, JsonSchema)]
 struct AnswerOfAnsatz<'a> {
-    /// That are independent on the constraints.
-    functions: usize,
-    coordinates: &'a [String],
-    spatial_degree: usize,
-    /// Of the constant combinations, the number 1 not among them.
-    dimension: usize,
+    #[serde(flatten)]
+    found: &'a Ansatz,
     printed: Vec<Integral<'a>>,
-    unprinted: usize,
 }
 
 #[derive(Serialize, JsonSchema)]
@@ -171,21 +156,6 @@ impl Integrals {
                 }
             }
         };
-        let count = |(i, found): (usize, &Result<Found, Open>)| match found {
-            Err(open) => {
-                Polynomials { degree: i + 1, answer: Count::Open, numbers: None, reason: Some(open.to_string()) }
-            }
-            Ok(found) => Polynomials {
-                degree: found.degree,
-                answer: match found {
-                    _ if found.none_proved() => Count::None,
-                    _ if found.settled => Count::Local,
-                    _ => Count::Open,
-                },
-                numbers: Some(Numbers { at_most: found.count, trivial: found.trivial, order: found.order }),
-                reason: None,
-            },
-        };
         Answer {
             scene: &self.scene.name,
             formulation: self.formulation,
@@ -195,12 +165,8 @@ impl Integrals {
                 .map(|found| OrOpen::of(found.reductions.as_ref(), |found| found.iter().map(multiplier).collect())),
             polynomials: reversed.map(|found| found.integrals.iter().enumerate().map(count).collect()),
             ansatz: OrOpen::of(self.ansatz.as_ref(), |found| AnswerOfAnsatz {
-                functions: found.functions,
-                coordinates: &found.names,
-                spatial_degree: found.spatial,
-                dimension: found.dimension,
+                found,
                 printed: found.printed.iter().enumerate().map(|(i, integral)| self.printed(i, integral)).collect(),
-                unprinted: found.unprinted,
             }),
             invariants: OrOpen::of(self.invariants.as_ref(), |found| {
                 found.iter().map(|(name, constant)| Invariant { name, constant: *constant }).collect()
@@ -216,5 +182,22 @@ impl Integrals {
             drift: self.drifts.as_ref().ok().map(|drifts| drifts[i].of_terms()),
             no_motion: self.drifts.as_ref().err().map(String::as_str),
         }
+    }
+}
+
+/// Of the degree after `i`.
+fn count((i, found): (usize, &Result<Found, Open>)) -> Polynomials<'_> {
+    match found {
+        Err(open) => Polynomials { degree: i + 1, answer: Count::Open, numbers: None, reason: Some(open.to_string()) },
+        Ok(found) => Polynomials {
+            degree: found.degree,
+            answer: match found {
+                _ if found.none_proved() => Count::None,
+                _ if found.settled => Count::Local,
+                _ => Count::Open,
+            },
+            numbers: Some(found),
+            reason: None,
+        },
     }
 }

@@ -49,15 +49,18 @@ pub struct Cyclic {
 
 /// How many independent integrals there are that are polynomials of one degree in the velocities, and of
 /// lower degrees of the same parity beside it, near almost every point.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, serde::Serialize, schemars::JsonSchema)]
 pub struct Found {
     /// Of the polynomials.
+    #[serde(skip)]
     pub degree: usize,
     /// Their number, over the real numbers: an upper bound always, and the number itself if `settled`.
+    #[serde(rename = "at_most")]
     pub count: usize,
     /// How many of them the energy, constants and products of those of lower degrees make.
     pub trivial: usize,
     /// Whether the number stays over as many orders as brackets have.
+    #[serde(skip)]
     pub settled: bool,
     /// The weight to which Taylor series were looked at.
     pub order: usize,

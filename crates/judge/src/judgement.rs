@@ -36,6 +36,7 @@ pub struct Drift {
 
 /// How far one constraint is off.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, JsonSchema)]
+#[schemars(rename = "Constraint")]
 pub struct Residual {
     /// Largest `|f|`.
     pub largest: f64,

@@ -21,9 +21,9 @@ pub fn stubbed(_: TokenStream, item: TokenStream) -> TokenStream {
     made(syn::parse(item).and_then(|item| with_stub(|stub| described(item, stub))))
 }
 
-/// A class of fields that Python reads, those of the stubs, by which it is pickled: `#[answer] struct State;`.
-/// What Rust adds as a field has its default value when it is read again. `#[answer("<State t={t}>")]`
-/// says how it is printed.
+/// A class of fields that Python reads, those of the stubs, by which it is pickled:
+/// `#[answer] struct State;`. What Rust adds as a field has its default value when it is read again.
+/// `#[answer("<State t={t}>")]` says how it is printed.
 #[proc_macro_attribute]
 pub fn answer(printed: TokenStream, item: TokenStream) -> TokenStream {
     let printed = syn::parse::<Option<LitStr>>(printed);

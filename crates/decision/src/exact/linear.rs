@@ -81,8 +81,8 @@ impl Echelon {
         true
     }
 
-    /// Columns of `width` without a pivot, and for each the vector of the kernel that has 1 there and 0 in the
-    /// others.
+    /// Columns of `width` without a pivot, and for each the vector of the kernel that has 1 there and 0 in
+    /// the others.
     pub(crate) fn kernel(self, width: usize) -> (Vec<usize>, Vec<Vec<Modular>>) {
         let mut pivots = self.0;
         pivots.sort_by_key(|(pivot, _)| *pivot);
