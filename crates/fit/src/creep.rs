@@ -11,7 +11,8 @@ use crate::profile::Profile;
 use crate::search::{HALVINGS, NEAR_STEPS};
 use crate::{Estimate, Fit, FitError, Problem, Unknown};
 
-/// `problem` with a bound for its unknown `i`, 1/N: the least of its halves with which motions can be followed.
+/// `problem` with a bound for its unknown `i`, 1/N: the least of its halves with which motions can be
+/// followed.
 pub(crate) fn followed(problem: &Problem, i: usize) -> Problem {
     let start = problem.start()[i];
     let mut tried = problem.limited(problem.start(), NEAR_STEPS);

@@ -238,8 +238,8 @@ fn followed(
     Ok((starts, excluded_by))
 }
 
-/// Starts that have to lead to the least χ² of a formulation before it is excluded, and that are fitted to the
-/// whole film at once beside the first one.
+/// Starts that have to lead to the least χ² of a formulation before it is excluded, and that are fitted to
+/// the whole film at once beside the first one.
 pub(crate) const SEVERAL: usize = 2;
 /// Films that are looked at alone.
 const ALONE: usize = 3;

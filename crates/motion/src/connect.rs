@@ -223,8 +223,9 @@ fn search(problem: &mut TwoPoint, guess: &[f64], settings: &Settings) -> Result<
     Ok(shoot(problem, guess, &ShootOptions::with_tolerance(RESIDUAL * TIGHTER * settings.tolerance))?.unknowns)
 }
 
-/// The same, which every second guess tries first, where a motion that takes less time is found first, and followed as it takes more and more: what
-/// a long motion folds, a short one does not. Velocities go as one over the time.
+/// The same where a motion that takes less time is found first, and followed as it takes more and more: what
+/// a long motion folds, a short one does not. Velocities go as one over the time. Every second guess tries it
+/// first.
 fn grown(problem: &mut TwoPoint, guess: &[f64], settings: &Settings) -> Option<Vec<f64>> {
     let (start, end) = (problem.scene_start.t, problem.aim.t);
     let (mut part, mut step) = (BEGINNING, BEGINNING);

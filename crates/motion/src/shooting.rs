@@ -5,8 +5,8 @@
 //! number of the first start that led to it, so that one search says what half of its starts would have found
 //! ([`least_from`]).
 
-/// Steps that a run of a search may take, over those of the run from its guess: beside a singularity a run may
-/// take a thousand times more, and the search does not get past it.
+/// Steps that a run of a search may take, over those of the run from its guess: beside a singularity a run
+/// may take a thousand times more, and the search does not get past it.
 pub const LONGER: usize = 4;
 
 /// A motion that is found by way of shorter ones begins with this part of the time.

@@ -5,8 +5,8 @@ use crate::connect::two_point::TwoPoint;
 use crate::shooting::Minimum;
 use symbolic::limits::SAME;
 
-/// Two results of searches, or curves, and two final results are one where unknowns differ by less, in units of
-/// the problem.
+/// Two results of searches, or curves, and two final results are one where unknowns differ by less, in units
+/// of the problem.
 pub(super) const ONE: [f64; 2] = [1e-4, SAME];
 
 /// Motions that are one curve, once, with the least constants: one for several constants has an abnormal

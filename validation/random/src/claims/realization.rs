@@ -15,7 +15,8 @@ pub(super) const STRENGTH: f64 = 1e2;
 /// The first `κ` in 1/s, in the same way: large ones make the equations stiff.
 const KAPPA: f64 = 1e1;
 
-/// Distances measured, and one more where these have not shown it yet: `a/N + b/N² + …` shrinks tenfold in the end, and how soon depends on `b/a`.
+/// Distances measured, and one more where these have not shown it yet: `a/N + b/N² + …` shrinks tenfold in
+/// the end, and how soon depends on `b/a`.
 const FEW: i32 = 3;
 
 /// What the distance must shrink by at last. `O(1/N)` is ten, and more where the first term vanishes.
