@@ -48,8 +48,8 @@ pub(crate) struct Bilinear {
 /// Terms of an addition with and without weights.
 pub(crate) const TERMS: usize = 4;
 
-/// `target = Σ plain + Σ weight · row`, of the same order, or `weight · unit · row` of the order before where a
-/// term is late. A longer sum goes on from what is in its target already.
+/// `target = Σ plain + Σ weight · row`, of the same order, or `weight · unit · row` of the order before where
+/// a term is late. A longer sum goes on from what is in its target already.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Addition {
     pub(crate) target: Row,

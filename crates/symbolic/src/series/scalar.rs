@@ -1,9 +1,9 @@
 //! The number types of power series, and how each multiplies series.
 //!
-//! Numbers of 64 bits are multiplied in packs: eight products of series at a time, one per lane, each summed as
-//! if it were alone. `pulp` picks the processor's instructions; sums have one order on all, and so one result.
-//! The loops are bound by their number of instructions: one product at a time, in groups of eight coefficients,
-//! took two to three times as many.
+//! Numbers of 64 bits are multiplied in packs: eight products of series at a time, one per lane, each summed
+//! as if it were alone. `pulp` picks the processor's instructions; sums have one order on all, and so one
+//! result. The loops are bound by their number of instructions: one product at a time, in groups of eight
+//! coefficients, took two to three times as many.
 
 use super::lanes::{LANES, Lanes};
 use crate::Scalar;
@@ -105,8 +105,8 @@ impl SeriesScalar for f64 {
 }
 
 impl SeriesScalar for Lanes {
-    /// Two orders at once from an even `k` on: coefficients are read once for both. What the second still waits
-    /// for then, the two terms with the newest coefficients, is added when it is due.
+    /// Two orders at once from an even `k` on: coefficients are read once for both. What the second still
+    /// waits for then, the two terms with the newest coefficients, is added when it is due.
     #[inline(always)]
     fn multiply(rows: &mut [Lanes], products: &Products, _: &mut Packs, k: usize, share: Option<Lanes>) {
         let newest = k - 1;
