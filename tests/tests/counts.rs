@@ -3,8 +3,8 @@
 
 use comparison::{Comparison, Extent};
 use motion::{
-    CHETAEV, Ensemble, EnsembleOptions, Prepared, Settings, choices, derive_in_form, error_estimate, setting,
-    solve_choice,
+    Aim, CHETAEV, Ensemble, EnsembleOptions, Prepared, Settings, VAKONOMIC, choices, connect, derive_in_form,
+    error_estimate, setting, solve_choice,
 };
 use scene::Scene;
 use symbolic::faults::chances;
@@ -112,6 +112,22 @@ fn what_is_asked_of_a_motion_derives_and_plans_nothing() {
         });
         assert!(asked.iter().all(|asked| *asked == (50, [0, 0])), "{name}: {asked:?}");
     }
+}
+
+/// One motion is found from every start. A start more costs runs, and neither derivations nor plans.
+#[test]
+fn a_search_between_points_derives_and_plans_once_for_all_starts() {
+    let to = [("x", 0.2), ("y", 0.5), ("z", 0.3)].map(|(name, q)| (name.to_owned(), q)).to_vec();
+    let searched = [2, 8].map(|starts| {
+        let scene = scene("heisenberg");
+        let choice = choices(&scene).into_iter().find(|choice| choice.formulation == VAKONOMIC).expect("it is there");
+        let aim = Aim { t: 8.0, to: to.clone(), starts, threads: 1 };
+        let (found, count) = counted(|| connect(&scene, &choice, &aim, &Settings::default()).expect("a search"));
+        (found.found.len(), found.runs, count)
+    });
+    let [(one, few, count), (same, many, again)] = searched;
+    assert!(one == 1 && same == 1 && count == again && count[DERIVE] > 0, "{searched:?}");
+    assert!(many[0] > few[0] && many[0] < 100 * 8 && many[1] < 40 * 8, "{searched:?}");
 }
 
 #[test]

@@ -125,11 +125,6 @@ impl Compiled {
         Ok(())
     }
 
-    /// Gives back the room that expansions work in, half a megabyte each: the next one takes some anew.
-    pub fn give_back(&mut self) {
-        self.series.iter_mut().chain(&mut self.plain_series).for_each(Series::give_back);
-    }
-
     /// Whether [`Compiled::with_jacobian`] was called.
     pub fn has_jacobian(&self) -> bool {
         self.jacobian.is_some()

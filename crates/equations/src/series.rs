@@ -108,10 +108,6 @@ impl<T: SeriesScalar> Series<T> {
         self.tape.work()
     }
 
-    pub(crate) fn give_back(&mut self) {
-        self.workspace = None;
-    }
-
     /// The coefficients of a state from the last expansion; none of one that is constant in time.
     pub(crate) fn state(&self, i: usize) -> Option<&[T]> {
         self.input(1 + i)

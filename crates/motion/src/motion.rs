@@ -265,7 +265,6 @@ impl Motion {
     pub(crate) fn of(mut prepared: Prepared, runs: Runs, method: Option<Chosen>, seconds: Seconds) -> Self {
         let Runs { trajectories: [mut kept, mut looser], changes, ending, work, projection, fallbacks } = runs;
         let wanted = kept.thinned_to().or(looser.thinned_to()).cloned();
-        prepared.compiled.give_back();
         Motion {
             end: readable_end(&mut prepared.compiled, &mut kept, &mut looser, wanted.as_deref()),
             wanted,

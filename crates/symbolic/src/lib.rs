@@ -63,7 +63,6 @@ pub use questions::range::Range;
 pub use questions::steep::Steep;
 pub use series::{
     Correct, Dual, LANES, Lanes, Packs, Product, Products, SeriesInput, SeriesScalar, SeriesTape, SeriesWorkspace,
-    Store, Task,
 };
 #[doc(hidden)]
 pub use store::faults;

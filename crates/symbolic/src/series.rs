@@ -11,7 +11,7 @@ pub use dual::Dual;
 use expansion::Expansion;
 pub use lanes::{LANES, Lanes};
 use scalar::Place;
-pub use scalar::{Packs, Product, Products, SeriesScalar, Store, Task, Window};
+pub use scalar::{Packs, Product, Products, SeriesScalar};
 
 /// What an input of a [`SeriesTape`] is as a function of time.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -48,8 +48,8 @@ pub(crate) struct Bilinear {
 /// Terms of an addition with and without weights.
 pub(crate) const TERMS: usize = 4;
 
-/// `target = Σ plain + Σ weight · row`, of the same order, or `weight · unit · row` of the order before where a
-/// term is late. A longer sum goes on from what is in its target already.
+/// `target = Σ plain + Σ weight · row`, of the same order, or `weight · unit · row` of the order before where
+/// a term is late. A longer sum goes on from what is in its target already.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Addition {
     pub(crate) target: Row,
@@ -150,12 +150,10 @@ pub struct SeriesTape {
 }
 
 /// The series of one thread that works with one [`SeriesTape`].
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct SeriesWorkspace<T: SeriesScalar> {
     /// Coefficients, series after series.
     rows: Vec<T>,
-    /// Number of these coefficients in use.
-    used: usize,
     packs: Packs,
     plan: Plan<T>,
 }
@@ -197,40 +195,6 @@ struct Placed<T> {
     weights: [T; TERMS],
 }
 
-/// Most of the room is never touched; nor is it by a copy.
-impl<T: SeriesScalar> Clone for SeriesWorkspace<T> {
-    fn clone(&self) -> Self {
-        let mut rows = zeros::<T>(self.rows.len());
-        rows[..self.used].copy_from_slice(&self.rows[..self.used]);
-        SeriesWorkspace { rows, used: self.used, packs: self.packs.clone(), plan: self.plan.clone() }
-    }
-}
-
-/// Room that is given back is zero again.
-impl<T: SeriesScalar> Drop for SeriesWorkspace<T> {
-    fn drop(&mut self) {
-        let Some(spare) = T::spare() else { return };
-        let mut rows = std::mem::take(&mut self.rows);
-        rows[..self.used].fill(T::from_f64(0.0));
-        // not where the thread is at its end
-        let _ = spare.try_with(|spare| {
-            let mut spare = spare.borrow_mut();
-            if spare.len() < SPARE {
-                spare.push(rows);
-            }
-        });
-    }
-}
-
-/// Number of spare workspaces per thread: a motion takes one, or two where its plan may fail.
-const SPARE: usize = 4;
-
-/// Memory for at least `count` coefficients, all zero; a spare workspace if one is large enough.
-fn zeros<T: SeriesScalar>(count: usize) -> Vec<T> {
-    let kept = T::spare().and_then(|spare| spare.try_with(|spare| spare.borrow_mut().pop()).ok().flatten());
-    kept.filter(|rows| rows.len() >= count).unwrap_or_else(|| vec![T::from_f64(0.0); count])
-}
-
 impl<T: SeriesScalar> SeriesWorkspace<T> {
     /// The highest order of the states.
     pub fn order(&self) -> usize {
@@ -265,19 +229,17 @@ impl SeriesTape {
     /// Room for states up to `order ≥ 1` (other values: one less).
     pub fn workspace<T: SeriesScalar>(&self, order: usize) -> SeriesWorkspace<T> {
         let (plan, used) = self.plan(order);
-        SeriesWorkspace { rows: zeros(T::room(used, plan.stride)), used, packs: Packs::default(), plan }
+        let packs = if T::GROUP == LANES { used / plan.stride - self.rows } else { 0 };
+        let room = plan.order;
+        let factors = vec![Lanes([0.0; LANES]); 2 * room * packs];
+        SeriesWorkspace { rows: vec![T::from_f64(0.0); used], packs: Packs { factors, room }, plan }
     }
 
     /// The same room for this order, if it is for another one.
     pub fn reorder<T: SeriesScalar>(&self, workspace: &mut SeriesWorkspace<T>, order: usize) {
-        if workspace.order() == order {
-            return;
+        if workspace.order() != order {
+            *workspace = self.workspace(order);
         }
-        let ((plan, used), zero) = (self.plan(order), T::from_f64(0.0));
-        workspace.rows[..workspace.used].fill(zero);
-        let room = T::room(used, plan.stride).max(workspace.rows.len());
-        workspace.rows.resize(room, zero);
-        (workspace.used, workspace.plan) = (used, plan);
     }
 
     /// The plan, and the number of coefficients that it uses.
@@ -285,13 +247,14 @@ impl SeriesTape {
         let order = order.max(1);
         let stride = (order + 1 + T::GROUP).next_multiple_of(T::GROUP);
         let zero = T::from_f64(0.0);
-        let stride_of_places = Place::try_from(stride).expect("an order below 2^32");
+        let place = |place: usize| Place::try_from(place).expect("fewer than 2^32 coefficients");
+        let at = |row: Row| place(row as usize * stride);
         // products of a list side by side, as many as a group takes
-        let mut places: Vec<Place> = (0..self.rows as Place).map(|row| row * stride_of_places).collect();
-        let mut used = self.rows as Place;
+        let mut places: Vec<Place> = (0..self.rows as Row).map(at).collect();
+        let mut used = self.rows;
         let mut products = |list: &Vec<Bilinear>| {
             let first = places.len();
-            let target = |i: usize| (used + (i / T::GROUP) as Place) * stride_of_places + (i % T::GROUP) as Place;
+            let target = |i: usize| place((used + i / T::GROUP) * stride + i % T::GROUP);
             places.extend((0..list.len()).map(target));
             let mut placed: Vec<Product> = list
                 .iter()
@@ -305,13 +268,13 @@ impl SeriesTape {
             // what a group lacks is multiplied for nothing
             let groups = list.len().div_ceil(T::GROUP);
             placed.resize(groups * T::GROUP, Product::default());
-            let from = used as usize - self.rows;
-            used += groups as Place;
+            let from = used - self.rows;
+            used += groups;
             Products { list: placed, from }
         };
-        let pair = |&(a, b): &(Row, Row)| (a * stride_of_places, b * stride_of_places);
+        let pair = |&(a, b): &(Row, Row)| (at(a), at(b));
         let moving = |state: &State| match state.rate {
-            Source::Row(rate, _) => Some((state.row * stride_of_places, rate * stride_of_places, zero)),
+            Source::Row(rate, _) => Some((at(state.row), at(rate), zero)),
             Source::Steady(_) => None,
         };
         let groups = self.groups.each_ref().map(|group| PlacedGroup {
@@ -319,12 +282,12 @@ impl SeriesTape {
             products: group.products.each_ref().map(&mut products),
             slopes: group.slopes.iter().map(pair).collect(),
         });
-        let at = |row: &Row| places[*row as usize] + 1;
+        let first = |row: &Row| places[*row as usize] + 1;
         let placed = |a: &Addition| Placed {
-            target: at(&a.target),
+            target: first(&a.target),
             kind: (a.counts[0] * (TERMS + 1) + a.counts[1]) as u8,
-            plain: a.plain.each_ref().map(at),
-            terms: a.terms.each_ref().map(|term| at(&term.row) - Place::from(term.late)),
+            plain: a.plain.each_ref().map(first),
+            terms: a.terms.each_ref().map(|term| first(&term.row) - Place::from(term.late)),
             weights: [zero; TERMS],
         };
         let plan = Plan {
@@ -339,7 +302,7 @@ impl SeriesTape {
             orders: (0..=order + 1).map(|k| T::from_f64(k as f64)).map(|k| (k, T::from_f64(1.0) / k)).collect(),
             residual: vec![zero; self.blocks.iter().map(|b| b.residuals.len()).max().unwrap_or(0)],
         };
-        (plan, used as usize * stride)
+        (plan, used * stride)
     }
 
     /// Computes all orders from the inputs at order 0, where unknowns must solve their equations.
@@ -359,13 +322,17 @@ impl SeriesTape {
         sweeps: usize,
         correct: Correct<T>,
     ) {
-        let SeriesWorkspace { rows, used, packs, plan } = workspace;
+        let SeriesWorkspace { rows, packs, plan } = workspace;
         assert!(
             plan.values.len() == self.first.outputs() && plan.additions.len() == self.additions.len(),
             "the workspace of another tape"
         );
         self.start(inputs, unit, rows, plan);
-        T::dispatch(rows, *used, (packs, plan.order), Expansion { tape: self, plan, sweeps, correct });
+        let expansion = Expansion { tape: self, plan, packs, sweeps, correct };
+        pulp::Arch::new().dispatch(
+            #[inline(always)]
+            move || expansion.run(rows),
+        );
     }
 
     /// The coefficients of an input, orders 0 to that of the workspace; `None` if it is constant in time.

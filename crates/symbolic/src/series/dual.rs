@@ -4,7 +4,7 @@ use std::array::from_fn;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
 use super::lanes::{LANES, Lanes};
-use super::scalar::{Packs, Product, Products, SeriesScalar, Store, Task};
+use super::scalar::{Packs, Products, SeriesScalar};
 use crate::{Fraction, Scalar};
 
 /// `x + Σ_l ẋ_l ε_l` with `ε_l ε_m = 0`: what is computed from such numbers has its exact derivatives.
@@ -154,32 +154,13 @@ impl Scalar for Dual {
     }
 }
 
+/// An order is added up at once, in registers.
 impl SeriesScalar for Dual {
-    fn dispatch<F: Task<Dual>>(rows: &mut [Dual], _: usize, _: (&mut Packs, usize), task: F) {
-        pulp::Arch::new().dispatch(
-            #[inline(always)]
-            move || task.run(&mut Rows(rows)),
-        );
-    }
-}
-
-/// Rows of numbers with tangents: an order is added up at once, in registers.
-struct Rows<'a>(&'a mut [Dual]);
-
-impl Store<Dual> for Rows<'_> {
-    type Window = [Dual];
-
     #[inline(always)]
-    fn window(&mut self, first: usize) -> &mut [Dual] {
-        &mut self.0[first..]
-    }
-
-    #[inline(always)]
-    fn multiply(&mut self, products: &Products, k: usize, share: Option<Dual>) {
-        for Product { target, left, right } in &products.list {
+    fn multiply(rows: &mut [Dual], products: &Products, _: &mut Packs, k: usize, share: Option<Dual>) {
+        for [target, left, right] in products.places() {
             let square = left == right;
-            let [target, left, right] = [target, left, right].map(|p| *p as usize);
-            let (x, y) = (&self.0[left + 1..left + k], &self.0[right + 1..right + k]);
+            let (x, y) = (&rows[left + 1..left + k], &rows[right + 1..right + k]);
             let (mut value, mut sums) = (0.0, [Lanes([0.0; LANES]); 2]);
             for (a, b) in x.iter().zip(y.iter().rev()) {
                 value += a.value * b.value;
@@ -190,7 +171,7 @@ impl Store<Dual> for Rows<'_> {
             }
             let tangents = sums[0] + if square { sums[0] } else { sums[1] };
             let sum = Dual { value, tangents };
-            self.0[target + k] = share.map_or(sum, |share| sum * share);
+            rows[target + k] = share.map_or(sum, |share| sum * share);
         }
     }
 }

@@ -1,15 +1,15 @@
 //! Computation of the orders after the first, one by one.
 
-use super::scalar::Place;
-use super::{Correct, Implicit, Placed, Plan, SeriesScalar, SeriesTape, Source, Store, TERMS, Task, Window};
+use super::scalar::Packs;
+use super::{Correct, Implicit, Placed, Plan, SeriesScalar, SeriesTape, Source, TERMS};
 
 impl<T: SeriesScalar> Placed<T> {
     /// The sum of `P` plain and `N` weighted terms, in pairs; the last, for which it may have to wait, last.
     #[inline(always)]
-    fn sum<const P: usize, const N: usize>(&self, rows: &(impl Window<T> + ?Sized)) -> T {
+    fn sum<const P: usize, const N: usize>(&self, rows: &[T]) -> T {
         let term = |i: usize| match i < P {
-            true => rows.get(self.plain[i]),
-            false => self.weights[i - P] * rows.get(self.terms[i - P]),
+            true => rows[self.plain[i] as usize],
+            false => self.weights[i - P] * rows[self.terms[i - P] as usize],
         };
         let count = P + N;
         if count < 2 {
@@ -31,25 +31,25 @@ impl<T: SeriesScalar> Placed<T> {
 impl<T: SeriesScalar> Plan<T> {
     /// Order `k` of the products of a group.
     #[inline(always)]
-    fn multiply<S: Store<T> + ?Sized>(&self, rows: &mut S, group: usize, k: usize) {
+    fn multiply(&self, rows: &mut [T], packs: &mut Packs, group: usize, k: usize) {
         let [plain, over] = &self.groups[group].products;
-        rows.multiply(plain, k, None);
-        rows.multiply(over, k, Some(self.orders[k].1));
+        T::multiply(rows, plain, packs, k, None);
+        T::multiply(rows, over, packs, k, Some(self.orders[k].1));
     }
 
     /// Order `k` of the states of a group.
     #[inline(always)]
-    fn integrate<S: Store<T> + ?Sized>(&self, rows: &mut S, group: usize, k: usize) {
-        let (before, share) = (rows.window(k - 1), self.orders[k].1);
+    fn integrate(&self, rows: &mut [T], group: usize, k: usize) {
+        let (before, share) = (&mut rows[k - 1..], self.orders[k].1);
         for (state, rate, factor) in &self.groups[group].states {
-            before.set(state + 1, before.get(*rate) * (*factor * share));
+            before[*state as usize + 1] = before[*rate as usize] * (*factor * share);
         }
     }
 
     /// Order `k` of sums.
     #[inline(always)]
-    fn add<S: Store<T> + ?Sized>(rows: &mut S, k: usize, additions: &[Placed<T>]) {
-        let rows = rows.window(k - 1);
+    fn add(rows: &mut [T], k: usize, additions: &[Placed<T>]) {
+        let rows = &mut rows[k - 1..];
         macro_rules! kinds {
             ($($kind:literal $plain:literal $weighted:literal,)*) => {
                 for addition in additions {
@@ -57,7 +57,7 @@ impl<T: SeriesScalar> Plan<T> {
                         $($kind => addition.sum::<$plain, $weighted>(rows),)*
                         _ => addition.sum::<TERMS, TERMS>(rows),
                     };
-                    rows.set(addition.target, sum);
+                    rows[addition.target as usize] = sum;
                 }
             };
         }
@@ -69,17 +69,17 @@ impl<T: SeriesScalar> Plan<T> {
 
     /// Order `k` of `τ x'`.
     #[inline(always)]
-    fn slopes<S: Store<T> + ?Sized>(&self, rows: &mut S, group: usize, k: usize) {
-        let (newest, factor) = (rows.window(k), self.orders[k].0);
+    fn slopes(&self, rows: &mut [T], group: usize, k: usize) {
+        let (newest, factor) = (&mut rows[k..], self.orders[k].0);
         for (slope, of) in &self.groups[group].slopes {
-            newest.set(*slope, newest.get(*of) * factor);
+            newest[*slope as usize] = newest[*of as usize] * factor;
         }
     }
 
     /// Order `k ≥ 1` of what is computed one order ahead.
     #[inline(always)]
-    fn lead<S: Store<T> + ?Sized>(&self, rows: &mut S, k: usize, additions: usize) {
-        self.multiply(rows, AHEAD, k);
+    fn lead(&self, rows: &mut [T], packs: &mut Packs, k: usize, additions: usize) {
+        self.multiply(rows, packs, AHEAD, k);
         self.integrate(rows, AHEAD, k);
         Plan::add(rows, k, &self.additions[..additions]);
         self.slopes(rows, AHEAD, k);
@@ -87,10 +87,10 @@ impl<T: SeriesScalar> Plan<T> {
 
     /// Order `k` of time derivatives.
     #[inline(always)]
-    fn differentiate<S: Store<T> + ?Sized>(&self, rows: &mut S, k: usize) {
-        let (newest, factor) = (rows.window(k), self.orders[k + 1].0 * self.frequency);
+    fn differentiate(&self, rows: &mut [T], k: usize) {
+        let (newest, factor) = (&mut rows[k..], self.orders[k + 1].0 * self.frequency);
         for (derivative, of) in &self.derivatives {
-            newest.set(*derivative, newest.get(of + 1) * factor);
+            newest[*derivative as usize] = newest[*of as usize + 1] * factor;
         }
     }
 }
@@ -102,6 +102,7 @@ const OTHERS: usize = 1;
 pub(super) struct Expansion<'a, 'c, T> {
     pub(super) tape: &'a SeriesTape,
     pub(super) plan: &'a mut Plan<T>,
+    pub(super) packs: &'a mut Packs,
     pub(super) sweeps: usize,
     pub(super) correct: Correct<'c, T>,
 }
@@ -109,42 +110,42 @@ pub(super) struct Expansion<'a, 'c, T> {
 impl<T: SeriesScalar> Expansion<'_, '_, T> {
     /// The unknowns of one block at order `k`, and what depends on them.
     #[inline(always)]
-    fn solve<S: Store<T> + ?Sized>(&mut self, rows: &mut S, k: usize, block: usize) {
+    fn solve(&mut self, rows: &mut [T], k: usize, block: usize) {
         let (tape, plan) = (self.tape, &mut *self.plan);
         let (from, to) = (tape.stages[2 + block], tape.stages[3 + block]);
         let Implicit { unknowns, residuals } = &tape.blocks[block];
-        let (newest, stride) = (rows.window(k), plan.stride as Place);
-        unknowns.iter().for_each(|unknown| newest.set(unknown * stride, T::from_f64(0.0)));
+        let (newest, stride) = (&mut rows[k..], plan.stride);
+        unknowns.iter().for_each(|unknown| newest[*unknown as usize * stride] = T::from_f64(0.0));
         for _ in 0..self.sweeps {
             Plan::add(rows, k, &plan.additions[from..to]);
-            let newest = rows.window(k);
+            let newest = &mut rows[k..];
             for (residual, source) in plan.residual.iter_mut().zip(residuals) {
                 *residual = match source {
-                    Source::Row(row, factor) => newest.get(row * stride) * plan.values[*factor as usize],
+                    Source::Row(row, factor) => newest[*row as usize * stride] * plan.values[*factor as usize],
                     Source::Steady(_) => T::from_f64(0.0),
                 };
             }
             (self.correct)(block, &mut plan.residual[..residuals.len()]);
             for (unknown, change) in unknowns.iter().zip(&plan.residual) {
-                newest.set(unknown * stride, newest.get(unknown * stride) + *change);
+                let unknown = &mut newest[*unknown as usize * stride];
+                *unknown = *unknown + *change;
             }
         }
         Plan::add(rows, k, &plan.additions[from..to]);
     }
-}
 
-impl<T: SeriesScalar> Task<T> for Expansion<'_, '_, T> {
+    /// All orders, in turn.
     #[inline(always)]
-    fn run<S: Store<T> + ?Sized>(mut self, rows: &mut S) {
+    pub(super) fn run(mut self, rows: &mut [T]) {
         let order = self.plan.order;
         let (ahead, unknown) = (self.tape.stages[0], self.tape.stages[2]);
         let leads = ahead > 0 || !self.plan.groups[AHEAD].states.is_empty();
         if leads {
-            self.plan.lead(rows, 1, ahead);
+            self.plan.lead(rows, self.packs, 1, ahead);
         }
         for k in 1..=order {
             if k < order {
-                self.plan.multiply(rows, OTHERS, k);
+                self.plan.multiply(rows, self.packs, OTHERS, k);
             }
             // Only now, so that no product waits for a coefficient that was just written.
             self.plan.integrate(rows, OTHERS, k);
@@ -155,7 +156,7 @@ impl<T: SeriesScalar> Task<T> for Expansion<'_, '_, T> {
             if leads {
                 next = self.tape.stages[1];
                 Plan::add(rows, k, &self.plan.additions[ahead..next]);
-                self.plan.lead(rows, k + 1, ahead);
+                self.plan.lead(rows, self.packs, k + 1, ahead);
                 self.plan.differentiate(rows, k);
             }
             Plan::add(rows, k, &self.plan.additions[next..unknown]);
