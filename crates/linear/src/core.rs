@@ -1,11 +1,12 @@
 //! The eigenvalues of one block other than zero.
 
 use mechanics::SingularValues;
-use nalgebra::{DMatrix, DVector, Schur, linalg::balancing::balance_parlett_reinsch};
+use nalgebra::{DMatrix, DVector, Schur};
 use num_complex::Complex;
 use symbolic::limits::ITERATIONS;
 
 use crate::discs::Discs;
+use crate::matrix::balanced;
 use crate::weyl::Weyl;
 
 /// Axes in which it is tried.
@@ -56,17 +57,6 @@ pub(crate) fn allowed(matrix: &DMatrix<f64>, noise: &DMatrix<f64>) -> f64 {
 pub(crate) fn nullity(svd: &SingularValues, error: f64) -> usize {
     let limit = svd.values.len() as f64 * error;
     svd.values.iter().filter(|&&s| s <= limit).count()
-}
-
-/// A matrix in units in which its rows are about as large as its columns, its errors in them, and the units.
-pub(crate) fn balanced(mut matrix: DMatrix<f64>, noise: DMatrix<f64>) -> (DMatrix<f64>, DMatrix<f64>, DVector<f64>) {
-    let units = balance_parlett_reinsch(&mut matrix);
-    let noise = in_units(noise, &units);
-    (matrix, noise, units)
-}
-
-pub(crate) fn in_units(matrix: DMatrix<f64>, units: &DVector<f64>) -> DMatrix<f64> {
-    DMatrix::from_fn(matrix.nrows(), matrix.nrows(), |i, j| matrix[(i, j)] * units[j] / units[i])
 }
 
 /// Most entries that are not zero with no two in a row or column: the rank of almost all matrices with these.

@@ -7,7 +7,7 @@
 use nalgebra::DMatrix;
 use num_complex::Complex;
 
-use crate::spectrum::part;
+use crate::matrix::part;
 
 /// Points on a circle round an eigenvalue, and of a contour.
 const ROUND: usize = 8;

@@ -8,8 +8,8 @@ use symbolic::limits::{ITERATIONS, NOTHING};
 use crate::LinearError;
 use crate::limits::ROUNDINGS;
 use crate::linearization::{Moving, moving};
+use crate::matrix::part;
 use crate::point::{COORDINATES, Point, VELOCITIES, at};
-use crate::spectrum::part;
 
 /// Steps of Runge and Kutta along one displacement.
 const PARTS: usize = 100;

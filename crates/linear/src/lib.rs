@@ -56,6 +56,7 @@ mod error;
 mod find;
 mod limits;
 mod linearization;
+mod matrix;
 mod point;
 mod scales;
 mod spectrum;

@@ -11,8 +11,9 @@ use serde::{Serialize, Serializer};
 use symbolic::limits::NOTHING;
 use symbolic::question;
 
+use crate::matrix::part;
 use crate::point::{COORDINATES, Point, VELOCITIES, in_quasi_velocities};
-use crate::spectrum::{part, sort};
+use crate::spectrum::sort;
 use crate::{Block, Chain, Eigenvalue, LinearError, Spectrum};
 
 /// A coordinate on which no rate depends.

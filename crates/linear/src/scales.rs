@@ -3,9 +3,9 @@
 use nalgebra::{DMatrix, linalg::balancing::balance_parlett_reinsch};
 
 use crate::LinearError;
-use crate::core::in_units;
+use crate::matrix::{in_units, part};
 use crate::point::Point;
-use crate::spectrum::{components, coupled, part, reached};
+use crate::spectrum::{components, coupled, reached};
 use crate::weyl::Weyl;
 
 /// Powers of ten by which states are moved: from minus this to this.

@@ -1,14 +1,15 @@
 //! Eigenvalues of a matrix with errors of its entries, block by block.
 
 use mechanics::SingularValues;
-use nalgebra::{DMatrix, Scalar};
+use nalgebra::DMatrix;
 use num_complex::Complex;
 use schemars::JsonSchema;
 use serde::{Serialize, Serializer};
 use symbolic::limits::HALF_THE_DIGITS;
 
-use crate::core::{Core, allowed, balanced, nullity, structural_rank};
+use crate::core::{Core, allowed, nullity, structural_rank};
 use crate::discs::Discs;
+use crate::matrix::{balanced, part};
 
 /// A complex number as JSON has it.
 #[derive(Serialize, JsonSchema)]
@@ -224,11 +225,6 @@ impl Block {
             (lost, _) => all.radius(Complex::default(), lost.unwrap_or(least)),
         };
     }
-}
-
-/// The rows and columns at some places.
-pub(crate) fn part<T: Scalar + Copy>(matrix: &DMatrix<T>, places: &[usize]) -> DMatrix<T> {
-    DMatrix::from_fn(places.len(), places.len(), |i, j| matrix[(places[i], places[j])])
 }
 
 /// Which places a place depends on, beyond errors.
