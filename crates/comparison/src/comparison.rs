@@ -150,8 +150,8 @@ impl Comparison {
         }
     }
 
-    /// Puts the constants that a run has instead of fitted ones that leave, by more than errors, a larger gap up
-    /// to the same time: a search is no reason to go farther away.
+    /// Puts the constants that a run has instead of fitted ones that leave, by more than errors, a larger gap
+    /// up to the same time: a search is no reason to go farther away.
     pub(crate) fn keep_closer(&mut self) {
         for fit in &mut self.fits {
             let (first, second) = (fit.run.min(fit.target), fit.run.max(fit.target));

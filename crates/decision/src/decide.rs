@@ -6,6 +6,7 @@ use nalgebra::{DMatrix, DVector};
 use symbolic::limits::LAST_DIGITS;
 
 use crate::DecisionError;
+use crate::affine_set::AffineSet;
 use crate::curve::{Curve, Flow};
 use crate::family::Family;
 use crate::sizes::{CERTAINTY, Column, Sizes, Sums};
@@ -52,33 +53,6 @@ pub enum Verdict {
     Undecided,
 }
 
-/// Constants `point + span(directions)`.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct AffineSet {
-    /// The element of least norm, each constant in its scale; an element far along a direction if only that
-    /// has no mismatch.
-    pub point: Vec<f64>,
-    /// Orthonormal directions; none for a single point, all for every choice.
-    pub directions: Vec<Vec<f64>>,
-}
-
-impl AffineSet {
-    /// Its dimension.
-    pub fn dimension(&self) -> usize {
-        self.directions.len()
-    }
-
-    /// The distance of `constants` from it.
-    pub fn distance(&self, constants: &[f64]) -> f64 {
-        let mut rest = DVector::from_column_slice(constants) - DVector::from_column_slice(&self.point);
-        for direction in &self.directions {
-            let direction = DVector::from_column_slice(direction);
-            rest -= &direction * direction.dot(&rest);
-        }
-        rest.norm()
-    }
-}
-
 /// A decision, and the numbers that it rests on.
 ///
 /// The mismatch of accelerations is `y(t) = O(t) c + y₀(t)` for constants `c`; lengths are
@@ -118,8 +92,8 @@ impl Decision {
         self.sizes.moves
     }
 
-    /// How far each constant may be off, but for those that are free: by what moves the mismatch less than the
-    /// noise.
+    /// How far each constant may be off, but for those that are free: what moves the mismatch less than its
+    /// noise does.
     pub fn open(&self) -> Vec<f64> {
         let matrix = self.triangle.columns(0, self.columns.len()).into_owned();
         let (svd, limit) = (SingularValues::of(&matrix), CERTAINTY * self.sizes.noise);
@@ -271,7 +245,7 @@ fn judged(fine: &mut Transport, coarse: &mut Transport, paths: &[Path; 2]) -> Re
     }
 }
 
-/// Where panels begin and end: the steps, short where much happens, in parts no longer than one of [`PANELS`].
+/// Where panels begin and end: the steps, short where much happens, in parts of at most one of [`PANELS`].
 fn bounds(path: &Path, start: f64, way: f64) -> Vec<f64> {
     let end = start + way;
     let steps = path.dense.as_ref().map_or(&[][..], DenseOutput::step_times);

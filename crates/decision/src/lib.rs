@@ -74,6 +74,7 @@
 //! J. Cortés, M. de León, D. Martín de Diego, S. Martínez 2003; O. Fernandez, A. Bloch 2008; M. Crampin, T.
 //! Mestdag 2010; M. Jóźwikowski, W. Respondek 2019.
 
+mod affine_set;
 mod at_rest;
 mod certificate;
 mod curve;
@@ -97,9 +98,10 @@ mod sizes;
 mod start;
 mod transport;
 
+pub use affine_set::AffineSet;
 pub use certificate::{Certificate, Images, ImagesOfExponents};
 pub use curve::{Curve, Dynamics, Flow, Known, Point};
-pub use decide::{AffineSet, Decision, DecisionSettings, Verdict, decide, decide_flow};
+pub use decide::{Decision, DecisionSettings, Verdict, decide, decide_flow};
 pub use error::DecisionError;
 pub use exact::Flaw;
 pub use family::Family;

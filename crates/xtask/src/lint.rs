@@ -46,9 +46,9 @@ fn lint(tools: &Path, call: &[OsString]) -> std::io::Result<ExitCode> {
     let Some(source) = words.iter().find(|word| word.ends_with(".rs")) else {
         return Ok(run(Command::new(&call[0]).args(&call[1..]))?.into());
     };
-    // a build script is run
-    let script = follows(&words, "--crate-name", "build_script_build");
-    let metadata = if script { words.clone() } else { without_code(&words) };
+    // a build script is run, and so is a macro
+    let runs = follows(&words, "--crate-name", "build_script_build") || follows(&words, "--crate-type", "proc-macro");
+    let metadata = if runs { words.clone() } else { without_code(&words) };
     let code = run(Command::new(tools.join("clippy-driver")).args(&metadata))?;
     let documented = ["lib", "bin"].iter().any(|kind| follows(&words, "--crate-type", kind));
     if code != 0 || !documented || words.iter().any(|word| word == "--test") {
