@@ -183,7 +183,7 @@ impl Probe<'_> {
     /// The displacement of a state that gives a share of 1.
     fn moved(&mut self, j: usize, time: f64, share: &mut dyn FnMut(&mut Self, &[f64]) -> Option<f64>) -> Option<f64> {
         let reach = self.reach(j, time);
-        let mut step = if reach > 0.0 && reach.is_finite() { MOVE * reach } else { LEAST };
+        let mut step = if reach > 0.0 && reach.is_finite() { (MOVE * reach).max(f64::MIN_POSITIVE) } else { LEAST };
         while step < LEAST.recip() {
             let mut y = self.y.to_vec();
             y[j] += step;
