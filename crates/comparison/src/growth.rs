@@ -104,7 +104,7 @@ pub fn growth(
     let mut to = horizon * SAME;
     while difference_at(BEGIN * to)?.2 <= FIT_CERTAINTY * limit_at(start + BEGIN * to) {
         to *= 1.5;
-        if to > LEADS * horizon {
+        if to == 0.0 || to > LEADS * horizon {
             return Ok(None);
         }
     }
