@@ -57,8 +57,8 @@ fn a_motion_is_derived_and_planned_once() {
             (motion.is_ok_and(|motion| motion.charts.is_empty()), count)
         });
         println!("{name}: {parts:?}");
-        // in another chart on the way, a motion is derived anew; where round-off is more than the difference of
-        // its runs, its equations are planned once more, with round-off in them
+        // in another chart on the way, a motion is derived anew; where round-off is more than the difference
+        // of its runs, its equations are planned once more, with round-off in them
         let one_chart: Vec<_> = whole.into_iter().zip(&parts).filter(|((one, _), _)| *one).collect();
         let (once, others): (Vec<_>, Vec<_>) = one_chart.iter().partition(|((_, count), parts)| count == *parts);
         let twice = |[derive, plan]: [usize; 2]| [derive, 2 * plan];
