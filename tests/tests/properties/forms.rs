@@ -1,6 +1,7 @@
 //! The chosen form of the equations has the rates of the plain one.
 
 use equations::{Compiled, Dynamics, Plan};
+use motion::band::BEFORE_THE_END;
 use motion::{Motion, REMOVED_CONSTRAINT, VAKONOMIC};
 use proptest::test_runner::TestCaseError;
 use random::{Case, Kind, Recipe, Which, recipes_of};
@@ -50,7 +51,10 @@ fn compare(motion: &mut Motion) -> Option<Found> {
     exact.set_constants(&constants.iter().chain(&parameters).map(wide).collect::<Vec<_>>());
     let (first, count) = (2 * free.coordinates.len(), free.multipliers.len());
     let mut worst = 0.0_f64;
-    for t in motion.grid(INSTANTS) {
+    // where a motion stops before a singularity, the plain form may be singular to round-off
+    let part = if motion.is_complete() { 1.0 } else { BEFORE_THE_END };
+    let until = start + part * (motion.end() - start);
+    for t in motion.grid(INSTANTS).into_iter().filter(|t| *t <= until) {
         let y = motion.states_at(t).expect("readable");
         exact.solve(wide(&t), &y.iter().map(wide).collect::<Vec<_>>()).expect("regular");
         let mut rates = exact.rates().to_vec();
