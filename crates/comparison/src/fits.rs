@@ -11,8 +11,8 @@ use crate::gap::{Gap, Verdict, compare_motions};
 use crate::runs::{Decided, FittedMotion, Pair, Run};
 use crate::{Answer, costates_of, multipliers_of};
 use motion::{
-    CHETAEV, Choice, Metric, Motion, REMOVED_CONSTRAINT, Setting, Settings, SolveError, VAKONOMIC, constant_names,
-    derive_at, setting, solve,
+    CERTAINTY, CHETAEV, Choice, Metric, Motion, REMOVED_CONSTRAINT, Setting, Settings, SolveError, VAKONOMIC,
+    constant_names, derive_at, setting, solve,
 };
 
 /// Which free constants are fitted.
@@ -176,29 +176,29 @@ pub fn fit_run(
     settings: &Settings,
 ) -> Result<Option<Option<FittedMotion>>, SolveError> {
     let Ok(motion) = &runs[run].outcome else { return Ok(None) };
-    let (mut equations, mut constants) = (motion.equations.clone(), motion.constants.clone());
+    let (mut equations, mut own) = (motion.equations.clone(), motion.constants.clone());
     let memory = equations.removal.as_ref().map_or(0, |removal| removal.memory.len());
-    if memory > constants.len() {
+    if memory > own.len() {
         // costates that are zero by the rule of the run are free here
         let choice = Choice { constants: ConstantsRule::Given(vec![1.0; memory]), ..runs[run].choice.clone() };
         let all = derive_at(&scene.system, &scene.start, &choice)?;
-        let own = |c: &FreeConstant| {
-            let kept = equations.free_constants.iter().position(|own| own.memory == c.memory);
-            kept.map_or(0.0, |i| constants[i])
+        let start = |c: &FreeConstant| {
+            let kept = equations.free_constants.iter().position(|known| known.memory == c.memory);
+            kept.map_or(0.0, |i| own[i])
         };
-        constants = all.free_constants.iter().map(own).collect();
+        own = all.free_constants.iter().map(start).collect();
         equations = all;
     }
-    if constants.is_empty() {
+    if own.is_empty() {
         return Ok(None);
     }
     let Ok(goal) = &mut runs[target].outcome else { return Ok(None) };
     let found = match start {
         Start::Known(found) => Some(found),
         Start::Search { set, may_vanish } => {
-            let set = set.filter(|set| set.point.len() == constants.len());
-            let (point, directions) = set.map_or((vec![0.0; constants.len()], vec![]), |s| (s.point, s.directions));
-            let aim = Aim { guesses: &[point, constants], directions: &directions, may_vanish };
+            let set = set.filter(|set| set.point.len() == own.len());
+            let (point, directions) = set.map_or((vec![0.0; own.len()], vec![]), |s| (s.point, s.directions));
+            let aim = Aim { guesses: &[point, own.clone()], directions: &directions, may_vanish };
             search(setting(scene), &equations, goal, &aim, metric, settings)?
         }
     };
@@ -211,15 +211,20 @@ pub fn fit_run(
         Ok((motion, gap))
     };
     let (mut motion, mut gap) = gap_of(&constants)?;
-    // a gap up to where a motion breaks off is not that of the whole
+    // a gap up to where a motion breaks off is not that of the whole; that of the run's own constants may be
+    if gap.end != end && starts > 0 {
+        (motion, gap) = gap_of(&own)?;
+    }
     if gap.end != end {
         return Ok(Some(None));
     }
     let largest = |gap: &Gap| if gap.end == end { gap.largest } else { f64::INFINITY };
     let by_half = if by_half == constants { gap.largest } else { largest(&gap_of(&by_half)?.1) };
     if starts > 0 && gap.largest < CLOSE * gap.scale {
+        // no better than motions are
+        let known = KNOWN.max(CERTAINTY * gap.estimates.iter().sum::<f64>() / gap.scale);
         let size = constants.iter().fold(0.0, |a: f64, c| a.max(c.abs()));
-        open = vec![KNOWN * size; constants.len()];
+        open = vec![known * size; constants.len()];
     }
     if gap.verdict == Verdict::Different && gap.largest <= unknown(scene, &mut motion, &open, metric, settings)? {
         let because = "what is left is less than the digits of the constants leave open".into();
@@ -230,7 +235,7 @@ pub fn fit_run(
     Ok(Some(Some(FittedMotion { constants, gap, starts, by_half })))
 }
 
-/// The part of the constants to which a search knows them.
+/// The part of the constants to which a search knows them at best.
 const KNOWN: f64 = 1e-10;
 
 /// The largest gap that changes of a motion's constants make by which they are `open`.
