@@ -56,7 +56,7 @@ pub(crate) fn used() -> Result<Outcome> {
         fs::write(own.join("src/main.rs"), example.context("the readme shows no example")?)?;
         succeed(build().args(["build", "--quiet", "--release"]).current_dir(&own))?;
         let program = folder.join("target/release").join(format!("own{}", std::env::consts::EXE_SUFFIX));
-        let answer = output_of(&mut outside(&program))?;
+        let answer = output_of(outside(&program).current_dir(folder))?;
         ensure!(answer.contains(SAID), "{answer}");
         Ok(program)
     })?;
