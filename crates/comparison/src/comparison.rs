@@ -142,8 +142,8 @@ impl Comparison {
             let point = &found.decision.set.point;
             let has_others = self.runs[family].outcome.as_ref().is_ok_and(|run| run.constants != *point);
             if has_others && matches!(found.answer(), Answer::SomeProved | Answer::Some { .. }) {
-                let open = found.decision.open();
-                let start = Start::Known(Found { open, ..Found::given(point.clone()) });
+                let (open, part) = (found.decision.open(), found.decision.part());
+                let start = Start::Known(Found { open, part, ..Found::given(point.clone()) });
                 let fitted = fit_run(&self.scene, &mut self.runs, family, decided.curve, start, metric, settings);
                 decided.witness = fitted.map(Option::flatten).map_err(|refused| refused.to_string()).transpose();
             }

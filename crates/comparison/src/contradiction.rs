@@ -13,7 +13,7 @@ use scene::Scene;
 use crate::fits::Fit;
 use crate::runs::{Decided, Pair};
 use crate::{Answer, Comparison, Growth, LeadingTerm, Membership, Run, Verdict, membership};
-use motion::band::{Answer as Asked, Known, ask};
+use motion::band::{Answer as Asked, Breach, Known, ask};
 use motion::{CHETAEV, Motion, PRESCRIBED, TRUSTED, VAKONOMIC, VAKONOMIC_COSTATE, is_in_table};
 
 /// Two results that exclude each other.
@@ -193,10 +193,9 @@ impl Comparison {
     fn of_forms(&self) -> Option<Contradiction> {
         let of = |own| self.runs[self.run(own)?].outcome.as_ref().ok().filter(|motion| motion.doubt.is_none());
         let motions = [of(VAKONOMIC)?, of(VAKONOMIC_COSTATE)?];
-        let changes = |motion: &Motion, name: &str| motion.breaches.iter().any(|breach| breach.name == name);
         let one_sided = |[one, other]: [&Motion; 2]| {
-            let found = one.breaches.iter().find(|breach| breach.is_clear() && !changes(other, &breach.name));
-            found.map(|breach| format!("{breach}"))
+            let kept = |breach: &&Breach| breach.is_clear() && other.keeps(&breach.name, breach.largest);
+            one.breaches.iter().find(kept).map(|breach| format!("{breach}"))
         };
         let found = one_sided(motions).or_else(|| one_sided([motions[1], motions[0]]))?;
         Some(contradiction(

@@ -202,7 +202,7 @@ pub fn fit_run(
             search(setting(scene), &equations, goal, &aim, metric, settings)?
         }
     };
-    let Some(Found { constants, by_half, starts, mut open }) = found else { return Ok(Some(None)) };
+    let Some(Found { constants, by_half, starts, mut open, part }) = found else { return Ok(Some(None)) };
     let end = goal.end();
     let within = Setting { end, ..setting(scene) };
     let mut gap_of = |constants: &[f64]| -> Result<(Motion, Gap), SolveError> {
@@ -211,8 +211,10 @@ pub fn fit_run(
         Ok((motion, gap))
     };
     let (mut motion, mut gap) = gap_of(&constants)?;
-    // a gap up to where a motion breaks off is not that of the whole; that of the run's own constants may be
-    if gap.end != end && starts > 0 {
+    // a gap up to where a motion breaks off is not that of the whole; that of the run's own constants may be,
+    // and these are exact
+    let searched = starts > 0 && gap.end == end;
+    if starts > 0 && !searched {
         (motion, gap) = gap_of(&own)?;
     }
     if gap.end != end {
@@ -220,15 +222,18 @@ pub fn fit_run(
     }
     let largest = |gap: &Gap| if gap.end == end { gap.largest } else { f64::INFINITY };
     let by_half = if by_half == constants { gap.largest } else { largest(&gap_of(&by_half)?.1) };
-    if starts > 0 && gap.largest < CLOSE * gap.scale {
+    if searched && gap.largest < CLOSE * gap.scale {
         // no better than motions are
         let known = KNOWN.max(CERTAINTY * gap.estimates.iter().sum::<f64>() / gap.scale);
         let size = constants.iter().fold(0.0, |a: f64, c| a.max(c.abs()));
         open = vec![known * size; constants.len()];
     }
-    if gap.verdict == Verdict::Different && gap.largest <= unknown(scene, &mut motion, &open, metric, settings)? {
-        let because = "what is left is less than the digits of the constants leave open".into();
-        gap.verdict = Verdict::Undecided { because };
+    if gap.verdict == Verdict::Different {
+        let told = if part < 1.0 { CERTAINTY * part * gap.scale } else { 0.0 };
+        if gap.largest <= told + unknown(scene, &mut motion, &open, metric, settings)? {
+            let because = "what is left is less than the digits of the constants leave open".into();
+            gap.verdict = Verdict::Undecided { because };
+        }
     }
     let names = constant_names(&motion.equations);
     let constants = names.into_iter().zip(motion.constants.clone()).collect();

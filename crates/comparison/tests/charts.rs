@@ -157,3 +157,27 @@ fn terms_of_a_chart_that_was_left_are_no_round_off() {
         assert_eq!(motion.doubt, None, "{off}");
     }
 }
+
+/// `x' = 10^(−x) z'` has a constant pivot beside an entry that grows to 10¹⁴¹: a particle on a curve, whose
+/// length `√2 t` is a closed form in x. The velocity that the other one is a combination of underflows.
+#[test]
+fn entries_that_grow_beside_a_constant_pivot_change_the_chart() {
+    let text = "title = \"curve\"\n[coordinates]\nx = { start = 0 }\nz = { start = 0 }\n[system]\n\
+                lagrangian = \"(x'^2 + z'^2)/2\"\nconstraints = [\"x' - 10^(-x)*z'\"]\n\
+                [start.velocities]\n\"x'\" = -1\n\"z'\" = -1\n[run]\nduration = 100\n";
+    let scene = read(text, &[]);
+    let root = 2.0_f64.sqrt();
+    let before = (root - 1.0 - ((1.0 + root) / 2.0).ln()) / 10.0_f64.ln();
+    let mut complete = 0;
+    for choice in choices(&scene) {
+        let mut motion = solve_choice(&scene, &choice, &Settings::default()).unwrap_or_else(|error| panic!("{error}"));
+        let end = motion.end();
+        for t in [10.0, 50.0, 100.0].into_iter().filter(|t| *t <= end) {
+            let x = motion.at(t).expect("it is there").coordinates[0];
+            assert!((x + root * t - before).abs() < 1e-9, "{} at {t}: {x}", choice.label);
+        }
+        assert!(motion.is_complete() || choice.removal.is_some(), "{}: {:?}", choice.label, motion.ending);
+        complete += usize::from(motion.is_complete() && !motion.charts.is_empty());
+    }
+    assert!(complete > 1, "{complete}");
+}

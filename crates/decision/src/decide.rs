@@ -103,6 +103,11 @@ impl Decision {
         each.map(|(i, column)| CERTAINTY * self.noise * part(i) * column.scale.abs()).collect()
     }
 
+    /// The part of the curve's acceleration to which the answer holds.
+    pub fn part(&self) -> f64 {
+        self.least.max(self.noise) / self.acceleration
+    }
+
     /// Whether a mismatch stands out from the noise.
     pub fn shows(&self, mismatch: f64) -> bool {
         mismatch > CERTAINTY * self.noise

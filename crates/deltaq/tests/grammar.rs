@@ -210,12 +210,12 @@ fn calls(draw: &mut Draw, scene: &str, folder: &Path, names: &[&str]) -> Vec<Vec
         format!("linearize {scene} --find"),
         format!("review {scene} {}", out("equations.txt")),
         format!("ensemble {scene} -f {formulation} --vary {first}=0..1:5 --max-steps 3000"),
-        format!("fit {scene} {film} --free a --sigma 0.01 --starts 2 --max-steps 300"),
-        format!("fit {scene} {film} --free {first}',b --sigma 0.01,0.02 --starts 2 --robust --max-steps 300"),
+        format!("fit {scene} {film} --free a --sigma 0.01 --starts 1 --max-steps 300"),
+        format!("fit {scene} {film} --free {first}',b --sigma 0.01,0.02 --starts 1 --robust --max-steps 300"),
         format!("judge {scene} {film}"),
-        format!("connect {scene} --to {ends} --at 0.3 --starts 3 --max-steps 300"),
+        format!("connect {scene} --to {ends} --at 0.3 --starts 2 --max-steps 300"),
         format!(
-            "design {scene} --tell chetaev,vakonomic --free a --film 20Hz,1mm,0.2s --starts 2 --points 2 --max-steps 300"
+            "design {scene} --tell chetaev,vakonomic --free a --film 20Hz,1mm,0.2s --starts 1 --points 2 --max-steps 300"
         ),
         format!("explore {scene} --out {}", out("page.html")),
         format!("show {scene} --code c"),
@@ -230,7 +230,7 @@ fn calls(draw: &mut Draw, scene: &str, folder: &Path, names: &[&str]) -> Vec<Vec
 /// A film of the scene: of a motion where there is one, with noise or without; else of bodies at rest.
 fn film(draw: &mut Draw, scene: &str, names: &[&str]) -> String {
     let law = draw.one(&["chetaev", "vakonomic"]);
-    let motion = command(&["solve", scene, "-f", law, "--times", "0:0.3:21", "--max-steps", "3000", "--quiet"])
+    let motion = command(&["solve", scene, "-f", law, "--times", "0:0.3:11", "--max-steps", "3000", "--quiet"])
         .output()
         .expect("it runs");
     let rows = text(&motion.stdout);

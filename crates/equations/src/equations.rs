@@ -129,8 +129,10 @@ pub struct Statement {
 pub struct Chart {
     /// Names of the velocities, or of the coordinates whose velocities they are.
     pub independent: Vec<String>,
-    /// The coefficients of the combinations, in `(t, y)`: they grow where a pivot becomes small.
+    /// The coefficients of the combinations, in `(t, y)`: they grow where a pivot becomes small beside them.
     pub coefficients: Vec<Expr>,
+    /// Whether pivots may vanish.
+    pub may_vanish: bool,
 }
 
 /// Return onto the constraint: `v ← v + δv` with the smallest `δvᵀ M δv` such that `f(q, v, t) = 0`.

@@ -130,7 +130,7 @@ impl Removal {
             parameters,
             memory,
             coordinates: g.variables(&system.positions()),
-            chart: if start.is_empty() { split.quotients.clone() } else { Vec::new() },
+            chart: columns.into_iter().flat_map(|(entries, _)| entries).collect(),
             start,
             constants: ConstantsRule::Zero,
         }

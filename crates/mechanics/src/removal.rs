@@ -63,8 +63,8 @@ pub struct Removal {
     pub start: BTreeMap<Symbol, Expr>,
     /// The constants that a run uses by default.
     pub constants: ConstantsRule,
-    /// What grows where other coordinates should serve as `u`, in `(q, t)`: what [`Removal::by_coordinates`]
-    /// divided by its pivots. Empty where the parametrization is part of what was asked for.
+    /// What grows where other parameters should serve as `u`, in `(q, t)`: the coefficients of the rates.
+    /// Empty where the parametrization is part of what was asked for.
     pub chart: Vec<Expr>,
 }
 

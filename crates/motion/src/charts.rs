@@ -16,9 +16,11 @@ use integrate::{Options, ProjectionReport, Solution, Work};
 use mechanics::{ConstantsRule, SingularValues, System};
 use nalgebra::{DMatrix, DVector};
 
+use crate::band::limits::ROUND_OFF;
 use crate::chart_transition::{Later, Names, Point, Quantity};
 use crate::choice::{derive_at, watch};
 use crate::lost_rank::watch_rank;
+use crate::prepared::GROWTH;
 use crate::stiffness_probe::{NotSuited, not_suited};
 use crate::table::as_derived;
 use crate::trajectory::{Legs, Trajectory, outputs_in};
@@ -56,7 +58,7 @@ pub(crate) enum Course {
 }
 
 /// Both runs of `prepared`, which starts at `setting.start`. The limits of a run are those of all its charts
-/// together. Where there is no other chart, it goes on in the one that it has.
+/// together. Where there is no other chart, it goes on in the one that it has until that may be round-off.
 pub(crate) fn run(
     setting: Setting,
     prepared: &mut Prepared,
@@ -74,6 +76,7 @@ fn run_on(setting: Setting, prepared: &mut Prepared, settings: &Settings, patien
     let (mut later, mut own): (Option<Prepared>, Option<Box<Later>>) = (None, None);
     let (mut options, mut options_looser) = (settings.options(settings.tolerance * TIGHTER), None);
     options.patience = patience;
+    let mut worse = 0;
     let ends = [setting.start.t, setting.end];
     options.wanted = settings.times.as_ref().map(|times| wanted(ends, times));
     let failure = loop {
@@ -104,10 +107,19 @@ fn run_on(setting: Setting, prepared: &mut Prepared, settings: &Settings, patien
         let next = if left { going_on(setting, here, [&kept, &looser], settings) } else { None };
         if left && next.is_none() {
             here.go_on([&kept, &looser]);
+            worse += 1;
         }
         legs.iter_mut().zip([kept, looser]).for_each(|(legs, run)| legs.push((run, own.clone())));
         if !left {
             break None;
+        }
+        if GROWTH.powi(worse) * ROUND_OFF * ROUND_OFF > 1.0 {
+            let cause = format!(
+                "velocities are combinations of others with coefficients {:.0e} times those of the start, which may \
+                 be round-off, and there are no other equations to go on with",
+                ROUND_OFF.recip()
+            );
+            break Some(Ending::Stopped { t, cause });
         }
         if let Some((by, next)) = next {
             changes.push(ChartChange { t, by });

@@ -202,7 +202,7 @@ fn derive_combined(system: &System, start: &State, choice: &Choice) -> Result<Eq
     // at any angle constant pivots eliminate the rows as they are, which may be sparse
     if FORMS.contains(&choice.formulation)
         && let Ok(equations) = derive_from(system, Some(start), choice)
-        && equations.chart.is_none()
+        && equations.chart.as_ref().is_none_or(|chart| !chart.may_vanish)
     {
         return Ok(Equations { lost_digits, ..equations });
     }

@@ -77,7 +77,7 @@ pub fn derive_in_form(
         Ok(reduced) => reduced,
         Err(error) => return derived(own, error.to_string()),
     };
-    if equations.chart.is_none() {
+    if equations.chart.as_ref().is_none_or(|chart| !chart.may_vanish) {
         return Ok((equations, chosen));
     }
     // a pole of a constraint is passed in costates as if it were none

@@ -8,7 +8,7 @@ use integrate::{Method, ProjectionReport, Work};
 use mechanics::ConstantsRule;
 use scene::Scene;
 
-use crate::band::Breach;
+use crate::band::{Answer, Breach, ask_alone};
 use crate::charts::{self, ChartChange, Course, Runs};
 use crate::choice::removals;
 use crate::clock::Clock;
@@ -56,6 +56,8 @@ pub struct Motion {
     pub doubt: Option<Doubt>,
     /// What the user expects to be constant and this motion changes.
     pub breaches: Vec<Breach>,
+    /// Of what the user expects to be constant: by how much it might change unseen.
+    pub unseen: Vec<(String, f64)>,
     /// The method, and why; of a motion in equal steps none.
     pub method: Option<Chosen>,
     /// Work of the kept run.
@@ -135,6 +137,13 @@ impl Motion {
     pub fn at_in_both_runs(&mut self, t: f64) -> Result<(Outputs, Outputs), SolveError> {
         let kept = self.at(t)?;
         Ok((kept, self.looser.outputs(&mut self.compiled, t)?))
+    }
+
+    /// Whether it keeps a quantity that the user expects to be constant, where another motion changes it by
+    /// `change`: it does not change it, and would show as much.
+    pub fn keeps(&self, name: &str, change: f64) -> bool {
+        let shows = |(known, by): &(String, f64)| known == name && ask_alone(change, Some(*by)) == Answer::Apart;
+        self.breaches.iter().all(|breach| breach.name != name) && self.unseen.iter().any(shows)
     }
 
     /// Name, value at the start and largest deviation from it at `times`, of each invariant.
@@ -282,6 +291,7 @@ impl Motion {
             charts: changes,
             doubt: None,
             breaches: Vec::new(),
+            unseen: Vec::new(),
             kept,
             looser,
             equations: prepared.equations,

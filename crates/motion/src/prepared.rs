@@ -52,7 +52,7 @@ pub(crate) type Origin = (f64, Vec<f64>, Vec<f64>, Option<f64>);
 
 /// Another chart is looked for where the squares of the coefficients have come to this many times those that
 /// it was chosen with.
-const GROWTH: f64 = 100.0;
+pub(crate) const GROWTH: f64 = 100.0;
 
 impl Prepared {
     /// With the free constants zero.

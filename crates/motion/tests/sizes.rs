@@ -79,3 +79,20 @@ fn terms_at_a_singular_end_hide_no_change_before() {
         assert!(!motion.is_complete() && found.t < 0.1 && found.estimate < 1e-9, "{} {found:?}", motion.end());
     }
 }
+
+/// A quantity is kept where as large a change would show.
+#[test]
+fn what_is_kept_would_show_a_change() {
+    let motion = |force: &str| {
+        let text = format!(
+            "title = \"test\"\ncoordinates = {{ x = {{ start = 0 }} }}\nsystem = {{ lagrangian = \"x'^2/2 - {force}\" }}\n\
+             invariants = {{ held = \"x'*(1 + t)/(1 + t)\" }}\nstart = {{ velocities = {{ \"x'\" = 0.3 }} }}\n\
+             run = {{ duration = 2 }}\n"
+        );
+        let scene = Scene::parse("test", &text).unwrap_or_else(|e| panic!("{e}"));
+        solve_choice(&scene, &choices(&scene)[0], &Settings::default()).expect("a motion")
+    };
+    let (free, forced) = (motion("0"), motion("x/10"));
+    assert!(free.keeps("held", 1e-9) && !free.keeps("held", 1e-13) && !free.keeps("energy", 1.0), "{:?}", free.unseen);
+    assert!(!forced.keeps("held", 1.0) && forced.breaches.len() == 1);
+}

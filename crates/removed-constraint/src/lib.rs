@@ -79,7 +79,7 @@ use equations::{
     Statement,
 };
 use mechanics::{DisplacementParameter, Removal, Surroundings, System, fresh_symbol, generic_rank};
-use symbolic::{Expr, Graph, Symbol};
+use symbolic::{Expr, Graph, Range, Symbol};
 use work::Work;
 
 /// Entry of the table of formulations.
@@ -194,10 +194,12 @@ pub fn derive(system: &System, derivation: &Derivation) -> Result<Equations, Der
     singular.extend(removal.memory.iter().map(|w| w.rate));
     singular.push(generating);
     equations.guard(g, &singular);
-    let divides = |e: Expr| !g.denominators(&[e]).into_iter().all(|e| equations.is_constant(g, e));
-    let coefficients: Vec<Expr> = removal.chart.iter().copied().filter(|&e| divides(e)).collect();
+    let known = system.parameter_values().into_iter().map(|(symbol, x)| (symbol, Range::point(x))).collect();
+    let coefficients: Vec<Expr> = removal.chart.iter().copied().filter(|&e| !g.range(e, &known).is_bounded()).collect();
     let independent = removal.parameters.iter().map(|u| g.name(u.symbol)).collect();
-    equations.chart = (!coefficients.is_empty()).then_some(Chart { independent, coefficients });
+    let any = !coefficients.is_empty();
+    let chart = || Chart { independent, coefficients, may_vanish: true };
+    equations.chart = any.then(chart);
     equations.removal = Some(removal.clone());
     drop(parameters);
     equations.graph = system.graph;

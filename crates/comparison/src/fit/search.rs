@@ -59,12 +59,14 @@ pub struct Found {
     pub starts: usize,
     /// How far each constant is not known, where no search has found it.
     pub open: Vec<f64>,
+    /// The part of the motion's accelerations to which they were decided.
+    pub part: f64,
 }
 
 impl Found {
     /// Constants that are known without a search.
     pub fn given(constants: Vec<f64>) -> Found {
-        Found { by_half: constants.clone(), constants, starts: 0, open: Vec::new() }
+        Found { by_half: constants.clone(), constants, starts: 0, open: Vec::new(), part: 0.0 }
     }
 }
 

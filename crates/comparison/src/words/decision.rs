@@ -190,7 +190,7 @@ pub fn how_far(membership: &Membership, order: Option<usize>, settled: bool) -> 
         return format!("supported by rank computations modulo two primes{at}{part} (not proved)");
     }
     let decision = &membership.decision;
-    let part = decision.least.max(decision.noise) / decision.acceleration;
+    let part = decision.part();
     let part = match part < 1.0 {
         true => format!("to 1e{:.0}{}", part.log10().ceil(), up_to(decision.until)),
         false if decision.moves() => "without acceleration".into(),

@@ -273,13 +273,12 @@ fn breaches(comparison: &Comparison) -> Vec<String> {
     names.sort_unstable();
     names.dedup();
     let of = |name: &str| {
-        let (mut changed, mut kept) = (Vec::new(), Vec::new());
-        for (label, motion) in motions().filter(|(_, m)| m.equations.invariants.iter().any(|i| i.name == name)) {
-            match motion.breaches.iter().find(|breach| breach.name == name) {
-                Some(breach) => changed.push(format!("{label} (by {})", short(breach.largest))),
-                None => kept.push(label.to_owned()),
-            }
-        }
+        let breaches = || motions().flat_map(|(label, m)| m.breaches.iter().map(move |breach| (label, breach)));
+        let of_name = || breaches().filter(|(_, breach)| breach.name == name);
+        let largest = of_name().map(|(_, breach)| breach.largest).fold(0.0, f64::max);
+        let changed: Vec<_> = of_name().map(|(label, b)| format!("{label} (by {})", short(b.largest))).collect();
+        let kept = motions().filter(|(_, motion)| motion.keeps(name, largest));
+        let kept: Vec<_> = kept.map(|(label, _)| label.to_owned()).collect();
         let kept = if kept.is_empty() { String::new() } else { format!("; constant for {}", enumerate(&kept)) };
         format!("{name} is not constant for {}{kept}.", enumerate(&changed))
     };

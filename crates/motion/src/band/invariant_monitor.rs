@@ -60,6 +60,8 @@ pub(crate) struct InvariantMonitor {
     names: Vec<String>,
     expected: Vec<String>,
     pub(crate) breaches: Vec<Breach>,
+    /// [`crate::Motion::unseen`].
+    pub(crate) unseen: Vec<(String, f64)>,
     /// `|f|` and the invariants at the start.
     start: (Vec<f64>, Vec<f64>),
     /// The sum of terms behind each invariant, where it is known to exceed its value.
@@ -76,12 +78,12 @@ impl InvariantMonitor {
         let kept = if equations.creeps { &[][..] } else { &system.constraints };
         let constraints = Evaluator::new(system.graph.compile(&inputs, kept, &values)?);
         let inputs = vec![Bounded::from_f64(0.0); inputs.len()];
-        let (start, sizes) = Default::default();
+        let (start, sizes, unseen) = Default::default();
         let names = equations.invariants.iter().map(|invariant| invariant.name.clone()).collect();
         let units = system.coordinates.iter().map(|c| c.unit.clone()).collect();
         let expected = system.watched.iter().filter(|watched| watched.constancy == Constancy::Expected);
         let expected = expected.map(|watched| watched.name.clone()).collect();
-        Ok(InvariantMonitor { constraints, inputs, units, names, expected, breaches: Vec::new(), start, sizes })
+        Ok(InvariantMonitor { constraints, inputs, units, names, expected, breaches: Vec::new(), unseen, start, sizes })
     }
 
     /// A motion begins, with these values of the parameters that vary.
@@ -120,6 +122,7 @@ impl InvariantMonitor {
         }
         let mut errors = Errors::default();
         // what terms grow to later is no round-off before
+        let largest = self.sizes.clone();
         self.forget_sizes();
         for (t, kept) in kept.iter().filter(|_| !clear) {
             errors.add([kept, &runs.looser(*t).ok()?]);
@@ -128,6 +131,11 @@ impl InvariantMonitor {
             }
             from = *t;
         }
+        let unseen = largest.iter().enumerate().map(|(i, size)| {
+            let error = errors.0.invariants.get(i).copied().unwrap_or(0.0);
+            (self.names[i].clone(), error + ROUND_OFF * size)
+        });
+        self.unseen = unseen.filter(|(name, _)| self.expected.contains(name)).collect();
         None
     }
 

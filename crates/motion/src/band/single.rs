@@ -64,7 +64,7 @@ impl Motion {
         let times = self.grid(LOOKS);
         let kept: Vec<(f64, Outputs)> = times.iter().map_while(|&t| Some((t, self.at(t).ok()?))).collect();
         self.doubt = monitor.doubt(self, &kept, &[]);
-        self.breaches = monitor.breaches;
+        (self.breaches, self.unseen) = (monitor.breaches, monitor.unseen);
         if self.doubt.is_some() {
             return Ok(());
         }

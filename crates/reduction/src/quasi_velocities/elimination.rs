@@ -4,7 +4,7 @@ use std::cmp::Reverse;
 use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
 
 use symbolic::limits::{DEPENDENT, NOTHING, PIVOT};
-use symbolic::{Expr, Graph, Symbol};
+use symbolic::{Expr, Graph, Range, Symbol};
 
 use super::columns::SIDE;
 use super::recursion::{DependentVelocity, EliminatedConstraint, QuasiVelocities, QuasiVelocity};
@@ -61,6 +61,8 @@ struct Elimination<'a> {
     g: &'a Graph,
     /// Parameters, start and coefficients.
     values: HashMap<Symbol, f64>,
+    /// Ranges of parameters and of named coefficients.
+    ranges: HashMap<Symbol, Range>,
     /// By column.
     velocities: Vec<QuasiVelocity>,
     matrix: SparseMatrix<(Expr, f64)>,
@@ -96,6 +98,7 @@ impl<'a> Elimination<'a> {
             g,
             system,
             values: point(system, start),
+            ranges: system.parameter_values().into_iter().map(|(s, x)| (s, Range::point(x))).collect(),
             velocities: velocities.collect(),
             matrix: SparseMatrix::new(Vec::new()),
             rows: Vec::new(),
@@ -127,16 +130,23 @@ impl<'a> Elimination<'a> {
         }
         if let Some(&(_, Reverse(column), row)) = self.queue.first() {
             self.by_pivot(row, column);
+            self.watch_quotients(|elimination, e| !elimination.g.range(e, &elimination.ranges).is_bounded());
         } else if let Some((row, couple)) = self.find_couple() {
             self.by_couple(row, couple);
         } else {
             let (row, column) = self.largest_pivot()?;
             self.guards.push(self.matrix.rows()[row][&column].0);
             self.by_pivot(row, column);
-            let divided = self.steps.last().into_iter().flatten().flat_map(|d| &d.terms);
-            self.quotients.extend(divided.map(|(_, e)| *e));
+            self.watch_quotients(|_, _| true);
         }
         Ok(true)
+    }
+
+    /// Adds to what is watched the coefficients of the last step that may grow.
+    fn watch_quotients(&mut self, may_grow: impl Fn(&Self, Expr) -> bool) {
+        let divided = self.steps.last().into_iter().flatten().flat_map(|d| &d.terms);
+        let watched: Vec<Expr> = divided.map(|(_, e)| *e).filter(|&e| may_grow(self, e)).collect();
+        self.quotients.extend(watched);
     }
 
     fn by_pivot(&mut self, row: usize, column: usize) {
@@ -314,6 +324,7 @@ impl<'a> Elimination<'a> {
         {
             let value = self.number(e);
             self.values.insert(symbol, value);
+            self.ranges.insert(symbol, self.g.range(e, &self.ranges));
         }
         named
     }

@@ -104,6 +104,7 @@ impl QuasiVelocities {
         equations.chart = (!self.quotients.is_empty()).then(|| Chart {
             independent: self.free.iter().map(|w| g.name(w.symbol)).collect(),
             coefficients: self.quotients.clone(),
+            may_vanish: !self.guards.is_empty(),
         });
         let dependent = self.dependent.iter().map(|d| (d.symbol, value(d)));
         for (symbol, velocity) in dependent.chain(frame.iter().flat_map(|f| f.recursion.iter().copied())) {

@@ -27,6 +27,11 @@ impl Range {
         Range::new(x, x)
     }
 
+    /// Whether both ends are finite.
+    pub fn is_bounded(self) -> bool {
+        self.low.is_finite() && self.high.is_finite()
+    }
+
     fn new(low: f64, high: f64) -> Range {
         if low.is_nan() || high.is_nan() { Range::ALL } else { Range { low, high } }
     }

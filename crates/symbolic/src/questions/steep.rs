@@ -140,10 +140,7 @@ impl Graph {
     pub fn highest_power(&self, es: &[Expr], known: &HashMap<Symbol, Range>) -> f64 {
         let high = self.powers(es, |n| n.to_f64() >= HIGH);
         let mut ranges = FxHashMap::default();
-        let mut is_unbounded = |base: Expr| {
-            let Range { low, high } = self.range_among(base, known, &mut ranges);
-            !(low.is_finite() && high.is_finite())
-        };
+        let mut is_unbounded = |base: Expr| !self.range_among(base, known, &mut ranges).is_bounded();
         high.into_iter().filter(|(base, _)| is_unbounded(*base)).fold(0.0, |most, (_, n)| most.max(n.to_f64()))
     }
 
