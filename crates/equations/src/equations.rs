@@ -207,6 +207,9 @@ pub struct Equations {
     pub guards: Vec<Expr>,
     /// Those of the guards at which formulas, as they were written, cease to have values.
     pub domains: Vec<Expr>,
+    /// Those of the guards at which an angle jumps, and momenta or constraints with it: no equation tells what
+    /// velocities do.
+    pub cuts: Vec<Expr>,
     /// `A = ∂f/∂v` of the constraints of the system in `(t, y, z)`: where it loses rank along a motion,
     /// several motions go on, or none. `None` where it is constant, or there is no constraint.
     pub rows: Option<ConstraintRows>,
@@ -249,6 +252,7 @@ impl Equations {
             creeps: false,
             guards: Vec::new(),
             domains: Vec::new(),
+            cuts: Vec::new(),
             rows: None,
             chart: None,
             statements: Vec::new(),

@@ -158,6 +158,8 @@ pub fn derive_at(system: &System, start: &State, choice: &Choice) -> Result<Equa
     let mut equations = derive_combined(system, start, choice)?;
     equations.domains = domains_at(system, start, &equations)?;
     equations.guards.extend(&equations.domains);
+    equations.cuts = cuts_from(system, start, &equations);
+    equations.guards.extend(&equations.cuts);
     watch_rank(&mut equations, system);
     let redundant = |(number, _): &(usize, Expr)| LeftOut {
         variables: Vec::new(),
@@ -183,6 +185,15 @@ fn domains_at(system: &System, start: &State, equations: &Equations) -> Result<V
         return Err(SolveError::OutsideDomain { expression: g.plain(*e), value });
     }
     Ok(in_variables_of(equations, system, &system.domains, &HashSet::new()))
+}
+
+/// What is zero where an angle in the momenta `∂L/∂v` or the constraints jumps, if it is not at the start.
+fn cuts_from(system: &System, start: &State, equations: &Equations) -> Vec<Expr> {
+    let (g, values) = (&system.graph, system.values_at(start));
+    let momenta = g.gradient(system.lagrangian, &system.velocities());
+    let mut cuts = g.cuts(&[momenta, system.constraints.clone()].concat());
+    cuts.retain(|&e| !equations.is_constant(g, e) && g.evaluate(e, &values).is_ok_and(|x| x > 0.0));
+    in_variables_of(equations, system, &cuts, &HashSet::new())
 }
 
 fn derive_combined(system: &System, start: &State, choice: &Choice) -> Result<Equations, SolveError> {

@@ -110,6 +110,10 @@ pub(crate) fn vanishing_guard(equations: &Equations, index: usize) -> String {
     let (guard, e) = (guard_words(equations, index), equations.guards[index]);
     if equations.domains.contains(&e) {
         format!("{guard} vanishes: a root or logarithm of it, as written, has no value beyond")
+    } else if equations.cuts.contains(&e) {
+        format!(
+            "{guard} vanishes: an angle jumps there, and momenta or constraints with it, which velocities cannot follow"
+        )
     } else {
         format!("{guard} vanishes, by which the equations divide")
     }

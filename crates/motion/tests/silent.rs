@@ -2,7 +2,7 @@
 //! end a motion are named.
 
 use integrate::Method;
-use motion::{Ending, Form, Settings, choices, solve_choice};
+use motion::{Choice, Ending, Form, Motion, Settings, choices, solve_choice};
 use scene::Scene;
 
 fn scene(lagrangian: &str, constraint: &str, masses: f64) -> Scene {
@@ -117,5 +117,37 @@ fn a_root_without_a_value_is_named() {
         let Ending::Stopped { cause, .. } = &motion.ending else { panic!("{potential}: goes through") };
         assert!(cause.contains(root) && cause.contains("has no value where x"), "{potential}: {cause}");
         println!("{potential}: {cause}");
+    }
+}
+
+/// An angle of a point that passes behind the origin at t = 1/2: where momenta or constraints jump with it
+/// every form stops there, where only a force has it in its potential none does.
+#[test]
+fn velocities_do_not_pass_where_momenta_or_constraints_jump() {
+    let scene = |lagrangian: &str, constraint: &str| {
+        let text = format!(
+            "title = \"jump\"\n[parameters]\nb = 0\n[coordinates]\nx = {{ start = 0.5 }}\ny = {{ start = 0.5 }}\n\
+             z = {{ start = 0 }}\n[system]\nlagrangian = \"(x'^2 + y'^2 + z'^2)/2 + {lagrangian}\"\n\
+             constraints = [\"{constraint}\"]\n[start]\nproject = true\nvelocities = {{ \"x'\" = -1, \"y'\" = -1 }}\n\
+             [run]\nduration = 1\n"
+        );
+        Scene::parse("jump", &text).unwrap_or_else(|error| panic!("{error}"))
+    };
+    let ends = |scene: &Scene| {
+        let motion = |choice: &Choice| solve_choice(scene, choice, &Settings::default()).expect("a motion");
+        choices(scene).iter().map(motion).collect::<Vec<_>>()
+    };
+    for jumps in [
+        scene("atan2(b, x)*z'^2/10", "z' - x*y'"),
+        scene("0", "z' - atan2(b, x)*y'/10"),
+        scene("atan2(y, x - 1)*x'*y'/10", "z' - x*y'"),
+    ] {
+        for motion in ends(&jumps) {
+            let Ending::Stopped { cause, .. } = &motion.ending else { panic!("{:?}", motion.ending) };
+            assert!(cause.contains("an angle jumps") && motion.end() < 0.9, "{cause}");
+        }
+    }
+    for passes in [scene("atan2(y, x - 1)/100", "z' - x*y'"), scene("atan2(y, x + 3)*z'^2/10", "z' - x*y'")] {
+        assert!(ends(&passes).iter().all(Motion::is_complete));
     }
 }

@@ -151,6 +151,17 @@ impl Graph {
         all.into_iter().filter(|&e| matches!(arena.node(e), Node::Atan2(..))).collect()
     }
 
+    /// What is zero where the angles of points `(x, y)` in `es` jump, and positive elsewhere: `x + √(x² + y²)`.
+    pub fn cuts(&self, es: &[Expr]) -> Vec<Expr> {
+        let points = self.angles(es).into_iter().filter_map(|e| match *self.arena.borrow().node(e) {
+            Node::Atan2(y, x) => Some((x, y)),
+            _ => None,
+        });
+        let points: Vec<(Expr, Expr)> = points.collect();
+        let length = |x: Expr, y: Expr| self.sqrt(self.add(self.powi(x, 2), self.powi(y, 2)));
+        points.into_iter().map(|(x, y)| self.add(x, length(x, y))).collect()
+    }
+
     /// Of factors that overflow together, so that the product does not, only the unit is steep, like a
     /// `tanh`.
     fn steep_product(
