@@ -5,8 +5,10 @@
 //! which are smooth, are evaluated on the step's polynomial at five points, or at nine where five do not
 //! suffice, and a step is refused along which a function's gauge ([`crate::Problem::gauges`]) grows by more
 //! than [`GAUGE_LIMIT`]: the method has to look closer. So is one along which it would if arguments were off
-//! by their round-off.
+//! by their round-off, and a first step along whose tangent it would: a polynomial that does not have the
+//! rates of the start as its slope there, as that of an implicit method, may miss what follows from them.
 
+use crate::dense::Basis;
 use crate::events::Segment;
 use crate::limits::{HUGE, ROUNDINGS};
 use crate::problem::Gauge;
@@ -29,6 +31,8 @@ pub(crate) struct StepResolution {
     /// What is added up to arguments at a place, and the largest such sums along the step.
     terms: Vec<f64>,
     most: Vec<f64>,
+    /// Whether no step has been accepted.
+    at_start: bool,
 }
 
 impl StepResolution {
@@ -39,7 +43,7 @@ impl StepResolution {
             system.gauged(t, y, &mut along[0])?;
         }
         let (terms, most) = (vec![0.0; gauges.len()], vec![0.0; gauges.len()]);
-        Ok(StepResolution { gauges, along, state: vec![0.0; y.len()], terms, most })
+        Ok(StepResolution { gauges, along, state: vec![0.0; y.len()], terms, most, at_start: true })
     }
 
     pub(crate) fn is_on(&self) -> bool {
@@ -50,6 +54,9 @@ impl StepResolution {
     pub(crate) fn look(&mut self, system: &System, segment: &Segment) -> Result<(), Failure> {
         if !self.is_on() {
             return Ok(());
+        }
+        if self.at_start && segment.basis == Basis::Nested {
+            self.look_along_tangent(system, segment)?;
         }
         self.read(system, segment, 2)?;
         if (0..self.gauges.len()).all(|j| is_flat(self.gauges[j], &self.arguments(j))) {
@@ -74,6 +81,26 @@ impl StepResolution {
         }
     }
 
+    /// Refuses a step along whose tangent at the start a gauge grows as much, as far as that has arguments.
+    fn look_along_tangent(&mut self, system: &System, segment: &Segment) -> Result<(), Failure> {
+        let mut start = vec![0.0; self.state.len()];
+        let mut rates = start.clone();
+        segment.state(0.0, &mut start);
+        system.rates(segment.begin, &start, &mut rates)?;
+        for k in 1..GAUGE_NODES {
+            let theta = k as f64 / (GAUGE_NODES - 1) as f64;
+            let moved = start.iter().zip(&rates).map(|(y, rate)| y + theta * segment.width * rate);
+            self.state.iter_mut().zip(moved).for_each(|(y, moved)| *y = moved);
+            if system.gauged(segment.time(theta), &self.state, &mut self.along[k]).is_err() {
+                return Ok(());
+            }
+        }
+        match (0..self.gauges.len()).any(|j| gauge_growth(self.gauges[j], &self.arguments(j)) > GAUGE_LIMIT) {
+            true => Err(Failure::Steep { t: segment.begin }),
+            false => Ok(()),
+        }
+    }
+
     /// The arguments at every second place behind the start, or at those between.
     fn read(&mut self, system: &System, segment: &Segment, first: usize) -> Result<(), Failure> {
         for k in (first..GAUGE_NODES).step_by(2) {
@@ -90,6 +117,7 @@ impl StepResolution {
 
     pub(crate) fn advance(&mut self) {
         self.along.swap(0, GAUGE_NODES - 1);
+        self.at_start = false;
     }
 }
 
