@@ -230,7 +230,7 @@ fn calls(draw: &mut Draw, scene: &str, folder: &Path, names: &[&str]) -> Vec<Vec
 /// A film of the scene: of a motion where there is one, with noise or without; else of bodies at rest.
 fn film(draw: &mut Draw, scene: &str, names: &[&str]) -> String {
     let law = draw.one(&["chetaev", "vakonomic"]);
-    let motion = command(&["solve", scene, "-f", law, "--times", "0:0.3:11", "--max-steps", "3000", "--quiet"])
+    let motion = command(&["solve", scene, "-f", law, "--times", "0:0.3:21", "--max-steps", "3000", "--quiet"])
         .output()
         .expect("it runs");
     let rows = text(&motion.stdout);
