@@ -19,7 +19,8 @@ impl Compiled {
     /// # Errors
     /// As [`Compiled::rates`].
     pub fn adjoint_terms_of_rates(&mut self, t: f64, y: &[f64]) -> Result<Vec<f64>, EvaluationFailure> {
-        let along_paths = self.terms_of_rates(t, y)?;
+        let mut along_paths = self.terms_of_evaluation(t, y)?;
+        along_paths.truncate(y.len());
         let sizes = self.adjoint_sizes(t, y)?;
         let (inputs, rates) = (&self.instant.inputs, 0..along_paths.len());
         let is_trusted = self.planned.as_mut().is_some_and(|planned| planned.is_trusted(inputs));

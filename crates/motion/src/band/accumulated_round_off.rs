@@ -40,7 +40,8 @@ pub fn largest(looked: &[Looked], mut sizes: Vec<f64>) -> Vec<f64> {
 /// States and the sums of terms behind their rates at an instant; `None` where these cannot be evaluated.
 /// Infinite sums, as at an infinite slope, become 0.
 pub fn look(compiled: &mut Compiled, t: f64, y: &[f64]) -> Option<Looked> {
-    let mut terms = compiled.terms_of_rates(t, y).ok()?;
+    let mut terms = compiled.terms_of_evaluation(t, y).ok()?;
+    terms.truncate(y.len());
     terms.iter_mut().filter(|x| !x.is_finite()).for_each(|x| *x = 0.0);
     Some((t, y.to_vec(), terms))
 }
