@@ -194,7 +194,7 @@ impl Comparison {
         let of = |own| self.runs[self.run(own)?].outcome.as_ref().ok().filter(|motion| motion.doubt.is_none());
         let motions = [of(VAKONOMIC)?, of(VAKONOMIC_COSTATE)?];
         let one_sided = |[one, other]: [&Motion; 2]| {
-            let kept = |breach: &&Breach| breach.is_clear() && other.keeps(&breach.name, breach.largest);
+            let kept = |breach: &&Breach| breach.is_clear() && other.keeps(breach);
             one.breaches.iter().find(kept).map(|breach| format!("{breach}"))
         };
         let found = one_sided(motions).or_else(|| one_sided([motions[1], motions[0]]))?;

@@ -139,11 +139,15 @@ impl Motion {
         Ok((kept, self.looser.outputs(&mut self.compiled, t)?))
     }
 
-    /// Whether it keeps a quantity that the user expects to be constant, where another motion changes it by
-    /// `change`: it does not change it, and would show as much.
-    pub fn keeps(&self, name: &str, change: f64) -> bool {
-        let shows = |(known, by): &(String, f64)| known == name && ask_alone(change, Some(*by)) == Answer::Apart;
-        self.breaches.iter().all(|breach| breach.name != name) && self.unseen.iter().any(shows)
+    /// Whether it keeps what another motion changes: it comes as far, does not change it, and would show as
+    /// much.
+    pub fn keeps(&self, changed: &Breach) -> bool {
+        let of_it = |name: &str| name == changed.name;
+        let shows = |by: f64| ask_alone(changed.largest, Some(by)) == Answer::Apart;
+        let way = |t: f64| (t - self.start()).abs();
+        way(self.end()) >= way(changed.t)
+            && self.breaches.iter().all(|breach| !of_it(&breach.name))
+            && self.unseen.iter().any(|(name, by)| of_it(name) && shows(*by))
     }
 
     /// Name, value at the start and largest deviation from it at `times`, of each invariant.

@@ -275,9 +275,8 @@ fn breaches(comparison: &Comparison) -> Vec<String> {
     let of = |name: &str| {
         let breaches = || motions().flat_map(|(label, m)| m.breaches.iter().map(move |breach| (label, breach)));
         let of_name = || breaches().filter(|(_, breach)| breach.name == name);
-        let largest = of_name().map(|(_, breach)| breach.largest).fold(0.0, f64::max);
         let changed: Vec<_> = of_name().map(|(label, b)| format!("{label} (by {})", short(b.largest))).collect();
-        let kept = motions().filter(|(_, motion)| motion.keeps(name, largest));
+        let kept = motions().filter(|(_, motion)| of_name().all(|(_, breach)| motion.keeps(breach)));
         let kept: Vec<_> = kept.map(|(label, _)| label.to_owned()).collect();
         let kept = if kept.is_empty() { String::new() } else { format!("; constant for {}", enumerate(&kept)) };
         format!("{name} is not constant for {}{kept}.", enumerate(&changed))
