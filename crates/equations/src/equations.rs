@@ -7,6 +7,7 @@ use std::collections::{BTreeMap, HashMap, HashSet};
 
 use symbolic::{CompileError, Evaluator, Expr, Graph, Matrix, Scalar, Symbol, Tape};
 
+use crate::chart::Chart;
 use crate::definitions::{needed, symbols_behind};
 use mechanics::{Removal, System};
 
@@ -124,17 +125,6 @@ pub struct Statement {
     pub right: Expr,
 }
 
-/// Which velocities the others are combinations of, where other ones would do as well.
-#[derive(Clone, Debug)]
-pub struct Chart {
-    /// Names of the velocities, or of the coordinates whose velocities they are.
-    pub independent: Vec<String>,
-    /// The coefficients of the combinations, in `(t, y)`: they grow where a pivot becomes small beside them.
-    pub coefficients: Vec<Expr>,
-    /// Whether pivots may vanish.
-    pub may_vanish: bool,
-}
-
 /// Return onto the constraint: `v ← v + δv` with the smallest `δvᵀ M δv` such that `f(q, v, t) = 0`.
 #[derive(Clone, Debug)]
 pub struct ConstraintProjection {
@@ -207,8 +197,7 @@ pub struct Equations {
     pub guards: Vec<Expr>,
     /// Those of the guards at which formulas, as they were written, cease to have values.
     pub domains: Vec<Expr>,
-    /// Those of the guards at which an angle jumps, and momenta or constraints with it: no equation tells what
-    /// velocities do.
+    /// Those of the guards at which an angle jumps, and momenta or constraints with it.
     pub cuts: Vec<Expr>,
     /// `A = ∂f/∂v` of the constraints of the system in `(t, y, z)`: where it loses rank along a motion,
     /// several motions go on, or none. `None` where it is constant, or there is no constraint.

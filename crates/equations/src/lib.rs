@@ -58,6 +58,7 @@
 
 mod adjoint_terms;
 mod blocks;
+mod chart;
 mod code;
 mod compiled;
 mod definitions;
@@ -82,11 +83,12 @@ mod steep;
 mod tangents;
 
 pub use blocks::{EvaluationFailure, Real};
+pub use chart::Chart;
 pub use compiled::Compiled;
 pub use definitions::Definitions;
 pub use dynamics::Dynamics;
 pub use equations::{
-    Block, Chart, ConstraintProjection, ConstraintRows, Equations, FreeConstant, LeftOut, Named, Role, StateVariable,
+    Block, ConstraintProjection, ConstraintRows, Equations, FreeConstant, LeftOut, Named, Role, StateVariable,
     Statement,
 };
 pub use formulation::{Derivation, DerivationError, Formulation, Needs, parameter};

@@ -151,7 +151,7 @@ impl Graph {
         all.into_iter().filter(|&e| matches!(arena.node(e), Node::Atan2(..))).collect()
     }
 
-    /// What is zero where the angles of points `(x, y)` in `es` jump, and positive elsewhere: `x + √(x² + y²)`.
+    /// `x + √(x² + y²)`, which is zero where angles of points `(x, y)` in `es` jump, and positive elsewhere.
     pub fn cuts(&self, es: &[Expr]) -> Vec<Expr> {
         let points = self.angles(es).into_iter().filter_map(|e| match *self.arena.borrow().node(e) {
             Node::Atan2(y, x) => Some((x, y)),
