@@ -197,7 +197,7 @@ pub fn derive(system: &System, derivation: &Derivation) -> Result<Equations, Der
     let known = system.parameter_values().into_iter().map(|(symbol, x)| (symbol, Range::point(x))).collect();
     let coefficients: Vec<Expr> = removal.chart.iter().copied().filter(|&e| !g.range(e, &known).is_bounded()).collect();
     let independent = removal.parameters.iter().map(|u| g.name(u.symbol)).collect();
-    equations.chart = (!coefficients.is_empty()).then(|| Chart { independent, coefficients, may_vanish: true });
+    equations.chart = (!coefficients.is_empty()).then_some(Chart { independent, coefficients, may_vanish: true });
     equations.removal = Some(removal.clone());
     drop(parameters);
     equations.graph = system.graph;
