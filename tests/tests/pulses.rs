@@ -322,3 +322,33 @@ fn a_constraint_that_is_flat_at_the_start_is_kept() {
                  [start]\nvelocities = { \"x'\" = 0.6, \"y'\" = 0.8 }\n[run]\nduration = 1\n";
     flat(scene, 0, right);
 }
+
+#[test]
+fn a_first_step_sees_what_its_stages_miss() {
+    // inertia that is large where it starts: 1 + 0.4 s'(x)², and s' is -1/(2w) at the start
+    for w in [1e-8_f64, 1e-9] {
+        let scene = format!(
+            "title = 'edge'\n[coordinates]\nx = {{ start = '0.4' }}\n[definitions]\n\
+             R = 'rotation(z, step(x, 0.1, 0.4, {w:e}))'\nW = 'angular_velocity(R)'\n[system]\n\
+             lagrangian = \"x'^2/2 + dot(W, W)/5\"\nconstraints = []\n[start.velocities]\n\"x'\" = 1\n\
+             [run]\nduration = 2\n"
+        );
+        let scene = Scene::parse("edge", &scene).expect("a scene");
+        let (speed, mut told) = ((1.0 + 0.1 / (w * w)).sqrt(), 0);
+        for choice in choices(&scene) {
+            for method in [Method::Taylor, Method::Dop853, Method::Radau5] {
+                let settings = Settings { method: Some(method), max_steps: 20_000, ..Settings::default() };
+                let Ok(mut motion) = solve_choice(&scene, &choice, &settings) else { continue };
+                if motion.doubt.is_some() || motion.end() < 1e-5 {
+                    continue;
+                }
+                let estimate = error_estimate(&mut motion, setting(&scene)).expect("an estimate").coordinates[0];
+                let (x, right) = (motion.at(motion.end()).expect("an end").coordinates[0], speed * motion.end());
+                let allowed = 10.0 * estimate + 1e-3 * right;
+                assert!((x - right).abs() < allowed, "{} by {method:?}, {w}: {x} for {right}", choice.label);
+                told += usize::from(allowed < 0.1 * right);
+            }
+        }
+        assert!(told > 2, "{told} motions leave the edge");
+    }
+}

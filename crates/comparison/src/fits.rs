@@ -231,7 +231,7 @@ pub fn fit_run(
     if gap.verdict == Verdict::Different {
         let told = if part < 1.0 { CERTAINTY * part * gap.scale } else { 0.0 };
         if gap.largest <= told + unknown(scene, &mut motion, &open, metric, settings)? {
-            let because = "what is left is less than the digits of the constants leave open".into();
+            let because = "what is left is less than the decision and the digits of the constants leave open".into();
             gap.verdict = Verdict::Undecided { because };
         }
     }

@@ -67,6 +67,30 @@ fn a_proof_that_some_do_beside_a_mismatch() {
     assert!(found(&sledge).contains("ranks show that some constants give the motion, but the least mismatch"));
 }
 
+/// Multipliers of the costate form grow as 1e13: what the elimination adds up is more than the equations do.
+#[test]
+fn costates_that_grow_contradict_nothing() {
+    let scene = "title = 'exponential'\n[coordinates]\nx = { start = 0.3 }\ny = { start = 0.7 }\n[system]\n\
+                 lagrangian = \"(x'^2 + y'^2)/2\"\nconstraints = [\"x' - x*y'\"]\n\
+                 forces = { x = \"-atan2(atan2(y, y'), y' + t)\", y = \"y' - 9\" }\n\
+                 [start]\nproject = true\nvelocities = { \"y'\" = 0.3 }\n[run]\nduration = 2\n";
+    assert_eq!(compared("exponential", scene).contradictions(), Vec::new());
+}
+
+/// The decision holds up to a part of the acceleration, and what is left is a smaller one.
+#[test]
+fn a_gap_below_what_was_decided_contradicts_nothing() {
+    let scene = "title = 'nearly'\n[coordinates]\nx = { start = 1.1 }\ny = { start = 1.1 }\nz = { start = 0.4 }\n\
+                 phi = { start = 0.3 }\n[system]\nlagrangian = \"(x'^2 + y'^2 + z'^2 + phi'^2)/2 + (y - x)*x'*z'\"\n\
+                 constraints = [\"x' - sqrt(1 + y'^2*exp(-9)^2)\", \"y - 1.1 + (z - 0.4)*pi*phi\", \
+                 \"z' + 2/5.125*phi' - step(t, 0.1, 0.4, 1e-3)\"]\n\
+                 [start]\nproject = true\nvelocities = { \"phi'\" = 0.3 }\n[run]\nduration = 1\n";
+    let scene = crate::support::read("nearly", scene);
+    let choices = choices(&scene);
+    let comparison = compare(scene, choices, Vec::new(), &Settings::default()).expect("a comparison");
+    assert_eq!(comparison.contradictions(), Vec::new());
+}
+
 #[test]
 fn a_motion_that_leaves_the_branch_of_its_start() {
     let scene = "title = 'branch'\n[coordinates]\nx = { start = 1 }\ny = { start = 0.3 }\nz = { start = 0 }\n[system]\n\

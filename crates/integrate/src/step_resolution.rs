@@ -58,14 +58,13 @@ impl StepResolution {
         if self.at_start && segment.basis == Basis::Nested {
             self.look_along_tangent(system, segment)?;
         }
-        self.read(system, segment, 2)?;
+        let along = |theta: f64, y: &mut [f64]| segment.state(theta, y);
+        self.read(system, segment, 2, &along)?;
         if (0..self.gauges.len()).all(|j| is_flat(self.gauges[j], &self.arguments(j))) {
             return Ok(());
         }
-        self.read(system, segment, 1)?;
-        if (0..self.gauges.len()).any(|j| gauge_growth(self.gauges[j], &self.arguments(j)) > GAUGE_LIMIT) {
-            return Err(Failure::Steep { t: segment.begin });
-        }
+        self.read(system, segment, 1, &along)?;
+        self.refuse_growth(segment)?;
         self.most.fill(0.0);
         for theta in [0.0, 0.5, 1.0] {
             segment.state(theta, &mut self.state);
@@ -83,32 +82,41 @@ impl StepResolution {
 
     /// Refuses a step along whose tangent at the start a gauge grows as much, as far as that has arguments.
     fn look_along_tangent(&mut self, system: &System, segment: &Segment) -> Result<(), Failure> {
-        let mut start = vec![0.0; self.state.len()];
-        let mut rates = start.clone();
+        let [mut start, mut rates] = [(); 2].map(|()| vec![0.0; self.state.len()]);
         segment.state(0.0, &mut start);
         system.rates(segment.begin, &start, &mut rates)?;
-        for k in 1..GAUGE_NODES {
-            let theta = k as f64 / (GAUGE_NODES - 1) as f64;
-            let moved = start.iter().zip(&rates).map(|(y, rate)| y + theta * segment.width * rate);
-            self.state.iter_mut().zip(moved).for_each(|(y, moved)| *y = moved);
-            if system.gauged(segment.time(theta), &self.state, &mut self.along[k]).is_err() {
-                return Ok(());
-            }
+        let along = |theta: f64, y: &mut [f64]| {
+            let tangent = start.iter().zip(&rates).map(|(y, rate)| y + theta * segment.width * rate);
+            y.iter_mut().zip(tangent).for_each(|(y, there)| *y = there);
+        };
+        match [1, 2].into_iter().try_for_each(|first| self.read(system, segment, first, &along)) {
+            Ok(()) => self.refuse_growth(segment),
+            Err(_) => Ok(()),
         }
+    }
+
+    /// The arguments at every second place behind the start, or at those between, of states along a way.
+    fn read(
+        &mut self,
+        system: &System,
+        segment: &Segment,
+        first: usize,
+        along: &impl Fn(f64, &mut [f64]),
+    ) -> Result<(), Failure> {
+        for k in (first..GAUGE_NODES).step_by(2) {
+            let theta = k as f64 / (GAUGE_NODES - 1) as f64;
+            along(theta, &mut self.state);
+            system.gauged(segment.time(theta), &self.state, &mut self.along[k])?;
+        }
+        Ok(())
+    }
+
+    /// Refuses a step along which a gauge grows too much, by the arguments read.
+    fn refuse_growth(&self, segment: &Segment) -> Result<(), Failure> {
         match (0..self.gauges.len()).any(|j| gauge_growth(self.gauges[j], &self.arguments(j)) > GAUGE_LIMIT) {
             true => Err(Failure::Steep { t: segment.begin }),
             false => Ok(()),
         }
-    }
-
-    /// The arguments at every second place behind the start, or at those between.
-    fn read(&mut self, system: &System, segment: &Segment, first: usize) -> Result<(), Failure> {
-        for k in (first..GAUGE_NODES).step_by(2) {
-            let theta = k as f64 / (GAUGE_NODES - 1) as f64;
-            segment.state(theta, &mut self.state);
-            system.gauged(segment.time(theta), &self.state, &mut self.along[k])?;
-        }
-        Ok(())
     }
 
     fn arguments(&self, gauge: usize) -> [f64; GAUGE_NODES] {

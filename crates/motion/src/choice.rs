@@ -190,6 +190,10 @@ fn domains_at(system: &System, start: &State, equations: &Equations) -> Result<V
 /// What is zero where an angle in the momenta `∂L/∂v` or the constraints jumps, if it is not at the start.
 fn cuts_from(system: &System, start: &State, equations: &Equations) -> Vec<Expr> {
     let (g, values) = (&system.graph, system.values_at(start));
+    let written = [&[system.lagrangian], &system.constraints[..]].concat();
+    if g.angles(&written).is_empty() {
+        return Vec::new();
+    }
     let momenta = g.gradient(system.lagrangian, &system.velocities());
     let mut cuts = g.cuts(&[momenta, system.constraints.clone()].concat());
     cuts.retain(|&e| !equations.is_constant(g, e) && g.evaluate(e, &values).is_ok_and(|x| x > 0.0));

@@ -67,6 +67,10 @@ impl Fraction {
         if numerator == 0 {
             return Some(Self::ZERO);
         }
+        // those of a quotient of i128 change them by less than LARGEST
+        if twos.unsigned_abs().max(fives.unsigned_abs()) > 2 * LARGEST {
+            return None;
+        }
         let shared = divisor(numerator, denominator) * denominator.signum();
         let reduced = Fraction { numerator: numerator / shared, denominator: denominator / shared, twos, fives };
         if twos == 0 && fives == 0 {
