@@ -100,11 +100,7 @@ pub(crate) fn run(arguments: &SolveArguments, quiet: bool) -> Result<Answer> {
             let derivatives = derived.as_ref().map_or(Vec::new(), |derived| columns.derivative_names(derived));
             let names = [columns.names(), columns.error_names(), program.names().to_vec(), derivatives].concat();
             let mut text = header(&names)?;
-            for line in rows.map(line) {
-                let more = text.try_reserve(line.len());
-                more.with_context(|| format!("no memory for a table of {} rows: ask for fewer times", reached.len()))?;
-                text += &line;
-            }
+            text.extend(rows.map(line));
             text
         }
         Format::Json => {

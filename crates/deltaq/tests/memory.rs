@@ -45,13 +45,18 @@ fn a_million_rows_are_answered_or_refused_in_two_gigabytes() {
     let folder = tempfile::tempdir().expect("a folder");
     let motion = folder.path().join("motion.csv");
     let program = env!("CARGO_BIN_EXE_deltaq");
-    let limited = |call: &str| {
+    let limited_to = |kilobytes: usize, call: &str| {
         let call = format!("ulimit -v {kilobytes}; exec '{program}' {call}");
         let output = std::process::Command::new("sh").args(["-c", &call]).current_dir(&folder).output();
         let output = output.expect("a shell");
         (output.status.code(), output.stdout.len(), text(&output.stderr))
     };
+    let limited = |call: &str| limited_to(kilobytes, call);
     let solve = format!("solve sledge -f chetaev --times 0:1:{rows} --format");
+    for format in ["csv", "json"] {
+        let (code, written, stderr) = limited_to(150_000, &format!("{solve} {format}"));
+        assert!((code, written) == (Some(5), 0) && stderr.contains("memory allocation of"), "{code:?}: {stderr}");
+    }
     let (code, written, stderr) = limited(&format!("{solve} csv > motion.csv"));
     assert_eq!((code, written), (Some(0), 0), "{stderr}");
     assert!(std::fs::metadata(&motion).expect("a table").len() > 200 * rows as u64);

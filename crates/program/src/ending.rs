@@ -3,6 +3,8 @@
 use std::borrow::Cow;
 use std::io::{self, ErrorKind};
 use std::process::ExitCode;
+#[cfg(unix)]
+use std::sync::{Arc, atomic::AtomicBool};
 
 use anyhow::{Error, Result};
 use clap::Parser;
@@ -32,8 +34,18 @@ pub fn parse<Asked: Parser>() -> Result<Asked, ExitCode> {
 
 /// Does the work, prints the answer, or says what went wrong, and returns the exit code.
 pub fn finish(work: impl FnOnce() -> Result<Answer>) -> ExitCode {
+    #[cfg(unix)]
+    expect_aborts();
     let answer = caught("program", work).unwrap_or_else(|broken| Err(broken.into()));
     answer.map_or_else(|error| failed(&error), |answer| printed(&answer))
+}
+
+/// From now on an abort ends with the code of [`Broken`], as where there is no memory, which is said by then.
+#[cfg(unix)]
+fn expect_aborts() {
+    use signal_hook::{consts::SIGABRT, flag::register_conditional_shutdown};
+    // where it cannot be registered an abort ends as it does
+    let _ = register_conditional_shutdown(SIGABRT, BROKEN.into(), Arc::new(AtomicBool::new(true)));
 }
 
 fn printed(answer: &Answer) -> ExitCode {
@@ -49,12 +61,15 @@ fn printed(answer: &Answer) -> ExitCode {
     }
 }
 
+/// The exit code where a computation breaks off.
+const BROKEN: u8 = 5;
+
 /// The exit code of an error.
 pub fn exit_code(error: &Error) -> u8 {
     match () {
         () if error.is::<Unwritten>() || error.chain().any(is_full) => 1,
         () if error.is::<Contradicted>() => 4,
-        () if error.is::<Broken>() => 5,
+        () if error.is::<Broken>() => BROKEN,
         () => 2,
     }
 }
