@@ -81,6 +81,11 @@ impl Membership {
         self.ranked().unwrap_or(self.decision.set.dimension())
     }
 
+    /// Whether numbers do not tell up to the end what holds on the branch of the start.
+    fn may_leave_its_branch(&self) -> bool {
+        self.proof.domain.branch && self.decision.until.is_some()
+    }
+
     /// Whether what holds on the branch of the start does not hold up to the end.
     fn leaves_its_branch(&self) -> bool {
         self.proof.domain.branch && self.decision.verdict == Verdict::NotContained
@@ -102,7 +107,10 @@ impl Membership {
                 return Answer::None { unproved: "near the start some do, on a branch that the motion leaves".into() };
             }
             Finding::Contained { .. } if self.is_identity() => return Answer::SomeProved,
-            Finding::Contained { order, .. } => return Answer::Some { order: Some(*order), settled: true },
+            Finding::Contained { order, .. } if !self.may_leave_its_branch() => {
+                return Answer::Some { order: Some(*order), settled: true };
+            }
+            Finding::Contained { order, .. } => (Some(*order), String::new()),
             Finding::ThroughOrder { order, .. } => {
                 (Some(*order), format!("Taylor coefficients agree through order {order}"))
             }

@@ -166,12 +166,12 @@ fn what_is_said_of_a_mismatch_and_of_constants_has_its_numbers() {
     assert!(sentence(found).ends_with(": through order 7 and without acceleration."), "{}", sentence(found));
     found.decision.least = 3e-9;
     found.decision.until = Some(1.5);
-    assert!(sentence(found).ends_with("to 1e-8 up to 1.5 s, after which round-off is too large."));
+    assert!(sentence(found).ends_with("to 1e-8 up to 1.5 s, and later undecided."));
     found.decision.verdict = Verdict::NotContained;
     found.decision.least = 20.0;
     let said = sentence(found);
     let expected = "No μ₀ makes the vakonomic motion Chetaev's: the least mismatch of accelerations is 0.4 times the motion's own \
-                    up to 1.5 s, after which round-off is too large; not proved: Taylor coefficients agree \
+                    up to 1.5 s, and later undecided; not proved: Taylor coefficients agree \
                     through order 7.";
     assert_eq!(said, expected);
     // the gap that a search has reached is printed with its constants

@@ -41,7 +41,10 @@ pub(crate) fn run(arguments: &SolveArguments, quiet: bool) -> Result<Answer> {
     let choice = choice(&scene, (formulation, form), free)?;
     if arguments.integrals {
         let kept = watched(&scene, &choice)?;
-        let shown = kept.iter().map(|own| Watched { constancy: Constancy::Free, ..own.clone() });
+        // a coordinate or velocity has a column of its own
+        let is_shown = |own: &&Watched| scene.system.graph.find_symbol(&own.name).is_none();
+        let shown = kept.iter().filter(is_shown);
+        let shown = shown.map(|own| Watched { constancy: Constancy::Free, ..own.clone() });
         let all: Vec<Watched> = shown.chain(kept.iter().cloned()).collect();
         scene.system.watched.extend(all);
     }

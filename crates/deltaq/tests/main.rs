@@ -31,5 +31,6 @@ mod smallest;
 mod support;
 mod sweep;
 mod tutorials;
+mod unusual;
 
 const PROGRAM: &str = env!("CARGO_BIN_EXE_deltaq");

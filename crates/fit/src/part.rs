@@ -41,6 +41,20 @@ impl Place {
     }
 }
 
+/// Why a residual or its derivatives cannot be squared and added up.
+fn unusable(r: f64, by: &[(usize, f64)]) -> Option<String> {
+    if !r.is_finite() {
+        return Some("has no value".into());
+    }
+    if r.abs() > FARTHEST {
+        return Some(format!("is {r:.1e} standard deviations off; at most {FARTHEST:.0e} are possible"));
+    }
+    by.iter().any(|(_, slope)| !slope.is_finite()).then(|| "has no derivative".into())
+}
+
+/// The largest residual: squares of as many as there may be have a sum.
+const FARTHEST: f64 = 1e100;
+
 /// What is done with a cell, given by row and column: with `r`, and its derivatives by unknowns.
 type Reader<'a> = dyn FnMut((usize, usize), f64, &[(usize, f64)]) + 'a;
 
@@ -174,7 +188,12 @@ impl Part {
                     by.push((j, (along + own) / sigma));
                 }
                 by.extend(unknown_clock.zip(by_clock.as_ref()).map(|(j, slopes)| (j, slopes[k][c] / sigma)));
-                with((k, c), (value - seen) / sigma, &by);
+                let r = (value - seen) / sigma;
+                if let Some(what) = unusable(r, &by) {
+                    let (name, line) = (&self.film.columns[c].name, self.film.lines[k]);
+                    return Err(format!("`{name}` {what} at t = {}, line {line} of the film", times[k]));
+                }
+                with((k, c), r, &by);
             }
         }
         Ok(())

@@ -10,6 +10,9 @@ use crate::part::{Part, Place};
 use crate::unknown::CLOCK;
 use crate::{Film, FitError, Unknown};
 
+/// Residuals of this length, or a change of theirs, are none.
+pub(crate) const NOTHING: f64 = 1e-3;
+
 /// Another formulation that fits, its numbers and their scales.
 pub(crate) type Beside = (Problem, [Vec<f64>; 2]);
 

@@ -6,6 +6,7 @@ use serde::Serialize;
 use symbolic::SplitMix;
 
 use crate::distribution::{chi_squared_tail, normal_tails};
+use crate::problem::NOTHING;
 use crate::{Film, Residual};
 
 /// All tests together object to a right formulation in one of this many films.
@@ -74,7 +75,8 @@ pub fn residual_tests(films: &[&Film], residuals: &[Residual], unknowns: usize, 
         for (c, column) in film.columns.iter().enumerate() {
             let of = |r: &&Residual| r.film == number && r.column == c;
             let values: Vec<f64> = residuals.iter().filter(of).map(|r| r.value).collect();
-            if values.len() < ENOUGH {
+            // what is no noise has no order, as in a column without any
+            if values.len() < ENOUGH || values.iter().map(|r| r * r).sum::<f64>().sqrt() < NOTHING {
                 continue;
             }
             let name = if films.len() > 1 { format!("{}@{}", column.name, number + 1) } else { column.name.clone() };

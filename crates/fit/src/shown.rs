@@ -4,12 +4,10 @@ use motion::shooting::Minimum;
 use nalgebra::{DMatrix, DVector};
 
 use crate::least::{Stage, least, scaled};
+use crate::problem::NOTHING;
 use crate::profile::SHOWN;
 use crate::search::is_as_high;
 use crate::{FitError, Problem};
-
-/// A change of residuals, as the length of a vector, that is none.
-const NOTHING: f64 = 1e-3;
 
 /// What films show of the unknowns to first order.
 #[derive(Clone, Debug, PartialEq)]

@@ -67,15 +67,17 @@ type Seen = (bool, bool);
 /// [`Open`].
 pub(crate) fn reductions(system: &Reversible, start: &ExactStart, has_density: bool) -> Result<Vec<Reduction>, Open> {
     let n = system.coordinates;
+    // of as many as there are of one constraint less or of one coordinate less, and so on
+    let found = (0..system.constraints).fold(1_usize, |found, k| found.saturating_mul(n - k) / (k + 1));
+    if found > CHOICES {
+        return Err(Open::Choices { found, most: CHOICES });
+    }
     let mut choices: Vec<Vec<usize>> = vec![Vec::new()];
     for _ in 0..system.constraints {
         let longer = |chosen: &Vec<usize>| {
             (chosen.last().map_or(0, |last| last + 1)..n).map(|i| [&chosen[..], &[i]].concat()).collect::<Vec<_>>()
         };
         choices = choices.iter().flat_map(longer).collect();
-    }
-    if choices.len() > CHOICES {
-        return Err(Open::Choices { found: choices.len(), most: CHOICES });
     }
     let mut found = Vec::new();
     for dependent in choices.iter().filter(|_| system.constraints > 0) {

@@ -60,13 +60,10 @@ impl Point {
             let sizes: Vec<f64> = (0..kept.len()).map(terms).collect();
             let first = first.get_or_insert_with(|| sizes.clone());
             match moving {
-                // to rest, by steps that only halve what is left: nothing is left of what there was at first
+                // by steps that only halve what is left: nothing is left of what there was at first
                 Some(Moving { place, rate, .. })
                     if iterations == ITERATIONS && rate.abs() <= f64::EPSILON * first[place] =>
                 {
-                    let is_rest = |&&i: &&usize| self.y[i].abs() <= ROUNDINGS * f64::EPSILON * begun[i].abs();
-                    let rest: Vec<usize> = speeds.iter().filter(is_rest).copied().collect();
-                    rest.into_iter().for_each(|i| self.y[i] = 0.0);
                     return self.state();
                 }
                 // on, as long as it becomes better
@@ -101,6 +98,10 @@ impl Point {
             for (&w, change) in speeds.iter().zip(&step.as_slice()[m..]) {
                 self.y[w] += change;
             }
+            // less than the digits that it began with
+            let vanishing =
+                self.y.iter_mut().zip(&begun).filter(|(y, begun)| y.abs() <= ROUNDINGS * f64::EPSILON * begun.abs());
+            vanishing.for_each(|(y, _)| *y = 0.0);
         }
     }
 

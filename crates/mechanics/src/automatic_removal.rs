@@ -17,6 +17,9 @@ use crate::solved_constraints::{SolvedConstraints, cleared};
 use crate::{ConstantsRule, DisplacementParameter, MemoryVariable, Removal, RemovalError, State, System};
 
 impl Removal {
+    /// Names of the removals that need no hand.
+    pub const AUTOMATIC: [&str; 2] = ["coordinates", "quasi-velocities"];
+
     /// *Coordinate removal.* `u` are `n − h` of the coordinates, the others are memory with `ẇ = K u̇ + c`.
     ///
     /// # Errors
@@ -56,7 +59,7 @@ impl Removal {
             coordinate: Some(i),
         });
         Removal {
-            name: "coordinates".into(),
+            name: Removal::AUTOMATIC[0].into(),
             parameters: split.independent.iter().map(|&i| coordinate_parameter(system, i)).collect(),
             memory: memory.collect(),
             coordinates: system.graph.variables(&system.positions()),
@@ -126,7 +129,7 @@ impl Removal {
         }
         memory.sort_by_key(|w| w.coordinate);
         Removal {
-            name: "quasi-velocities".into(),
+            name: Removal::AUTOMATIC[1].into(),
             parameters,
             memory,
             coordinates: g.variables(&system.positions()),

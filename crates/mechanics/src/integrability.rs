@@ -322,7 +322,12 @@ fn growth_at_start(
         if all.len() > MANY || g.size(&all.concat()) > TOO_LONG {
             break;
         }
-        ranks.push(rank_at_start(&all, space.len()));
+        let rank = rank_at_start(&all, space.len());
+        // more fields span less only where their numbers overflow
+        if ranks.last().is_some_and(|last| rank.0 < last.0) {
+            break;
+        }
+        ranks.push(rank);
     }
     ranks
 }

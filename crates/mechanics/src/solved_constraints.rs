@@ -70,7 +70,7 @@ impl SolvedConstraints {
             let terms = if rest.size > TOO_LONG { usize::MAX } else { g.expanded_terms(over_pivot) };
             if terms <= terms_left {
                 terms_left -= terms;
-                let over_pivot = known(cleared(g, g.div(g.expand(over_pivot), pivot)));
+                let over_pivot = known(cleared(g, g.div(g.expand_around_shifts(over_pivot), pivot)));
                 let is_short = 3 * over_pivot.size <= 4 * rest.size;
                 let better = is_short && added_up(over_pivot) <= ADDED_UP * added_up(rest);
                 rest = if better { over_pivot } else { rest };
@@ -164,6 +164,6 @@ pub(crate) fn cleared(g: &Graph, e: Expr) -> Expr {
     if g.expanded_terms(e) > TOO_LONG {
         return e;
     }
-    let expanded = g.expand(e);
+    let expanded = g.expand_around_shifts(e);
     if g.denominators(&[expanded]).len() < g.denominators(&[e]).len() { expanded } else { e }
 }

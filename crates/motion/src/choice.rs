@@ -231,7 +231,7 @@ type Automatic = fn(&System, &mechanics::State) -> Result<Removal, RemovalError>
 
 /// The removals that need no hand, by name.
 const AUTOMATIC: [(&str, Automatic); 2] =
-    [("coordinates", Removal::by_coordinates), ("quasi-velocities", Removal::by_quasi_velocities)];
+    [(Removal::AUTOMATIC[0], Removal::by_coordinates), (Removal::AUTOMATIC[1], Removal::by_quasi_velocities)];
 
 /// The removals of a scene: those written by hand, then automatic ones that apply and are new.
 ///

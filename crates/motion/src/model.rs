@@ -146,6 +146,10 @@ impl Model {
     /// # Panics
     /// If there are not as many as names.
     pub fn derivatives(&mut self, row: &[f64]) -> Reading {
+        if row.is_empty() {
+            let read = self.outputs(row);
+            return Reading { derivatives: vec![Vec::new(); read.outputs.len()], ..read };
+        }
         let mut found = Reading::default();
         found.ended = self.read_with_derivatives(row, &mut found).err();
         found

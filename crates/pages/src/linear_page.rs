@@ -17,18 +17,16 @@ use picture::{Axis, Curve, Panel, Picture, Style};
 pub fn sweep_text(scene: &Scene, sweep: &Sweep, found: bool) -> String {
     let mut text = format!("# {}\n\n", inert(&scene.title));
     let Some(SweepPoint { linearization, part, .. }) = sweep.points.first() else { return text };
-    let names = |places: &[usize]| places.iter().map(|&i| linearization.states[i].clone()).collect::<Vec<_>>();
-    let carried: Vec<String> =
-        linearization.carried.iter().map(|c| format!("{}' = {}", c.name, precise(c.rate))).collect();
     let kind = if linearization.is_steady { "A steady motion" } else { "**Frozen at an instant of a motion**" };
-    let _ = writeln!(
-        text,
-        "{kind}, by the equations of {}. Eigenvalues of {}.",
-        linearization.form,
-        enumerate(&names(&part.states))
-    );
-    if !carried.is_empty() {
-        let _ = writeln!(text, "Carried along, because no rate depends on them: {}.", carried.join(", "));
+    let _ =
+        writeln!(text, "{kind}, by the equations of {}. Eigenvalues of {}", linearization.form, told(&sweep.points[0]));
+    let mut others: Vec<&SweepPoint> =
+        sweep.points.iter().filter(|point| names(point) != names(&sweep.points[0])).collect();
+    while let Some(&first) = others.first() {
+        let (same, rest): (Vec<_>, Vec<_>) = others.into_iter().partition(|point| names(point) == names(first));
+        let at: Vec<String> = same.iter().map(|point| short(point.asked)).collect();
+        let _ = writeln!(text, "With {} = {}, of {}", sweep.name, at.join(", "), told(first));
+        others = rest;
     }
     let cells: Vec<Vec<String>> = sweep.points.iter().map(|point| pairs(&point.part.eigenvalues)).collect();
     let width = cells.iter().map(Vec::len).max().unwrap_or(0);
@@ -55,6 +53,25 @@ pub fn sweep_text(scene: &Scene, sweep: &Sweep, found: bool) -> String {
         );
     }
     text + &left_open(sweep) + &changes(scene, sweep, found)
+}
+
+/// The states whose eigenvalues are asked for, and those that are carried along.
+fn names(SweepPoint { linearization, part, .. }: &SweepPoint) -> [Vec<&str>; 2] {
+    let carried = linearization.carried.iter().map(|c| &c.name[..]).collect();
+    [part.states.iter().map(|&i| &linearization.states[i][..]).collect(), carried]
+}
+
+/// The same in words.
+fn told(point: &SweepPoint) -> String {
+    let states: Vec<String> = names(point)[0].iter().map(ToString::to_string).collect();
+    let carried: Vec<String> =
+        point.linearization.carried.iter().map(|c| format!("{}' = {}", c.name, precise(c.rate))).collect();
+    match carried.is_empty() {
+        true => format!("{}.", enumerate(&states)),
+        false => {
+            format!("{}.\nCarried along, because no rate depends on them: {}.", enumerate(&states), carried.join(", "))
+        }
+    }
 }
 
 /// One line per state found: what was asked for, coordinates and velocities.

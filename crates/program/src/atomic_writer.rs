@@ -16,11 +16,12 @@ pub(crate) const LIST: &str = ".deltaq";
 const SCHEMA: &str =
     "{\n  \"$schema\": \"https://json-schema.org/draft/2020-12/schema\",\n  \"title\": \"deltaq scene\"";
 
-/// How files of deltaq begin: answers for machines, tables of members.
-const BEGINNINGS: [&str; 3] = ["{\n  \"schema\": \"deltaq/", SCHEMA, "member,"];
+/// How files of deltaq begin: answers for machines.
+const BEGINNINGS: [&str; 2] = ["{\n  \"schema\": \"deltaq/", SCHEMA];
 
-/// What else only they hold: tables of points, answers about integrals, the page that explores.
-const MARKS: [&str; 4] = [
+/// What else only they hold: tables of members and of points, answers about integrals, the page that explores.
+const MARKS: [&str; 5] = [
+    ",error_estimate,status,cause\n",
     ",verdict,apart,largest,limit,",
     ",measure,multiplier,",
     "\nansatz        ",

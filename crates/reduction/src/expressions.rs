@@ -23,7 +23,7 @@ pub(crate) fn products(g: &Graph, a: &Sparse, b: &Sparse) -> Vec<Expr> {
 
 /// `e`, with terms multiplied out or common factors drawn out, whatever is shortest.
 pub(crate) fn shortest(g: &Graph, e: Expr) -> Expr {
-    let expanded = g.expand(e);
+    let expanded = g.expand_around_shifts(e);
     let ways = [e, g.factored(e), expanded, g.factored(expanded)];
     ways.into_iter().min_by_key(|&e| g.size(&[e])).unwrap_or(e)
 }

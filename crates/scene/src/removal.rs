@@ -9,7 +9,7 @@ use super::constants;
 use super::context::Context;
 use super::names::{Names, Role, check_symbols};
 use super::section::{Entry, Section, Value};
-use crate::{SceneError, SceneErrorKind, Unavailable, format};
+use crate::{NameFault, SceneError, SceneErrorKind, Unavailable, format};
 use mechanics::{Coordinate, DisplacementParameter, MemoryVariable, Removal, RemovalError};
 
 /// All removals of the scene, verified. One without a name is called `given`.
@@ -18,7 +18,14 @@ pub(super) fn read_all(context: &Context) -> Result<Vec<Removal>, SceneError> {
     if section.entries().any(|e| format::REMOVAL.iter().any(|key| key.name == e.key)) {
         return Ok(vec![read(context, "given", &section)?]);
     }
-    section.entries().map(|e| read(context, e.key, &e.section()?)).collect()
+    let own = |e: Entry| match Removal::AUTOMATIC.contains(&e.key) {
+        true => {
+            let fault = NameFault::Reserved("a removal that every scene has");
+            Err(e.error_at_key(SceneErrorKind::InvalidName { name: e.key.into(), fault }))
+        }
+        false => read(context, e.key, &e.section()?),
+    };
+    section.entries().map(own).collect()
 }
 
 fn read(context: &Context, name: &str, section: &Section) -> Result<Removal, SceneError> {

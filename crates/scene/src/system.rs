@@ -252,7 +252,7 @@ fn constraints(context: &mut Context, section: &Section) -> Result<(), SceneErro
             } else if depends(system.positions()) {
                 on_positions.push((constraints.len(), *f));
                 constraints.push(g.total_derivative(*f, &system.flow()));
-                context.on_positions.push((index + 1, element.span.clone(), *f));
+                context.on_positions.push((constraints.len(), element.span.clone(), *f));
             } else {
                 source.note::<()>(Err(element.error(SceneErrorKind::NoVelocity { number: index + 1 })));
             }

@@ -88,4 +88,10 @@ fn constraints_on_positions_and_vectors_of_constraints() {
     let vector = text.replace("[\"dot(r, r) - 1\", \"z'\"]", "[\"[x*x' + y*y', z']\"]");
     let scene = Scene::parse("pendulum", &vector).unwrap();
     assert_eq!((scene.system.constraints.len(), scene.start.v[2]), (2, 0.0));
+    // each component has a number of its own, and so a name
+    let both =
+        Scene::parse("pendulum", &text.replace("[\"dot(r, r) - 1\", \"z'\"]", "[\"[dot(r, r) - 1, z]\"]")).unwrap();
+    let names: Vec<&str> = both.system.watched.iter().map(|watched| &watched.name[..]).collect();
+    assert_eq!(names, ["constraint 1 on positions", "constraint 2 on positions"]);
+    assert_eq!(Scene::parse("again", &both.to_toml()).unwrap().start.q, both.start.q);
 }

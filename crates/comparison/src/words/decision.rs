@@ -142,7 +142,7 @@ fn identity(membership: &Membership) -> String {
 
 /// Up to when the numbers were judged, where that is not the end.
 fn up_to(until: Option<f64>) -> String {
-    until.map_or(String::new(), |time| format!(" up to {} s, after which round-off is too large", short(time)))
+    until.map_or(String::new(), |time| format!(" up to {} s, and later undecided", short(time)))
 }
 
 /// The best that a search over `μ₀` has found, where none leaves nothing: smaller gaps may exist.
@@ -183,7 +183,8 @@ pub fn how_far(membership: &Membership, order: Option<usize>, settled: bool) -> 
     let part = membership.proof.domain.part();
     if let Some(section) = &membership.section {
         let section = section.expressions.join(", ");
-        return format!("({section}) at random starts{part} modulo two primes (not proved)");
+        let until = if settled { None } else { membership.decision.until };
+        return format!("({section}) at random starts{part} modulo two primes (not proved){}", up_to(until));
     }
     if settled {
         let at = if part.is_empty() { "" } else { " at random starts" };
@@ -192,9 +193,9 @@ pub fn how_far(membership: &Membership, order: Option<usize>, settled: bool) -> 
     let decision = &membership.decision;
     let part = decision.part();
     let part = match part < 1.0 {
-        true => format!("to 1e{:.0}{}", part.log10().ceil(), up_to(decision.until)),
+        true => format!("to 1e{:.0}", part.log10().ceil()),
         false if decision.moves() => "without acceleration".into(),
         false => "at rest".into(),
-    };
+    } + &up_to(decision.until);
     order.map_or(part.clone(), |order| format!("through order {order} and {part}"))
 }

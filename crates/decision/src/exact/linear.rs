@@ -66,7 +66,22 @@ pub struct Echelon(pub Vec<(usize, Vec<Modular>)>);
 
 impl Echelon {
     /// Takes `row` in where it is independent of the rows so far, and says whether it is.
-    pub fn add(&mut self, mut row: Vec<Modular>) -> bool {
+    pub fn add(&mut self, row: Vec<Modular>) -> bool {
+        let mut row = self.rest(row);
+        let pivot = row.iter().position(|x| !x.is_zero());
+        let Some((pivot, over)) = pivot.and_then(|pivot| Some((pivot, row[pivot].inverse()?))) else { return false };
+        row.iter_mut().for_each(|x| *x = *x * over);
+        self.0.push((pivot, row));
+        true
+    }
+
+    /// Whether `row` is a combination of the rows so far.
+    pub fn spans(&self, row: Vec<Modular>) -> bool {
+        self.rest(row).iter().all(|x| x.is_zero())
+    }
+
+    /// What is left of `row` beside the rows so far.
+    fn rest(&self, mut row: Vec<Modular>) -> Vec<Modular> {
         go_on();
         for (pivot, other) in &self.0 {
             let factor = row[*pivot];
@@ -74,11 +89,7 @@ impl Echelon {
                 row[*pivot..].iter_mut().zip(&other[*pivot..]).for_each(|(x, &y)| *x = *x - factor * y);
             }
         }
-        let pivot = row.iter().position(|x| !x.is_zero());
-        let Some((pivot, over)) = pivot.and_then(|pivot| Some((pivot, row[pivot].inverse()?))) else { return false };
-        row.iter_mut().for_each(|x| *x = *x * over);
-        self.0.push((pivot, row));
-        true
+        row
     }
 
     /// Columns of `width` without a pivot, and for each the vector of the kernel that has 1 there and 0 in

@@ -56,6 +56,11 @@ fn bounded(point: &[f64]) -> Vec<Bounded> {
     point.iter().map(|&x| Bounded::from_f64(x)).collect()
 }
 
+/// Its value, or zero where that is round-off, as of the cosine of a number that is nearest to π/2.
+fn known_part(x: &Bounded) -> f64 {
+    if x.value.abs() <= f64::EPSILON * x.magnitude { 0.0 } else { x.value }
+}
+
 /// Equations `e(x; known) = 0` in some symbols `x` of a graph, and outputs in them, compiled.
 #[derive(Clone)]
 pub(super) struct Problem {
@@ -102,6 +107,28 @@ impl Problem {
 
     /// Solves from `start`, one number per unknown; `sizes` are the sums of terms behind the results.
     pub(super) fn solve(&mut self, known: &[f64], sizes: &[f64], start: &[f64]) -> Result<Solved, CompileError> {
+        match self.solved(known, sizes, start, |derivative| derivative.value)? {
+            Solved::Root(root) if self.is_by_round_off(known, &root)? => self.solved(known, sizes, start, known_part),
+            found => Ok(found),
+        }
+    }
+
+    /// Whether an equation holds at `root` by a derivative that is round-off.
+    fn is_by_round_off(&mut self, known: &[f64], root: &Root) -> Result<bool, CompileError> {
+        let (m, n) = (self.equations, self.unknowns.len());
+        let point = bounded(&[root.x.as_slice(), known].concat());
+        let derivatives = &self.measured.evaluator()?.evaluate(&point)[m..m + m * n];
+        let counts = |(place, d): (usize, &Bounded)| known_part(d) != d.value && root.x[place % n] != 0.0;
+        Ok(derivatives.iter().enumerate().any(counts))
+    }
+
+    fn solved(
+        &mut self,
+        known: &[f64],
+        sizes: &[f64],
+        start: &[f64],
+        derivative: fn(&Bounded) -> f64,
+    ) -> Result<Solved, CompileError> {
         let (m, n) = (self.equations, self.unknowns.len());
         let measured = self.measured.evaluator()?;
         let mut point = bounded(start);
@@ -116,7 +143,7 @@ impl Problem {
             Evaluation {
                 magnitude: DVector::from_fn(m, |i, _| residuals[i].magnitude + size(i)),
                 residual: DVector::from_iterator(m, residuals.iter().map(|r| r.value)),
-                jacobian: DMatrix::from_row_iterator(m, n, jacobian.iter().map(|d| d.value)),
+                jacobian: DMatrix::from_row_iterator(m, n, jacobian.iter().map(derivative)),
             }
         };
         Ok(match solve(evaluate, DVector::from_column_slice(start), &NewtonOptions::default()) {

@@ -58,7 +58,7 @@ impl Known<'_> {
             left.remove(&pivot);
             let Pivot { entry: e, row: others, .. } = matrix.take(pivot, pivot)?;
             let (inertia, scale) = g.square(e, &|s| system.is_parameter(s))?;
-            let (size, whole) = (self.number(e), self.number(mass[pivot][&pivot]));
+            let (size, whole) = (self.number(e), mass[pivot].get(&pivot).map_or(0.0, |&e| self.number(e)));
             if !(self.number(inertia) > 0.0 && size >= PIVOT * whole.abs() && size > 0.0) {
                 return None;
             }

@@ -2,6 +2,7 @@
 
 use crate::limits::{LONG, PRIMES};
 use crate::store::arena::{Arena, Node};
+use crate::store::expand::Shifts;
 use crate::store::number::{Number, Rational};
 use crate::{Expr, Function, Graph};
 use rustc_hash::FxHashMap;
@@ -23,7 +24,7 @@ impl Graph {
     pub fn constant(&self, e: Expr) -> Expr {
         let mut arena = self.arena.borrow_mut();
         let split = arena.with_split_angles(e);
-        let number = arena.expand(split, LONG);
+        let number = arena.expand(split, LONG, Shifts::Expanded);
         if arena.as_number(number).is_some_and(Number::is_exact) { number } else { e }
     }
 }
@@ -35,9 +36,9 @@ impl Arena {
     pub(crate) fn normal_numerator(&mut self, e: Expr, limit: usize) -> Option<Expr> {
         let mut e = self.with_split_angles(e);
         for _ in 0..ROUNDS {
-            e = self.expand(e, limit);
+            e = self.expand(e, limit, Shifts::Expanded);
             e = self.without_even_sines(e);
-            e = self.expand(e, limit);
+            e = self.expand(e, limit, Shifts::Expanded);
             if self.term_count(e) > limit {
                 return None;
             }

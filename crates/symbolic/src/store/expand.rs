@@ -20,7 +20,20 @@ impl Graph {
     /// assert_eq!(g.expand(product), g.sub(g.powi(x, 2), g.powi(y, 2)));
     /// ```
     pub fn expand(&self, e: Expr) -> Expr {
-        self.arena.borrow_mut().expand(e, TOO_LONG)
+        self.arena.borrow_mut().expand(e, TOO_LONG, Shifts::Expanded)
+    }
+
+    /// [`Graph::expand`], except for sums of variables and a number: `(t − p)²` keeps its digits near `p`.
+    ///
+    /// ```
+    /// let g = symbolic::Graph::new();
+    /// let (t, y) = (g.variable(g.symbol("t")), g.variable(g.symbol("y")));
+    /// let shifted = g.powi(g.add(t, g.number(-777.0)), 2);
+    /// let product = g.mul(y, g.add(y, shifted));
+    /// assert_eq!(g.expand_around_shifts(product), g.add(g.powi(y, 2), g.mul(y, shifted)));
+    /// ```
+    pub fn expand_around_shifts(&self, e: Expr) -> Expr {
+        self.arena.borrow_mut().expand(e, TOO_LONG, Shifts::Kept)
     }
 
     /// Terms of `e` multiplied out, before any cancel.
@@ -34,25 +47,32 @@ impl Graph {
         self.arena.borrow().expanded_terms(e)
     }
 
-    /// [`Graph::expand`], if that makes `e` shorter and `e` has at most `limit` nodes; a product that would
+    /// [`Graph::expand_around_shifts`], if that makes `e` shorter and `e` has at most `limit` nodes; a product that would
     /// have more terms than `e` has nodes stays as it is.
     pub fn expand_if_shorter(&self, e: Expr, limit: usize) -> Expr {
         let size = self.size(&[e]);
         if size > limit {
             return e;
         }
-        let expanded = self.arena.borrow_mut().expand(e, size);
+        let expanded = self.arena.borrow_mut().expand(e, size, Shifts::Kept);
         if self.size(&[expanded]) < size { expanded } else { e }
     }
 }
 
+/// What is done with a sum of variables and a number.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Shifts {
+    Expanded,
+    Kept,
+}
+
 impl Arena {
     /// `e` multiplied out, except for products of more than `limit` terms.
-    pub(crate) fn expand(&mut self, e: Expr, limit: usize) -> Expr {
+    pub(crate) fn expand(&mut self, e: Expr, limit: usize, shifts: Shifts) -> Expr {
         let mut e = e;
         // Products of terms can have sums as factors again, as √(x+y)·√(x+y) has.
         for _ in 0..8 {
-            let expanded = self.expand_once(e, limit);
+            let expanded = self.expand_once(e, limit, shifts);
             if expanded == e {
                 break;
             }
@@ -61,22 +81,24 @@ impl Arena {
         e
     }
 
-    fn expand_once(&mut self, e: Expr, limit: usize) -> Expr {
+    fn expand_once(&mut self, e: Expr, limit: usize, shifts: Shifts) -> Expr {
         let product = |arena: &mut Arena, e: Expr| match arena.node(e).clone() {
-            Node::Product(factors) => arena.expand_product(e, &factors, limit),
+            Node::Product(factors) => arena.expand_product(e, &factors, limit, shifts),
             _ => e,
         };
         self.rewritten(&[e], product)[0]
     }
 
-    fn expand_product(&mut self, whole: Expr, factors: &[(Expr, Rational)], limit: usize) -> Expr {
+    fn expand_product(&mut self, whole: Expr, factors: &[(Expr, Rational)], limit: usize, shifts: Shifts) -> Expr {
         let mut rest = Vec::new();
         let mut sums: Vec<(Expr, i64)> = Vec::new();
         let mut terms = 1_usize;
         for (base, exponent) in factors {
             let n = exponent.floor();
             match self.node(*base) {
-                Node::Sum(constant, inner) if (1..=POWER_LIMIT).contains(&n) => {
+                Node::Sum(constant, inner)
+                    if (1..=POWER_LIMIT).contains(&n) && (shifts == Shifts::Expanded || !self.is_shift(*base)) =>
+                {
                     let count = inner.len() + usize::from(!constant.is_zero());
                     terms = terms.saturating_mul(power_terms(count, n));
                     sums.push((*base, n));
@@ -95,9 +117,19 @@ impl Arena {
         for (sum, n) in sums {
             for _ in 0..n {
                 total = self.multiply_out(total, sum);
+                // as where exponents are too long to be added up, so that nothing is collected
+                if matches!(self.node(total), Node::Sum(_, terms) if terms.len() > limit) {
+                    return whole;
+                }
             }
         }
         total
+    }
+
+    /// Whether it is a sum of variables and a number.
+    fn is_shift(&self, e: Expr) -> bool {
+        let is_variable = |(term, _): &(Expr, Number)| matches!(self.node(*term), Node::Symbol(_));
+        matches!(self.node(e), Node::Sum(constant, terms) if !constant.is_zero() && terms.iter().all(is_variable))
     }
 
     /// Terms of `e` multiplied out, before any cancel.
