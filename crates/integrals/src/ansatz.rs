@@ -225,7 +225,7 @@ fn found(system: &System, functions: &[Function], (values, rates): &Columns) -> 
             let Some((d, a)) = products.get(place).cloned() else { break };
             for (e, b) in of_degree.iter().filter(|(e, _)| d + e <= highest) {
                 let product: Vec<Modular> = a.iter().zip(b).map(|(&x, &y)| x * y).collect();
-                // there is no end of powers without velocities, and most are no combinations of these functions
+                // powers without velocities have no end, and few are combinations of these functions
                 let counts = d.min(*e) > 0 || independent.spans(product.clone());
                 if counts && known.add(product.clone()) {
                     products.push((d + e, product));

@@ -19,7 +19,7 @@ const SCHEMA: &str =
 /// How files of deltaq begin: answers for machines.
 const BEGINNINGS: [&str; 2] = ["{\n  \"schema\": \"deltaq/", SCHEMA];
 
-/// What else only they hold: tables of members and of points, answers about integrals, the page that explores.
+/// What else only they hold: tables of members and points, answers about integrals, the page that explores.
 const MARKS: [&str; 5] = [
     ",error_estimate,status,cause\n",
     ",verdict,apart,largest,limit,",
