@@ -47,8 +47,8 @@ impl Graph {
         self.arena.borrow().expanded_terms(e)
     }
 
-    /// [`Graph::expand_around_shifts`], if that makes `e` shorter and `e` has at most `limit` nodes; a product
-    /// that would have more terms than `e` has nodes stays as it is.
+    /// [`Graph::expand_around_shifts`], if that makes `e` shorter and `e` has at most `limit` nodes; a
+    /// product that would have more terms than `e` has nodes stays as it is.
     pub fn expand_if_shorter(&self, e: Expr, limit: usize) -> Expr {
         let size = self.size(&[e]);
         if size > limit {
