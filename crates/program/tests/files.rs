@@ -47,7 +47,7 @@ fn only_files_of_deltaq_are_replaced() {
     std::fs::write(at("mine.json"), "{}").unwrap();
     assert!(write_one(&at("mine.json"), "{}").is_err());
     write_one(&at("ours.json"), "{\n  \"schema\": \"deltaq/certificate/2\",").unwrap();
-    write_one(&at("ours.json"), "member,x").unwrap();
+    write_one(&at("ours.json"), "member,x,error_estimate,status,cause\n").unwrap();
     write_one(&at("ours.json"), "").unwrap();
     // its folder is made, and a line stands for standard output
     write_one(&at("new/folder/page"), "1").unwrap();
